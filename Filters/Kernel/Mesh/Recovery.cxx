@@ -165,7 +165,7 @@ public:
   }
 
   /** @return whether an edge was missing */
-  bool Recover(const Segment& segment)
+  bool Recover(const Segment& segment, std::vector<Index>* replaced)
   {
     for (const Index end : { segment.A, segment.B })
     {
@@ -193,6 +193,10 @@ public:
       this->Left.Fill(this->Surface);
       this->Right.Fill(this->Surface);
       this->WriteBack();
+      if (replaced)
+      {
+        replaced->insert(replaced->end(), this->Slots.begin(), this->Slots.end());
+      }
     }
     return missing;
   }
@@ -449,7 +453,7 @@ Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
 }
 
 Index RecoverSegments(Mesh& mesh, VertexStars& stars, const std::vector<Segment>& segments,
-  std::vector<char>& constrained, const Progress& progress)
+  std::vector<char>& constrained, const Progress& progress, std::vector<Index>* replaced)
 {
   constrained.resize(mesh.Triangles.size(), 0);
   Recovery recovery(mesh, stars, constrained);
@@ -457,7 +461,7 @@ Index RecoverSegments(Mesh& mesh, VertexStars& stars, const std::vector<Segment>
   for (const std::size_t i : Counted(segments.size()))
   {
     ReportStep(progress, i, segments.size(), 256);
-    missing += recovery.Recover(segments[i]) ? 1 : 0;
+    missing += recovery.Recover(segments[i], replaced) ? 1 : 0;
   }
   return missing;
 }

@@ -80,9 +80,13 @@ Index FirstCrossed(const Mesh& mesh, VertexStars& stars, Index from, Index to);
 Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
   std::vector<char>& constrained, const Progress& progress = Progress());
 
-/** The same with the stars of the mesh, which are kept up to date. */
+/**
+ * The same with the stars of the mesh, which are kept up to date.
+ * @param[out] replaced  if not null, the triangles that changed are appended
+ */
 Index RecoverSegments(Mesh& mesh, VertexStars& stars, const std::vector<Segment>& segments,
-  std::vector<char>& constrained, const Progress& progress = Progress());
+  std::vector<char>& constrained, const Progress& progress = Progress(),
+  std::vector<Index>* replaced = nullptr);
 
 } // namespace elevation
 

@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <map>
 #include <string>
+#include <unordered_set>
 #include <utility>
 
 namespace elevation
@@ -15,13 +18,6 @@ namespace elevation
 
 namespace
 {
-
-/** ab - cd, with an error of few units in the last place also where most digits cancel [Kahan]. */
-double DifferenceOfProducts(double a, double b, double c, double d)
-{
-  const double cd = c * d;
-  return std::fma(a, b, -cd) + std::fma(-c, d, cd);
-}
 
 /** Where an edge crosses a line, within rounding of both. */
 Point2 CrossingOf(const Ends& edge, const Ends& line)
@@ -74,7 +70,7 @@ public:
         }
         segment.IsMissing = true;
         next = crossed == None ? this->NextToBorder(vertex, ends)
-                               : this->Pass(vertex, crossed, ends, work);
+                               : this->Pass(vertex, crossed, segment, work);
       }
       this->Link(vertex, next);
       vertex = next;
@@ -112,20 +108,35 @@ public:
 private:
   static std::pair<Index, Index> EdgeOf(Index a, Index b) { return std::minmax(a, b); }
 
-  /** Makes an edge between two vertices of a chain, if there is none, and fixes it. */
+  /**
+   * Makes an edge between two vertices of a chain, if there is none, and fixes it. What it replaces is
+   * within one original triangle, or all of it thin.
+   */
   void Link(Index from, Index to)
   {
-    RecoverSegments(this->Surface, this->Stars, { { from, to } }, this->Fixed);
+    std::vector<Index> replaced;
+    RecoverSegments(this->Surface, this->Stars, { { from, to } }, this->Fixed, {}, &replaced);
+    if (std::any_of(replaced.begin(), replaced.end(),
+          [&](Index t) { return this->OriginalOf(t) != this->OriginalOf(replaced.front()); }))
+    {
+      this->Loose.insert(replaced.begin(), replaced.end());
+    }
   }
+
+  /** The original triangle that a triangle is part of; a number of its own for a loose one. */
+  Index OriginalOf(Index t) const { return this->IsLoose(t) ? ~t : this->Cutter.Parent(t); }
 
   /**
    * Goes from a vertex across edges to the first that has to be cut, which gets a vertex, or to an end
    * of one of them in reach. Edges within one original triangle need no vertex, as it is flat. Where
-   * the triangles of an edge are too thin to be cut, goes on to the next one.
+   * both triangles of an edge are too thin to be cut, goes on to the next one.
    */
-  Index Pass(Index from, Index crossed, const Segment& segment, WorkReporter& work)
+  Index Pass(Index from, Index crossed, const FollowedSegment& followed, WorkReporter& work)
   {
+    const Segment& segment = followed.Ends;
     const Mesh& mesh = this->Surface;
+    const Index first = crossed;
+    bool isWithin = false; // whether the edge before is within one original triangle
     for (;; work.Tick())
     {
       const Index reached =
@@ -143,16 +154,29 @@ private:
         mesh.PointOf(mesh.Destination(crossed)) } };
       const Ends rest{ { mesh.PointOf(from), this->Line[1] } };
       if (this->Fixed[crossed] ||
-        this->Cutter.Parent(Mesh::Triangle(crossed)) != this->Cutter.Parent(Mesh::Triangle(beyond)))
+        this->OriginalOf(Mesh::Triangle(crossed)) != this->OriginalOf(Mesh::Triangle(beyond)))
       {
         // By the whole segment, so that rounding does not add up, unless it passes the edge.
         const Ends& line = Cross(this->Line, edge) ? this->Line : rest;
         Point2 place = CrossingOf(edge, line);
-        if (this->Cutter.MoveToCut(
-              crossed, place, [&](const Point2& p) { return this->IsAhead(from, p); }))
+        const Index cut =
+          this->CutNear(crossed, place, [&](const Point2& p) { return this->IsAhead(from, p); });
+        const Index vertex = cut == None ? this->EndAt(crossed, place, followed) : cut;
+        if (vertex != None)
         {
-          return this->Cut(crossed, place);
+          return vertex;
         }
+        if (isWithin && this->IsLoose(Mesh::Triangle(crossed)))
+        {
+          crossed = first; // the edge before is to be cut after all
+          isWithin = false;
+          continue;
+        }
+        isWithin = false;
+      }
+      else
+      {
+        isWithin = true;
       }
       const Index apex = mesh.Apex(beyond);
       const Sign side = Orientation(rest[0], rest[1], mesh.PointOf(apex));
@@ -181,9 +205,73 @@ private:
     return next;
   }
 
-  Index Cut(Index crossed, const Point2& place)
+  /**
+   * Cuts an edge at a place, within rounding. Where a triangle of it is too thin for that, cuts the
+   * other one beside the edge, if the edge may still be replaced. Triangles that are too thin become
+   * loose. @return the new vertex; None if there is no place for it
+   */
+  Index CutNear(Index h, Point2 place, const std::function<bool(const Point2&)>& isUsable)
   {
-    Mesh& mesh = this->Surface;
+    const Index twin = this->Surface.Twin(h);
+    if (!this->Fixed[h] && this->IsLoose(Mesh::Triangle(h)) && this->IsLoose(Mesh::Triangle(twin)))
+    {
+      return None;
+    }
+    const Point2 rounded = place;
+    if (this->Cutter.MoveToCut(h, place, isUsable))
+    {
+      return this->Cut(h, place);
+    }
+    if (this->Fixed[h])
+    {
+      return None;
+    }
+    const double area = this->Cutter.TwiceArea(Mesh::Triangle(h));
+    const Index thicker = area > this->Cutter.TwiceArea(Mesh::Triangle(twin)) ? h : twin;
+    Point2 inside = rounded;
+    for (const Index side : { h == thicker ? twin : h, thicker })
+    {
+      inside = rounded;
+      if (!this->Cutter.MoveInside(side, inside, [](const Point2&) { return true; }))
+      {
+        this->Loose.insert(Mesh::Triangle(side));
+      }
+    }
+    if (this->IsLoose(Mesh::Triangle(thicker)))
+    {
+      return None;
+    }
+    place = rounded;
+    return this->CutBeside(
+      thicker, this->Cutter.MoveInside(thicker, place, isUsable) ? place : inside);
+  }
+
+  /**
+   * Where an edge cannot be cut: an end of it that only rounding separates from the place, unless the
+   * chain has been there; or None.
+   */
+  Index EndAt(Index h, const Point2& place, const FollowedSegment& followed) const
+  {
+    const double near = 64.0 * std::numeric_limits<double>::epsilon() *
+      std::max(std::fabs(place.X), std::fabs(place.Y));
+    const std::vector<Index>& chain = followed.Between;
+    for (const Index end : { this->Surface.Origin(h), this->Surface.Destination(h) })
+    {
+      const Point2& p = this->Surface.PointOf(end);
+      if (std::fabs(p.X - place.X) <= near && std::fabs(p.Y - place.Y) <= near &&
+        end != followed.Ends.A && std::find(chain.begin(), chain.end(), end) == chain.end())
+      {
+        return end;
+      }
+    }
+    return None;
+  }
+
+  bool IsLoose(Index t) const { return !this->Loose.empty() && this->Loose.count(t) > 0; }
+
+  Index AddVertex(Index crossed, const Point2& place)
+  {
+    const Mesh& mesh = this->Surface;
     if (static_cast<std::size_t>(mesh.IdOf(mesh.NumberOfPoints())) >= MaximumNumberOfPoints)
     {
       throw Error(
@@ -191,9 +279,15 @@ private:
         std::to_string(MaximumNumberOfPoints) +
         " points can be handled at once. Cut it into parts.");
     }
-    const Index twin = mesh.Twin(crossed);
-    const Index vertex = this->Cutter.AddVertex(
+    return this->Cutter.AddVertex(
       place, this->Cutter.WeightsBetween(mesh.Origin(crossed), mesh.Destination(crossed), place));
+  }
+
+  Index Cut(Index crossed, const Point2& place)
+  {
+    const Mesh& mesh = this->Surface;
+    const Index twin = mesh.Twin(crossed);
+    const Index vertex = this->AddVertex(crossed, place);
     this->CutAt.emplace(EdgeOf(mesh.Origin(crossed), mesh.Destination(crossed)), vertex);
     const Index after = this->Cutter.CutEdge(crossed, vertex);
     this->Fixed.resize(mesh.Triangles.size(), 0);
@@ -202,10 +296,34 @@ private:
     return vertex;
   }
 
+  /**
+   * Cuts the triangle of half-edge h at a place inside it and within rounding of h. What is left
+   * between h and the vertex is too thin to be cut, and may be replaced like the triangle beyond h.
+   */
+  Index CutBeside(Index h, const Point2& place)
+  {
+    const Index t = Mesh::Triangle(h), added = this->Surface.NumberOfTriangles();
+    const Index vertex = this->AddVertex(h, place);
+    this->Cutter.CutTriangle(t, vertex);
+    this->Fixed.resize(this->Surface.Triangles.size(), 0);
+    for (const Index k : { 0, 1 })
+    {
+      const Index before = 3 * t + 1 + k, moved = 3 * (added + k);
+      this->Stars.ReplaceCut(this->Surface, Mesh::Previous(moved), before);
+      this->Fixed[moved] = std::exchange(this->Fixed[before], char(0));
+    }
+    this->Loose.insert(h == 3 * t ? t : added + (h - 3 * t - 1));
+    return vertex;
+  }
+
   /** After half-edge h was cut, with its second half in a new triangle. */
   void KeepUp(Index h, Index after)
   {
     const Index before = Mesh::Next(h);
+    if (this->IsLoose(Mesh::Triangle(h)))
+    {
+      this->Loose.insert(Mesh::Triangle(after));
+    }
     this->Stars.ReplaceCut(this->Surface, after, before);
     this->Fixed[after] = this->Fixed[h];
     this->Fixed[Mesh::Next(after)] = std::exchange(this->Fixed[before], char(0));
@@ -241,7 +359,8 @@ private:
   Mesh& Surface;
   MeshCutter& Cutter;
   VertexStars Stars;
-  std::vector<char> Fixed; ///< one a half-edge: whether it is an edge of a chain
+  std::vector<char> Fixed;         ///< one a half-edge: whether it is an edge of a chain
+  std::unordered_set<Index> Loose; ///< triangles too thin to be cut, and what has replaced them
   std::map<std::pair<Index, Index>, Index> CutAt; ///< edges that are no more, and their vertex
   Ends Line;                                      ///< the segment that is followed
   RoundingUnits Units;

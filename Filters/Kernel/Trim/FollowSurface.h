@@ -14,10 +14,14 @@
  *     (SnapRounding.h), such as one where another segment has been cut; along a border that rounding
  *     puts before it.
  *   - Where segments cross, the later one cuts an edge of the earlier one's chain.
- *   - Triangles too thin to be cut are replaced, too.
+ *   - Between triangles too thin to be cut, no edge needs a vertex: they are replaced, too. At the
+ *     edge of a thicker one, that one is cut right beside the edge, within rounding; what it leaves
+ *     there is thin and replaced with the others.
  *
- * Guarantees: but for triangles too thin to be cut, interpolated elevations give the same surface as
- * before.
+ * Guarantees: interpolated elevations give the same surface as before, to rounding, but for what has
+ * no width but rounding: triangles in which no place within 64 units in the last place of a crossing
+ * is a double. One exception is known: a given corner of a segment within such triangles, where it
+ * is between surfaces of different heights, may take a thicker triangle beside it along.
  * A chain leaves its segment by rounding alone. The result does not depend on the order and
  * direction of the segments.
  * Cost: log n for each of n segments, plus the edges that they cross, plus those that earlier chains

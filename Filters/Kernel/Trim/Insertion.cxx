@@ -280,18 +280,20 @@ private:
     {
       ReportStep(progress, i, this->Located.size(), 1024);
       const Point2& p = this->Points[this->Located[i].Point];
-      const Index vertex = this->Cutter.AddVertex(p, weights[i]);
+      const Index t = this->Located[i].Triangle;
+      const Index on = this->EdgeAt(t, p);
+      const Index vertex =
+        this->Cutter.AddVertex(p, this->IsThin(t, on) ? this->WeightsOn(on, p) : weights[i]);
       this->VertexAt.at(p) = vertex;
-      this->Redistribute(static_cast<Index>(i), this->CutAt(this->Located[i].Triangle, vertex));
+      this->Redistribute(static_cast<Index>(i), this->CutAt(t, on, vertex));
     }
   }
 
-  /** Cuts a triangle at a vertex inside, or on an edge, with its neighbour. @return the parts */
-  std::vector<Index> CutAt(Index t, Index vertex)
+  /** The edge of a triangle that a point in it is on, or close enough to for a cut; or None. */
+  Index EdgeAt(Index t, const Point2& p) const
   {
     const Mesh& mesh = this->Surface;
-    const Point2 p = mesh.PointOf(vertex);
-    Index on = None; // the edge that the point is on
+    Index on = None;
     Index inReach = None;
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
@@ -305,7 +307,36 @@ private:
         inReach = h;
       }
     }
-    on = on == None ? inReach : on;
+    return on == None ? inReach : on;
+  }
+
+  /**
+   * Whether a triangle is so thin that within reach of an edge its elevations differ from those of the
+   * edge by more than rounding. A point that the edge is moved to then takes those of the edge.
+   */
+  bool IsThin(Index t, Index on) const
+  {
+    constexpr double reach = 0x1p20 * SnappingReach;
+    const Mesh& mesh = this->Surface;
+    if (on == None)
+    {
+      return false;
+    }
+    const RoundingUnits units =
+      UnitsOf(mesh.PointOf(mesh.Origin(on)), mesh.PointOf(mesh.Destination(on)));
+    return this->Cutter.TwiceArea(t) <
+      reach * std::max(units.X, units.Y) * std::sqrt(mesh.SquaredLengthOf(on));
+  }
+
+  InsertedVertex WeightsOn(Index h, const Point2& p) const
+  {
+    return this->Cutter.WeightsBetween(this->Surface.Origin(h), this->Surface.Destination(h), p);
+  }
+
+  /** Cuts a triangle at a vertex inside, or on an edge, with its neighbour. @return the parts */
+  std::vector<Index> CutAt(Index t, Index on, Index vertex)
+  {
+    const Mesh& mesh = this->Surface;
     std::vector<Index> parts{ t };
     Index next = mesh.NumberOfTriangles();
     if (on == None)

@@ -34,6 +34,13 @@ std::array<Point2, Count> Around(const Point2& from, std::array<Point2, Count> p
 
 } // namespace
 
+double MeshCutter::TwiceArea(Index t) const
+{
+  const std::array<Point2, 3> corners = this->CornersOf(t);
+  return DifferenceOfProducts(corners[1].X - corners[0].X, corners[2].Y - corners[0].Y,
+    corners[1].Y - corners[0].Y, corners[2].X - corners[0].X);
+}
+
 bool MeshCutter::Holds(Index t, const Point2& p) const
 {
   const std::array<Point2, 3> corners = this->CornersOf(t);
@@ -60,23 +67,37 @@ bool MeshCutter::MoveToCut(
   const auto isPlace = [&](const Point2& p) {
     return (!isUsable || isUsable(p)) && this->CanCut(h, p);
   };
-  if (isPlace(place))
-  {
-    return true;
-  }
+  return isPlace(place) || this->MoveNear(h, place, true, std::ref(isPlace));
+}
+
+bool MeshCutter::MoveInside(
+  Index h, Point2& place, const std::function<bool(const Point2&)>& isUsable) const
+{
+  const std::array<Point2, 3> corners = this->CornersOf(Mesh::Triangle(h));
+  return this->MoveNear(h, place, false, [&](const Point2& p) {
+    return isUsable(p) && Orientation(corners[0], corners[1], p) == Positive &&
+      Orientation(corners[1], corners[2], p) == Positive &&
+      Orientation(corners[2], corners[0], p) == Positive;
+  });
+}
+
+bool MeshCutter::MoveNear(
+  Index h, Point2& place, bool outwards, const std::function<bool(const Point2&)>& isPlace) const
+{
   const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
   const Point2 way = Around(
     from, std::array<Point2, 1>{ { this->Surface.PointOf(this->Surface.Destination(h)) } })[0];
   const double length = std::hypot(way.X, way.Y);
   const double step =
     std::numeric_limits<double>::epsilon() * std::max(std::fabs(place.X), std::fabs(place.Y));
-  const Point2 outwards{ step * (way.Y / length), -step * (way.X / length) };
+  const double side = outwards ? step : -step;
+  const Point2 away{ side * (way.Y / length), -side * (way.X / length) };
   const Point2 first = place;
   const auto isFound = [&](double dx, double dy) {
     place = { first.X + dx, first.Y + dy };
     return std::isfinite(place.X) && std::isfinite(place.Y) && isPlace(place);
   };
-  // The nearest places in rings around it, then places further outwards.
+  // The nearest places in rings around it, then places further away.
   for (int ring = 0; ring <= 3; ++ring)
   {
     for (int i = -ring; i <= ring; ++i)
@@ -92,7 +113,7 @@ bool MeshCutter::MoveToCut(
   }
   for (double steps = 4.0; steps <= 64.0; steps *= 2.0)
   {
-    if (isFound(steps * outwards.X, steps * outwards.Y))
+    if (isFound(steps * away.X, steps * away.Y))
     {
       return true;
     }

@@ -13,6 +13,7 @@
 #include "Kernel/Mesh/Mesh.h"
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <unordered_map>
 #include <utility>
@@ -27,6 +28,13 @@ struct InsertedVertex
   Index Corners[3];
   double Weights[3]; ///< 0 to 1, their sum is 1; on an edge, the opposite corner's is 0
 };
+
+/** ab - cd, with an error of few units in the last place also where most digits cancel [Kahan]. */
+inline double DifferenceOfProducts(double a, double b, double c, double d)
+{
+  const double cd = c * d;
+  return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+}
 
 /** Appends new vertices and parts to the mesh. */
 class MeshCutter
@@ -62,6 +70,9 @@ public:
     return t < this->TrianglesBefore ? t : this->Parents[t - this->TrianglesBefore];
   }
 
+  /** Twice the area of a triangle, with an error of few units in the last place of its edges. */
+  double TwiceArea(Index t) const;
+
   /** Whether the point is in the triangle or on an edge of it. */
   bool Holds(Index t, const Point2& p) const;
 
@@ -93,6 +104,9 @@ public:
   bool MoveToCut(
     Index h, Point2& place, const std::function<bool(const Point2&)>& isUsable = {}) const;
 
+  /** The same for a place inside the triangle of h, which is to be cut there and not at its edge. */
+  bool MoveInside(Index h, Point2& place, const std::function<bool(const Point2&)>& isUsable) const;
+
   /** The number, after the cuts, of a border half-edge; if it was cut, of its first part. */
   Index CurrentHalfEdge(Index h) const;
 
@@ -100,6 +114,13 @@ public:
   void ForgetMoves() { this->Moved.clear(); }
 
 private:
+  /**
+   * Moves a place on the edge of h, within rounding, to the nearest that will do, or further away to
+   * one side of the edge. @return whether one was found
+   */
+  bool MoveNear(
+    Index h, Point2& place, bool outwards, const std::function<bool(const Point2&)>& isPlace) const;
+
   /** Sums up shares of vertices, perhaps new, that all lie in one original triangle. */
   InsertedVertex WeightsOf(const std::pair<Index, double>* shares, std::size_t count) const;
 
