@@ -122,11 +122,11 @@ def triangulate(run, lines, error):
     # A boundary that is given cuts the surface at all its points.
     delaunay.SetSimplifyConstraints(not result.boundary_name)
     delaunay.SetInputData(dealt(ranks, points))
+    bare = [] if lines is None or error else bare_lines(lines)
+    # Several ranks do as the first, which has the lines.
+    delaunay.SetDrapeConstraints(total(ranks, len(bare) > 0 and bare.all()) > 0)
     if lines is not None:
         delaunay.SetSourceData(lines)
-        # Several ranks take z of the lines as they are, else one rank would have all points.
-        delaunay.SetDrapeConstraints(
-            not error and run.ranks is None and bool(bare_lines(lines).all()))
     result.delaunay = run("delaunay", delaunay)
     surface = delaunay.GetOutput()
     result.triangles["delaunay"] = total(ranks, surface.GetNumberOfPolys())

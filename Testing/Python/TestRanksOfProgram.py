@@ -164,6 +164,10 @@ class OnRanks(Program):
             os.path.join(DATA, f"horizon_synthetic{part}.vtp") for part in ("", "_faults", "_boundary"))
         self.check_same(2, horizon, "--faults", faults, "--boundary", boundary, "--depth")
 
+    def test_faults_that_follow_the_surface(self):
+        horizon, faults = (os.path.join(DATA, f"horizon_synthetic{part}.vtp") for part in ("", "_faults"))
+        self.check_same(3, horizon, "--faults", faults, "--faults-z", "drape", "--depth")
+
     @draws
     def test_a_surface_for_each_file_with_its_picture(self):
         self.file("a.txt", cloud(1200))
