@@ -205,20 +205,24 @@ elevation::ConstrainedTriangulation TriangulateSpread(
   }
   elevation::ConstrainedTriangulation counts;
   counts.NumberOfCrossings = all.Crossings;
-  counts.Added.resize(parts.Own().AddedPoints);
-  if (!block.Outputs.empty())
-  {
+  ranks.Agree([&]() {
+    counts.Added.resize(parts.Own().AddedPoints);
+    if (block.Outputs.empty())
+    {
+      return;
+    }
+    const Progress progress = ranks.Watched(Part(options.Monitor, 1.0, 1.0));
     vtkPolyData* const output = block.Outputs.front();
-    elevation::SurfacePart part = parts.Take(parts.FirstOwn(), options.Monitor);
+    elevation::SurfacePart part = parts.Take(parts.FirstOwn(), progress);
     elevation::PassPart(part, elevation::ResolveNumberOfThreads(options.NumberOfThreads), output);
     if (block.Input)
     {
       output->GetFieldData()->PassData(block.Input->GetFieldData());
     }
     counts.Result = std::move(part.Result);
-    elevation::AddReport(counts, Part(options.Monitor, 1.0, 1.0), output->GetFieldData());
+    elevation::AddReport(counts, progress, output->GetFieldData());
     elevation::AddWork(ranks.GetTraffic(), parts.Own(), output->GetFieldData());
-  }
+  });
   counts.NumberOfCrossings = ranks.Own() == 0 ? all.Crossings : 0; // once
   return counts;
 }

@@ -323,8 +323,11 @@ void vtkReconstructPieces::FillAll(int count, const elevation::Progress& progres
   this->Filled = std::make_unique<elevation::FilledPieces>(count, this->Folder,
     this->Work->All().Points + this->GetNumberOfInsertedPoints(), make, options,
     this->Fill->GetInterpolatePointData() != 0);
-  elevation::ReportMessages(
-    this, {}, elevation::WarningsOf(this->Filled->Result()), this->Messages);
+  const std::vector<elevation::Message> warnings = elevation::WarningsOf(this->Filled->Result());
+  if (!warnings.empty())
+  {
+    elevation::ReportMessages(this, {}, warnings, this->Messages);
+  }
 }
 
 /** A piece of the triangulation; nullptr: it has no points. */

@@ -370,7 +370,7 @@ def add_setters(algorithm, place):
                 self._given[one.name] = value
                 self.Modified()
 
-        set_property.__doc__ = f"{one.name}: {one.takes}. {one.line.capitalize()}."
+        set_property.__doc__ = f"{one.name}: {one.takes}. {one.line[:1].upper() + one.line[1:]}."
         return set_property
 
     for one in DESCRIBED.values():

@@ -69,9 +69,13 @@ class Step:
         times, words = self.result.times, "triangulate" if name == "delaunay" else name
         times[words] = times.get(words, 0.0) + time.perf_counter() - began
         algorithm.RemoveObserver(tag)
-        if raised:
-            raise raised[0]
-        agreed(self.ranks, lambda: self.report(name, messages))
+
+        def end():
+            if raised:
+                raise raised[0]
+            self.report(name, messages)
+
+        agreed(self.ranks, end)
         return algorithm
 
     def report(self, name, messages):

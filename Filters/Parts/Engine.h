@@ -16,8 +16,8 @@
  * What is sent to a part lies in one of its boxes until it is taken. Boxes are numbered, as the
  * program wants; those that have a name are files where parts are in files, the others are small and
  * always in memory. In a box, what ranks have sent is in their order, and what one rank has sent is
- * in the order of sending. So the same is found there whoever holds the parts: a result depends on
- * the parts alone.
+ * in the order of sending. So the same is found there whoever holds the parts, but for its order: a
+ * program whose result depends on that sorts it.
  *
  * An error or an abort in a step on any rank ends it on all of them, as Ranks::Agree() says. Files go
  * with their box.

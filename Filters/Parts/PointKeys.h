@@ -24,7 +24,7 @@ namespace elevation
 
 using PointKey = std::array<std::int64_t, 3>;
 
-/** Gives the keys of a data set's points. -0 is 0, and NaN is NaN. */
+/** Gives the keys of a data set's points. -0 is 0. */
 class PointKeys
 {
 public:

@@ -360,8 +360,9 @@ vtkSmartPointer<vtkPolyData> Ranks::Gather(vtkPolyData* local) const
     }
   });
   packed = this->Exchange(std::move(packed));
-  std::vector<vtkSmartPointer<vtkPolyData>> parts;
+  vtkSmartPointer<vtkPolyData> all = local;
   this->Agree([&]() {
+    std::vector<vtkSmartPointer<vtkPolyData>> parts;
     for (int rank = 0; rank < this->Count(); ++rank)
     {
       const Bytes& bytes = packed[rank];
@@ -378,8 +379,9 @@ vtkSmartPointer<vtkPolyData> Ranks::Gather(vtkPolyData* local) const
         parts.push_back(part);
       }
     }
+    all = parts.empty() ? all : Append(parts);
   });
-  return parts.empty() ? vtkSmartPointer<vtkPolyData>(local) : Append(parts);
+  return all;
 }
 
 bool CanAll(const Ranks& ranks, const std::function<bool()>& step)

@@ -70,6 +70,7 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
   this->Plane = std::make_unique<Cuts>(this->Source.Distribute(
     *this->Crew, OwnPoints, this->Fraction(0.0, 0.1), this->Store->Part, counts));
   this->Store->Number(std::move(counts), this->Fraction(0.1, 0.15));
+  this->Store->CheckCounts();
   // Lines add points, which belong to the parts of their cells, and keep to no lattice.
   LinesOfRanks lines;
   if (constraints)
@@ -79,8 +80,8 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
     this->Options.UseLattice = LatticeMode::Off;
     this->Total.Crossings = lines.NumberOfCrossings;
     this->Work.AddedPoints = lines.NumberOfOwnPoints;
+    this->Store->CheckCounts();
   }
-  this->Store->CheckCounts();
   // Passes 2 to 5
   this->SendTriangles(this->Settle());
   this->FetchOthers();
