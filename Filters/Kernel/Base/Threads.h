@@ -39,7 +39,7 @@ inline int ThreadsAtOnce(int requested)
 
 /**
  * Calls call(0) to call(count - 1), each once, on up to @a threads threads, and returns when all have
- * returned. The kernel only declares it: the module defines it with vtkSMPTools, in Filters/Threads.cxx.
+ * returned. The kernel only declares it: the module defines it with vtkSMPTools, in Adapt/Threads.cxx.
  * @param[in] call  throws nothing
  */
 void CallOnThreads(Index count, int threads, const std::function<void(Index)>& call);
