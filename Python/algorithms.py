@@ -49,7 +49,7 @@ from .inputs import cloud_of, joined, lines_of
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning, Reason, counted, of_reason
 from .names import argument, option
 from .progress import share
-from .properties import PROPERTIES, check_together
+from .properties import PROPERTIES, checked
 from .ranks import controller_of, is_to_speak, shared, together
 from .reading import read, read_boundary, read_faults
 from .reconstruction import reconstruct
@@ -278,8 +278,8 @@ class ReconstructElevationSurface(ReportingAlgorithm):
                 "the input is a boundary, which has no elevations; choose it as Boundary, or set "
                 "Contents to Points where the file was opened"
             )
-        self.check_properties()
         given = dict(self._given)
+        checked({name: given[name] for name in given if name in PROPERTIES}, argument)
         options = ReadOptions(**read_options(given))
         cloud = cloud_of(part, given.get("elevation_array") or "", options)
         drop_elevation(cloud.points)
@@ -295,17 +295,6 @@ class ReconstructElevationSurface(ReportingAlgorithm):
             )
         result.report  # pylint: disable=pointless-statement
         return result
-
-    def check_properties(self):
-        """Refuses what reconstruct() would, with the names that a panel has."""
-        given = {name: value for name, value in self._given.items() if name in PROPERTIES}
-        for name, value in given.items():
-            try:
-                value is None or PROPERTIES[name].convert(value)
-            except (TypeError, ValueError, OverflowError):
-                takes = PROPERTIES[name].takes
-                raise ValueError(f"{argument(name)} takes {takes}, not {value!r}") from None
-        check_together(given, argument)
 
     def step(self, words, fraction):
         first, last = self.STEPS[words]

@@ -28,8 +28,11 @@ def option_of(name):
     return "--" + name.replace("_", "-")
 
 
-def checked(properties: dict[str, Any]) -> dict[str, Any]:
-    """{name: value as the filters take it}. Raises TypeError and ValueError with one clear line."""
+def checked(properties: dict[str, Any], name_of=str) -> dict[str, Any]:
+    """{name: value as the filters take it}. Raises TypeError and ValueError with one clear line.
+
+    name_of  makes of a name what it is called where it was given
+    """
     result = {}
     for name, value in properties.items():
         if name not in PROPERTIES:
@@ -41,8 +44,9 @@ def checked(properties: dict[str, Any]) -> dict[str, Any]:
         try:
             result[name] = PROPERTIES[name].convert(value)
         except (TypeError, ValueError, OverflowError):
-            raise ValueError(f"{name} takes {PROPERTIES[name].takes}, not {value!r}") from None
-    check_together(result)
+            takes = PROPERTIES[name].takes
+            raise ValueError(f"{name_of(name)} takes {takes}, not {value!r}") from None
+    check_together(result, name_of)
     return result
 
 
