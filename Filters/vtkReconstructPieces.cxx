@@ -159,6 +159,7 @@ void vtkReconstructPieces::Reset()
   this->Work.reset();
   this->Alone.reset();
   this->HasFailed = false;
+  this->SetAbortExecute(0); // the executive does so before pieces, not before points are added
   this->Modified();
 }
 

@@ -164,8 +164,8 @@ def circle(random, count):
 CLOUDS = (lambda random, count: random.random((count, 3)), tracks, clusters, lattice, small_lattice, line, circle)
 
 
-def compare_random(random, claim):
-    """Compares one cloud, drawn with what else can be drawn."""
+def draw_points(random):
+    """A cloud, drawn with what else can be drawn: coordinates, global ids or None, arrays."""
     count = int(random.choice([0, 1, 2, 3, 5, COUNT, 30, 300, 2000]))
     coordinates = CLOUDS[random.integers(len(CLOUDS))](random, count)
     count = len(coordinates)
@@ -186,6 +186,12 @@ def compare_random(random, claim):
         arrays = (("whole", random.integers(-9, 9, count).astype(numpy.int16)),
                   ("vector", random.random((count, 3))),
                   ("text", numpy.array(["t" * (i % 4) + str(i) for i in range(count)], dtype="U")))
+    return coordinates, ids, arrays
+
+
+def compare_random(random, claim):
+    """Compares one cloud."""
+    coordinates, ids, arrays = draw_points(random)
     limit = random.choice([0.0, 0.0, 0.05, 1.5, 30.0])
     compare(claim, coordinates, owners_in_places(random, coordinates), ids, arrays,
             DuplicatePolicy=int(random.integers(POLICIES)), MaximumEdgeLength=float(limit),

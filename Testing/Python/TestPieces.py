@@ -334,6 +334,10 @@ class InPieces(WithFilter):
             source.UpdatePiece(0, 3, 0)
         self.assertEqual((messages.errors, len(messages.warnings)), ([], 1))
         self.assertEqual(source.GetOutput().GetNumberOfPoints(), 0)
+        source.RemoveAllObservers()
+        source.Reset()
+        self.assertTrue(source.AddPoints(make_points(clouds()["random"])))
+        self.assertEqual(len(self.parts(source, 3)), 3)
 
 
 def star(centre, radius, points=240):

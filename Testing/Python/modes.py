@@ -38,7 +38,7 @@ FILTERS = {
 def case_of(xyz, **more):
     """Points; each has its number as a value, so that points at one place can be told apart."""
     case = types.SimpleNamespace(
-        xyz=xyz, arrays={"Number": numpy.arange(float(len(xyz)))}, roles={}, lines=None, rings=None,
+        xyz=xyz, arrays={"Number": numpy.arange(float(len(xyz)))}, roles={}, dealt={}, lines=None, rings=None,
         triangles=None, cells={}, on_one=False, copies=False, composite=None, kind=vtkPolyData)
     vars(case).update(more)
     return case
@@ -284,7 +284,9 @@ def make_case(row, count):
 
 
 def owners(case, count, parts):
-    """The part of each point (triangle): one after another; with global ids, in no order."""
+    """The part of each point (triangle): as dealt; else one after another, with global ids in no order."""
+    if parts in case.dealt:
+        return case.dealt[parts]
     if "Id" in case.arrays and case.triangles is None:
         return numpy.random.default_rng(parts).integers(parts, size=count)
     return numpy.arange(count) * parts // max(1, count)
@@ -431,9 +433,10 @@ def has_pieces(row, case):
     return case.triangles is None and not case.composite and (row.filter != "Trim" or bool(case.rings))
 
 
-def in_pieces(row, case, parts, pieces, count):
-    """What those pieces have, where parts [(number, of how many)] of the points are added."""
+def source_of_pieces(row, case, folder):
+    """A source without points, whose files go to a folder."""
     source = vtkReconstructPieces()
+    source.SetFolder(folder)
     of = {name: getattr(source, "Get" + name)() for name in FILTERS}
     for algorithm in of.values():
         algorithm.SetNumberOfThreads(1)
@@ -444,18 +447,36 @@ def in_pieces(row, case, parts, pieces, count):
     source.SetFillHoles(row.filter == "Fill")
     source.SetMemoryOfHole(1e9)
     set_properties(row, of.get)
+    return source
+
+
+def pieces_made(source, row, case, parts, pieces, count, is_over):
+    """What those pieces of a source have, where parts [(number, of how many)] of the points are added.
+
+    is_over  is_over(messages) -> whether to ask for no more
+    """
     messages, made = noted(source), []
-    with tempfile.TemporaryDirectory() as folder:
-        source.SetFolder(folder)
-        is_added = all(source.AddPoints(part_of(case, *part)) for part in parts)
-        for piece in pieces if is_added else ():
-            source.UpdatePiece(piece, count, 0)
-            made.append(made_by([source], []))
-            if row.filter != "Fill":
-                del made[-1]["ports"][1:]
-            if any(event == "ErrorEvent" for event, _ in messages):
-                break
-        source.Reset()
+    all(source.AddPoints(part_of(case, *part)) for part in parts)  # up to an error
+    for piece in pieces:
+        if is_over(messages):
+            break
+        source.UpdatePiece(piece, count, 0)
+        made.append(made_by([source], []))
+        if row.filter != "Fill":
+            del made[-1]["ports"][1:]
     made = made or [{"ports": [[]], "counts": {}, "messages": []}]
     made[0]["messages"] = messages
+    return made
+
+
+def has_error(messages):
+    return any(event == "ErrorEvent" for event, _ in messages)
+
+
+def in_pieces(row, case, parts, pieces, count):
+    """The same, of a source in a folder of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        source = source_of_pieces(row, case, folder)
+        made = pieces_made(source, row, case, parts, pieces, count, has_error)
+        source.Reset()
     return made

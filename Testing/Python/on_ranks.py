@@ -72,6 +72,7 @@ def options_of():
     parser.add_argument("--aborts", type=int, help="how many times each filter is stopped")
     parser.add_argument("--size", type=int, default=20000, help="points of a cloud that is stopped")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--first", type=int, default=0, help="the number of the first cloud, where each has its own")
     return parser.parse_args()
 
 

@@ -81,7 +81,8 @@ def part_made(data, ids=None, without=()):
     fields = data.GetFieldData()
     unused = [fields.GetArray("UnusedPoint" + name) for name in ("Ids", "Reasons")]
     made["unused"] = numpy.zeros((0, 0))
-    if all(unused) and unused[0].GetNumberOfTuples():
+    # Outlines have field data of the surface, whose points these are.
+    if count and not data.GetNumberOfLines() and all(unused) and unused[0].GetNumberOfTuples():
         which, reasons = (vtk_to_numpy(array) for array in unused)
         made["unused"] = numpy.column_stack((rows[which], reasons))
     found = fields.GetArray("Lattice")

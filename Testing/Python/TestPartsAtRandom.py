@@ -1,0 +1,291 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Random clouds, dealt at random, give one surface: in memory, on ranks, in pieces, and on ranks with pieces.
+
+Run by mpirun, as TestManyRanks.py, or alone on one rank. What a round works on is drawn by the seed, the
+number of the round and the number of ranks; a round that fails names the options that make it again.
+"""
+
+import faulthandler
+import os
+import resource
+import shutil
+import signal
+import tempfile
+import traceback
+import types
+
+import numpy
+from on_ranks import COUNT, LAST, RANK, check, end, fewer, gather, options_of, owners_in_places
+
+import modes
+import outcomes
+from TestManyRanks import draw_points
+from TestManyRanksConstraints import draw_lines
+from TestManyRanksTrim import rings_for, torn
+from vtkelevationsurface import vtkReconstructPieces
+
+GUARD = 300  # seconds, after which a rank that still waits ends all of them
+ABORTED = ("Stopped", "Aborted")  # what a warning begins with: of filters, and of a source of pieces
+UNLIMITED = resource.getrlimit(resource.RLIMIT_FSIZE)
+# What properties may be set to, which are the same in all modes; lengths are shares of an even distance.
+NUMBERS = {
+    "Delaunay.SearchStrategy": (0, 1), "Delaunay.LatticeMode": (0, 1), "Delaunay.DuplicatePolicy": (0, 1, 2, 3),
+    "Trim.RecoverBoundary": (False, True), "Trim.BoundaryEdges": (0, 1, 2),
+    "Fill.Interpolation": (0, 1, 2, 3, 4), "Fill.FillCutOuts": (False, True), "Fill.MaximumHoleEdges": (5, 40),
+    "Fill.InterpolatePointData": (False, True), "Fill.MaximumNumberOfExpectedPoints": (50, 2000),
+}
+LENGTHS = {
+    "Delaunay.MaximumEdgeLength": (0.5, 2.0, 8.0), "Delaunay.LatticeTolerance": (0.02,),
+    "Fill.MaximumHoleSize": (4.0, 30.0), "Fill.Spacing": (0.6, 1.0, 5.0),
+}
+
+
+def draw_properties(random, steps, distance):
+    """Some properties of these filters."""
+    drawn = {"Fill.MaximumNumberOfExpectedPoints": 20000} if "Fill" in steps else {}
+    for name, values in [*NUMBERS.items(), *LENGTHS.items()]:
+        value = values[random.integers(len(values))]
+        if random.random() < 0.25 and name.split(".")[0] in steps:
+            drawn[name] = distance * value if name in LENGTHS else value
+    return drawn
+
+
+def deal(random, case):
+    """Which rank and which slice has which point. In memory, points without ids are in the order of ranks."""
+    owners = owners_in_places(random, case.xyz)
+    order = numpy.argsort(case.arrays["Id"] if "Id" in case.arrays else owners, kind="stable")
+    case.xyz, owners = case.xyz[order], owners[order]
+    case.arrays.update({name: values[order] for name, values in case.arrays.items() if name != "Number"})
+    case.dealt = {1: numpy.zeros(len(order), int), COUNT: owners}
+
+
+def draw(random):
+    """A row as of features.py and what it works on: a chain of filters with their properties, and points."""
+    xyz, ids, arrays = draw_points(random)
+    name = list(modes.FILTERS)[random.integers(3)]
+    if name != "Delaunay" and ids is None and not arrays and len(xyz) > 30 and random.random() < 0.5:
+        xyz = torn(random, xyz)
+    case = modes.case_of(xyz)
+    case.arrays.update(arrays)
+    if ids is not None and random.random() < 0.5:  # not known in pieces
+        case.arrays["Id"], case.roles["Id"] = ids.astype("i8"), "GlobalIds"
+    finite = xyz[numpy.isfinite(xyz).all(axis=1)].astype(float)
+    size = numpy.ptp(finite[:, :2], axis=0).max() if len(finite) else 0.0
+    if name != "Delaunay" and random.random() < 0.7 and len(finite) > 2 and size > 0.0:
+        case.rings = rings_for(random, finite)
+    if random.random() < 0.15 and len(finite) > 2 and size > 0.0:
+        places, cells = draw_lines(random, finite)
+        case.lines = (places, *([ids for ids, closed in cells if closed == kind] for kind in (False, True)))
+    case.on_one = bool(random.random() < 0.3)
+    deal(random, case)
+    distance = float(size / max(1.0, len(finite)) ** 0.5) or 1.0
+    steps = [step for step in modes.FILTERS if step == "Delaunay" or step == name or (step == "Trim" and case.rings)]
+    properties = draw_properties(random, steps, distance)
+    return types.SimpleNamespace(filter=name, feature="cut out", properties=properties), case
+
+
+def are_in_pieces(row, case):
+    return modes.has_pieces(row, case) and not case.lines and "Id" not in case.arrays
+
+
+def why_another(parts, whole):
+    """What differs between parts and one run in memory. After an error there is no point."""
+    found, expected = outcomes.joined(parts), outcomes.joined([whole])
+    if any(event == "ErrorEvent" for event, _ in expected["messages"]):
+        if any(len(block["points"]) for port in found["ports"] for block in port):
+            return "there are points after an error"
+        found["ports"] = expected["ports"] = []
+        found["alike"], found["counts"] = True, {}
+    return outcomes.difference(found, expected)
+
+
+def compare(number, seed):
+    """A round: all ways to make one surface."""
+    random = numpy.random.default_rng((seed, number, COUNT))
+    row, case = draw(random)
+    slices, pieces = (int(random.integers(1, 6)) for _ in range(2))
+    case.dealt.setdefault(slices, numpy.sort(random.integers(slices, size=len(case.xyz))))
+    made = {"%d ranks" % COUNT: gather(modes.on_rank(row, case, RANK, COUNT))}
+    own = {}
+    if RANK == LAST and are_in_pieces(row, case):
+        of_slices = [(i, slices) for i in range(slices)]
+        own["%d slices, %d pieces" % (slices, pieces)] = modes.in_pieces(row, case, of_slices, range(pieces), pieces)
+    if RANK == 0:
+        own["memory"] = [modes.in_memory(row, case)]
+    for one in gather(own):
+        made.update(one)
+    if RANK == 0:
+        whole = made.pop("memory")[0]
+        for mode, parts in made.items():
+            why = why_another(parts, whole)
+            check(not why, "%s, round %d of seed %d on %d ranks (--seed %d --first %d --clouds 1): %s\n    %s, %d points" % (
+                mode, number, seed, COUNT, seed, number, why, describe(row, case), len(case.xyz)))
+    return set(made)
+
+
+def describe(row, case):
+    shown = ", ".join("%s=%s" % item for item in row.properties.items())
+    return "%s (%s), %s rings, %s" % (row.filter, shown, len(case.rings or ()), "lines" if case.lines else "no lines")
+
+
+# ---- what fails at a moment -----------------------------------------------------------------------
+
+
+class InMemory:
+    """The filters of a row on all ranks, again and again."""
+
+    KINDS = ("abort",)
+
+    def __init__(self, row, case):
+        self.steps = list(modes.chain(row, case, modes.part_of(case, RANK, COUNT), 1, True).values())
+
+    def make(self):
+        """What this rank has made, in parts."""
+        messages = modes.noted(*self.steps)
+        self.steps[0].Modified()
+        self.steps[-1].UpdatePiece(RANK, COUNT, 0)
+        return [outcomes.made_by(self.steps, messages)]
+
+    def end(self):
+        pass
+
+
+class InPieces:
+    """A source of so many pieces for each rank, in a folder of this rank."""
+
+    KINDS = ("abort", "full disk", "no folder")
+
+    def __init__(self, row, case, pieces):
+        self.row, self.case, self.pieces = row, case, pieces
+        self.folder = tempfile.mkdtemp()
+        self.begin()
+
+    def begin(self):
+        self.steps = [modes.source_of_pieces(self.row, self.case, self.folder)]
+
+    def make(self):
+        pieces = range(RANK * self.pieces, (RANK + 1) * self.pieces)
+        return modes.pieces_made(self.steps[0], self.row, self.case, [(RANK, COUNT)], pieces, COUNT * self.pieces,
+                                 lambda messages: any(gather(is_failure(messages))))
+
+    def forget(self, with_object):
+        """Leaves no file; a folder that is gone is made again."""
+        if with_object:
+            self.steps = []
+            self.begin()
+        else:
+            self.steps[0].Reset()
+        os.makedirs(self.folder, exist_ok=True)
+        return not os.listdir(self.folder)
+
+    def end(self):
+        self.steps = []
+        shutil.rmtree(self.folder)
+
+
+def is_failure(messages):
+    return any(event == "ErrorEvent" or text.startswith(ABORTED) for event, text in messages)
+
+
+def fill_disk(random, folder):
+    """From now on files can grow to a part of the largest one."""
+    sizes = [os.path.getsize(os.path.join(folder, name)) for name in os.listdir(folder)]
+    largest = int(random.random() * max(sizes, default=0))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (largest, UNLIMITED[1]))
+
+
+def make_with_failure(random, maker, kind, at):
+    """What is made where something happens on this rank at a report of progress; at = 0: nothing.
+
+    @return (parts, how many reports there were)
+    """
+    reports = []
+
+    def report(caller, _event):
+        reports.append(caller.GetProgress())
+        if len(reports) == at:
+            if kind == "abort":
+                caller.SetAbortExecute(1)
+            elif kind == "full disk":
+                fill_disk(random, maker.folder)
+            else:
+                shutil.rmtree(maker.folder)
+
+    tags = [step.AddObserver("ProgressEvent", report) for step in maker.steps]
+    try:
+        parts = maker.make()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, UNLIMITED)
+    for step, tag in zip(maker.steps, tags):
+        step.RemoveObserver(tag)
+    return parts, len(reports)
+
+
+def draw_to_fail(random):
+    """A surface that takes some reports of progress."""
+    name = list(modes.FILTERS)[random.integers(3)]
+    kinds = (modes.coast_and_lakes, modes.lattice_and_lakes) + (modes.duplicates,) * (name == "Delaunay")
+    case = kinds[random.integers(len(kinds))](random, int(random.choice([100, 1000, 3000])))
+    properties = {"Delaunay.MaximumEdgeLength": 4.0} if random.random() < 0.3 else {}
+    deal(random, case)
+    return types.SimpleNamespace(filter=name, feature="", properties=properties), case
+
+
+def check_failure(number, seed):
+    """A surface is made; again, where something fails at a moment; and once more. @return whether it failed"""
+    random = numpy.random.default_rng((seed, number, COUNT, 0))
+    row, case = draw_to_fail(random)
+    ways = ["memory"] * (COUNT > 1) + [1, 3] * (COUNT == 1 or hasattr(vtkReconstructPieces, "SetController"))
+    way = ways[random.integers(len(ways))]
+    maker = InMemory(row, case) if way == "memory" else InPieces(row, case, way)
+    kind, culprit = maker.KINDS[random.integers(len(maker.KINDS))], random.integers(COUNT)
+    claim = "%s on rank %d of %d, %s, failure %d (--seed %d --first %d --clouds 0 --aborts 1): " % (
+        kind, culprit, COUNT, way if way == "memory" else "%d pieces each" % way, number, seed, number)
+    parts, reports = make_with_failure(random, maker, kind, 0)
+    right = outcomes.joined(sum(gather(parts), []))
+    at = 1 + int(random.integers(max(1, gather(reports)[culprit])))
+    if isinstance(maker, InPieces):
+        check(maker.forget(False), claim + "the folder is empty after Reset()")
+    parts, _ = make_with_failure(random, maker, kind, at if RANK == culprit else 0)
+    new = [told for told in parts[0]["messages"] if told not in right["messages"]]
+    told = sum(gather(new), [])
+    if told:
+        event = "WarningEvent" if kind == "abort" else "ErrorEvent"
+        check(len(told) == 1 and told[0][0] == event and is_failure(told), "%s%s is all that is reported" % (claim, told))
+        points = [len(block["points"]) for block in sum(parts[-1]["ports"], [])]
+        check(not any(points), "%sthere are points: %s" % (claim, points))
+    else:
+        why = outcomes.difference(outcomes.joined(sum(gather(parts), [])), right)
+        check(not why, "%snothing is reported, and %s" % (claim, why))
+    if isinstance(maker, InPieces):
+        check(maker.forget(random.random() < 0.5), claim + "no file is left")
+    again = outcomes.joined(sum(gather(maker.make()), []))
+    why = outcomes.difference(again, right)
+    check(not why, "%sthe next surface is another: %s" % (claim, why))
+    maker.end()
+    return bool(told)
+
+
+def main(options):
+    clouds = fewer(20) if options.clouds is None else options.clouds
+    failures = fewer(20) if options.aborts is None else options.aborts
+    failed = 0
+    for number in range(options.first, options.first + max(clouds, failures)):
+        faulthandler.dump_traceback_later(GUARD, exit=True)
+        if number < options.first + clouds:
+            compare(number, options.seed)
+        if number < options.first + failures:
+            failed += check_failure(number, options.seed)
+    faulthandler.cancel_dump_traceback_later()
+    check(2 * failed >= failures, "%d of %d failures have come to pass" % (failed, failures))
+    return "%d clouds in all ways, %d failures" % (clouds, failed)
+
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    try:
+        end(main(options_of()))
+    except Exception:
+        traceback.print_exc()
+        os._exit(1)  # and all other ranks
