@@ -39,6 +39,7 @@ Bytes TrimmedPart::Pack() const
   AppendList(bytes, this->IsOwned);
   AppendList(bytes, this->OfOthers);
   AppendList(bytes, this->OnBoundary);
+  AppendList(bytes, this->FarOnBoundary);
   if (!this->IsInserted.empty())
   {
     const Bytes points = PackData(this->NewPoints);
@@ -59,6 +60,7 @@ TrimmedPart::TrimmedPart(const Bytes& bytes)
   TakeList(from, this->IsOwned);
   TakeList(from, this->OfOthers);
   TakeList(from, this->OnBoundary);
+  TakeList(from, this->FarOnBoundary);
   if (!this->IsInserted.empty())
   {
     this->NewPoints =
@@ -269,7 +271,16 @@ std::vector<TrimmedPart> BoundaryZone::Split(const Progress& progress) const
       }
     }
   }
-  this->FindOwners(splits);
+  std::vector<Index> far = this->FindOwners(splits);
+  const auto isInside = [this](Index point) {
+    return !std::binary_search(this->Sides.OnBoundary.begin(), this->Sides.OnBoundary.end(), point);
+  };
+  far.erase(std::remove_if(far.begin(), far.end(), isInside), far.end());
+  const bool byIds = this->Whole->GetPointData()->GetGlobalIds() != nullptr;
+  for (TrimmedPart& split : splits)
+  {
+    split.FarOnBoundary = KeysOf(this->Whole, byIds, &far);
+  }
   std::vector<Index> places(static_cast<std::size_t>(this->Points->GetNumberOfPoints()), None);
   for (std::size_t part = 0; part < splits.size(); ++part)
   {
@@ -279,8 +290,11 @@ std::vector<TrimmedPart> BoundaryZone::Split(const Progress& progress) const
   return splits;
 }
 
-/** Of points that several parts have, the first that does not call it another rank's is the owner. */
-void BoundaryZone::FindOwners(std::vector<TrimmedPart>& splits) const
+/**
+ * Of points that several parts have, the first that does not call it another rank's is the owner.
+ * @return joined points that none owns
+ */
+std::vector<Index> BoundaryZone::FindOwners(std::vector<TrimmedPart>& splits) const
 {
   constexpr std::size_t nobody = static_cast<std::size_t>(-1);
   std::vector<std::size_t> owners(static_cast<std::size_t>(this->Common->Count()), nobody);
@@ -304,6 +318,15 @@ void BoundaryZone::FindOwners(std::vector<TrimmedPart>& splits) const
       }
     }
   }
+  std::vector<Index> ofNobody;
+  for (std::size_t i = 0; i < owners.size(); ++i)
+  {
+    if (owners[i] == nobody)
+    {
+      ofNobody.push_back(static_cast<Index>(i));
+    }
+  }
+  return ofNobody;
 }
 
 /** @param[in,out] places  of the points in a part; None for all */

@@ -42,6 +42,8 @@ struct TrimmedPart
   std::vector<Index> OfOthers;  ///< points of the rank's near part that another rank owns
   /** Points on a boundary that was given: of the near part, followed by the new points. */
   std::vector<Index> OnBoundary;
+  /** The same of points whose triangles are all other parts': the part that owns one finds it. */
+  std::vector<PointKey> FarOnBoundary;
   vtkSmartPointer<vtkPolyData> NewPoints;
 
   Bytes Pack() const;
@@ -91,7 +93,7 @@ private:
   std::optional<std::vector<BorderEdge>> ProvenBorder(
     const PointView& points, const Progress& progress) const;
   std::vector<BorderEdge> BordersOfParts() const;
-  void FindOwners(std::vector<TrimmedPart>& splits) const;
+  std::vector<Index> FindOwners(std::vector<TrimmedPart>& splits) const;
   void PlaceCorners(std::size_t part, std::vector<Index>& places, std::vector<char>& areOwned,
     TrimmedPart& split) const;
 

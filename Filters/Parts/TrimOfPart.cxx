@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace elevation
@@ -186,7 +187,10 @@ vtkIdType TrimOfPart::CountOfOthers() const
   return static_cast<vtkIdType>(this->Points.OfOthers.size());
 }
 
-/** Finds which of the new points this part has, if not in its near part, and adds the others. */
+/**
+ * Finds which of the new points this part has, if not in its near part, and adds the others; and which
+ * of the far points on the boundary.
+ */
 void TrimOfPart::FindOwn(const Progress& progress)
 {
   const std::size_t count = this->Back.IsInserted.size();
@@ -205,16 +209,22 @@ void TrimOfPart::FindOwn(const Progress& progress)
       ofOthers.emplace(PointKeys(this->Back.NewPoints, byIds).Of(static_cast<vtkIdType>(i)), i);
     }
   }
+  std::set<PointKey> far(this->Back.FarOnBoundary.begin(), this->Back.FarOnBoundary.end());
   const vtkIdType own = this->Input->GetNumberOfPoints();
   const PointKeys ofOwn(this->Input, byIds);
-  for (vtkIdType i = 0; i < own && !ofOthers.empty(); ++i)
+  for (vtkIdType i = 0; i < own && !(ofOthers.empty() && far.empty()); ++i)
   {
     ReportStep(progress, static_cast<std::size_t>(i), static_cast<std::size_t>(own));
-    const auto found = ofOthers.find(ofOwn.Of(i));
+    const PointKey key = ofOwn.Of(i);
+    const auto found = ofOthers.find(key);
     if (found != ofOthers.end())
     {
       this->Places[found->second] = static_cast<Index>(i);
       ofOthers.erase(found);
+    }
+    if (far.erase(key) > 0)
+    {
+      this->FarOnBoundary.push_back(static_cast<Index>(i));
     }
   }
   for (std::size_t i = 0; i < count; ++i)
@@ -277,7 +287,7 @@ void TrimOfPart::Write(bool areInserted, bool areMarked, const BoundaryLines* bo
   PassTrimmedPoints(this->Input, this->Points, Part(progress, 0.0, 0.2), kept);
   if (boundary)
   {
-    std::vector<Index> onBoundary;
+    std::vector<Index> onBoundary = this->FarOnBoundary;
     const Index sent = static_cast<Index>(this->Sent.size());
     for (const Index point : this->Back.OnBoundary)
     {

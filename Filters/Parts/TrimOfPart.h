@@ -78,7 +78,8 @@ private:
   PartOfOutline Outline;   // without a boundary; its triangles and border are those of Swept
   std::vector<Index> Sent; // points of the near part
   TrimmedPart Back;
-  std::vector<Index> Places; // of the new points, among those of the output
+  std::vector<Index> Places;        // of the new points, among those of the output
+  std::vector<Index> FarOnBoundary; // own points
   TrimmedPoints Points;
 };
 

@@ -245,6 +245,20 @@ def check_chain(random, claim):
         check(not why, "%s: %s" % (claim, why))
 
 
+def check_corners():
+    """Points on the boundary have its values on their own ranks, also on those without a triangle."""
+    points = numpy.array([[0.0, 0.0, 1.0], [9.0, 1.0, 2.0], [4.0, 8.0, 3.0]])
+    boundary = meshes.rings([points + (0.0, 0.0, 5.0)])
+    surface = updated(vtkGridDelaunay2D(), cloud(points[RANK::COUNT]), False)[0].GetOutput()
+    trimmed, _ = trim(surface, boundary, False, BoundaryEdges=2)
+    kept = trimmed.GetOutput()
+    if kept.GetNumberOfPoints():
+        marks = vtk_to_numpy(kept.GetPointData().GetArray("OnBoundary"))
+        check((marks == 1).all() and (meshes.points_of(kept)[:, 2] > 5.0).all(), "corners of the boundary: %s" % marks)
+    is_without = kept.GetNumberOfPoints() > 0 and kept.GetNumberOfPolys() == 0
+    check(any(gather(is_without)) or COUNT == 1, "corners of the boundary are on a rank without a triangle")
+
+
 def grid(side):
     """The points and triangles of a square grid, quickly."""
     i, j = numpy.meshgrid(numpy.arange(side), numpy.arange(side))
@@ -307,6 +321,7 @@ def check_errors(random):
 def main(options):
     random = numpy.random.default_rng(options.seed)
     check_errors(random)
+    check_corners()
     clouds = options.clouds or fewer(8)
     for i in range(clouds):
         compare_random(random, "cloud %d of seed %d" % (i, options.seed))

@@ -54,7 +54,8 @@ def draw_properties(random, steps, distance):
 def deal(random, case):
     """Which rank and which slice has which point. In memory, points without ids are in the order of ranks."""
     owners = owners_in_places(random, case.xyz)
-    order = numpy.argsort(case.arrays["Id"] if "Id" in case.arrays else owners, kind="stable")
+    ids = [case.arrays[name] for name, role in case.roles.items() if role == "GlobalIds"]
+    order = numpy.argsort(ids[0] if ids else owners, kind="stable")
     case.xyz, owners = case.xyz[order], owners[order]
     case.arrays.update({name: values[order] for name, values in case.arrays.items() if name != "Number"})
     case.dealt = {1: numpy.zeros(len(order), int), COUNT: owners}
@@ -69,7 +70,9 @@ def draw(random):
     case = modes.case_of(xyz)
     case.arrays.update(arrays)
     if ids is not None and random.random() < 0.5:  # not known in pieces
-        case.arrays["Id"], case.roles["Id"] = ids.astype("i8"), "GlobalIds"
+        # Those of new points follow the order of triangles, and the second name is not compared.
+        ids_name = "Id" if name == "Delaunay" else "GlobalPointIds"
+        case.arrays[ids_name], case.roles[ids_name] = ids.astype("i8"), "GlobalIds"
     finite = xyz[numpy.isfinite(xyz).all(axis=1)].astype(float)
     size = numpy.ptp(finite[:, :2], axis=0).max() if len(finite) else 0.0
     if name != "Delaunay" and random.random() < 0.7 and len(finite) > 2 and size > 0.0:
@@ -86,18 +89,34 @@ def draw(random):
 
 
 def are_in_pieces(row, case):
-    return modes.has_pieces(row, case) and not case.lines and "Id" not in case.arrays
+    return modes.has_pieces(row, case) and not case.lines and "GlobalIds" not in case.roles.values()
 
 
-def why_another(parts, whole):
-    """What differs between parts and one run in memory. After an error there is no point."""
-    found, expected = outcomes.joined(parts), outcomes.joined([whole])
-    if any(event == "ErrorEvent" for event, _ in expected["messages"]):
+def why_another(parts, whole, row, case, are_pieces):
+    """What differs between parts and one run in memory. After an error there is no point.
+
+    Triangles that lines have changed begin with another corner on ranks, and with it sums.
+    """
+    digits = 9 if case.lines and case.rings else None
+    found, expected = (outcomes.joined(made, digits=digits) for made in (parts, [whole]))
+    if are_pieces:
+        pass_known(found, expected, row)
+    if modes.has_error(expected["messages"]):
         if any(len(block["points"]) for port in found["ports"] for block in port):
             return "there are points after an error"
         found["ports"] = expected["ports"] = []
         found["alike"], found["counts"] = True, {}
     return outcomes.difference(found, expected)
+
+
+def pass_known(found, expected, row):
+    """Leaves out what is another in pieces: advice on a limit, arrays of filling where there is no triangle."""
+    texts = [[text for _, text in made["messages"]] for made in (found, expected)]
+    if len(texts[0]) == len(texts[1]) and all(
+            right == told or ("without a triangle" in told and right.startswith(told)) for told, right in zip(*texts)):
+        found["messages"] = expected["messages"]
+    if row.filter == "Fill" and not any(len(block["triangles"]) for block in expected["ports"][0]):
+        found["ports"] = expected["ports"] = []
 
 
 def compare(number, seed):
@@ -118,7 +137,7 @@ def compare(number, seed):
     if RANK == 0:
         whole = made.pop("memory")[0]
         for mode, parts in made.items():
-            why = why_another(parts, whole)
+            why = why_another(parts, whole, row, case, "pieces" in mode)
             check(not why, "%s, round %d of seed %d on %d ranks (--seed %d --first %d --clouds 1): %s\n    %s, %d points" % (
                 mode, number, seed, COUNT, seed, number, why, describe(row, case), len(case.xyz)))
     return set(made)

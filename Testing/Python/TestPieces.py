@@ -393,6 +393,21 @@ class Trimmed(WithFilter):
         source, parts = self.assert_trimmed_as_one(points, self.rings(points), 6)
         self.assert_one_owner(parts, len(points), source.GetNumberOfInsertedPoints())
 
+    def test_corners_of_the_boundary_have_its_values_where_they_belong(self):
+        """Also in pieces without a triangle."""
+        points = numpy.array([[0.0, 0.0, 1.0], [9.0, 1.0, 2.0], [4.0, 8.0, 3.0]])
+        ring = points[[0, 1, 2, 0]] + (0.0, 0.0, 5.0)
+        for count in (1, 2, 3):
+            source = self.source(points)
+            source.GetTrim().SetBoundaryData(make_lines([ring]))
+            source.GetTrim().SetBoundaryEdges(2)
+            parts = self.parts(source, count)
+            self.assertEqual(len(parts), count)
+            for part in parts:
+                self.assertEqual(set(vtk_to_numpy(part.GetPointData().GetArray("OnBoundary"))), {1})
+                here = vtk_to_numpy(part.GetPoints().GetData())
+                numpy.testing.assert_array_equal(here, points[ids_of(part)] + (0.0, 0.0, 5.0))
+
     def test_progress_rises(self):
         points = clouds()["random"]
         source = self.source(points)
