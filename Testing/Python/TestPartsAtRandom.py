@@ -18,6 +18,7 @@ import types
 import numpy
 from on_ranks import COUNT, LAST, RANK, check, end, fewer, gather, options_of, owners_in_places
 
+import features
 import modes
 import outcomes
 from TestManyRanks import draw_points
@@ -28,12 +29,18 @@ from vtkelevationsurface import vtkReconstructPieces
 GUARD = 300  # seconds, after which a rank that still waits ends all of them
 ABORTED = ("Stopped", "Aborted")  # what a warning begins with: of filters, and of a source of pieces
 UNLIMITED = resource.getrlimit(resource.RLIMIT_FSIZE)
+# The words of the table, which say what is compared in a mode.
+WORDS = {(row.filter, row.feature): row.cells for row in features.rows()}
+# Modes that advise no limit of edges.
+WITHOUT_ADVICE = [mode for mode, word in WORDS["Delaunay", "edge limit that leaves most out"].items() if word != "same"]
+LATTICES = ((612000.0, 6073000.0, 25.0, 0.0, 0.0, 12.5), (612000.0, 6073000.0, 20.0, 15.0, -9.0, 12.0))
 # What properties may be set to, which are the same in all modes; lengths are shares of an even distance.
 NUMBERS = {
     "Delaunay.SearchStrategy": (0, 1), "Delaunay.LatticeMode": (0, 1), "Delaunay.DuplicatePolicy": (0, 1, 2, 3),
     "Trim.RecoverBoundary": (False, True), "Trim.BoundaryEdges": (0, 1, 2),
     "Fill.Interpolation": (0, 1, 2, 3, 4), "Fill.FillCutOuts": (False, True), "Fill.MaximumHoleEdges": (5, 40),
     "Fill.InterpolatePointData": (False, True), "Fill.MaximumNumberOfExpectedPoints": (50, 2000),
+    "Delaunay.Lattice": LATTICES,
 }
 LENGTHS = {
     "Delaunay.MaximumEdgeLength": (0.5, 2.0, 8.0), "Delaunay.LatticeTolerance": (0.02,),
@@ -41,12 +48,13 @@ LENGTHS = {
 }
 
 
-def draw_properties(random, steps, distance):
-    """Some properties of these filters."""
+def draw_properties(random, steps, distance, are_nodes):
+    """Some properties of these filters; a lattice for other points than nodes is mostly an error."""
     drawn = {"Fill.MaximumNumberOfExpectedPoints": 20000} if "Fill" in steps else {}
     for name, values in [*NUMBERS.items(), *LENGTHS.items()]:
         value = values[random.integers(len(values))]
-        if random.random() < 0.25 and name.split(".")[0] in steps:
+        often = 0.25 if name != "Delaunay.Lattice" or are_nodes else 0.01
+        if random.random() < often and name.split(".")[0] in steps:
             drawn[name] = distance * value if name in LENGTHS else value
     return drawn
 
@@ -84,23 +92,31 @@ def draw(random):
     deal(random, case)
     distance = float(size / max(1.0, len(finite)) ** 0.5) or 1.0
     steps = [step for step in modes.FILTERS if step == "Delaunay" or step == name or (step == "Trim" and case.rings)]
-    properties = draw_properties(random, steps, distance)
+    are_nodes = len(finite) > 0 and finite[:, 0].min() > LATTICES[0][0] - 1e4
+    properties = draw_properties(random, steps, distance, are_nodes)
     return types.SimpleNamespace(filter=name, feature="cut out", properties=properties), case
 
 
-def are_in_pieces(row, case):
-    return modes.has_pieces(row, case) and not case.lines and "GlobalIds" not in case.roles.values()
+def is_same(row, case, mode):
+    """Whether the table says so of all that is drawn."""
+    drawn = ["points"] + ["constraints"] * bool(case.lines) + ["lattice given"] * ("Delaunay.Lattice" in row.properties)
+    drawn += ["point data: global ids"] * ("GlobalIds" in case.roles.values())
+    return all(WORDS["Delaunay", feature][mode] == "same" for feature in drawn)
 
 
-def why_another(parts, whole, row, case, are_pieces):
+def why_another(parts, whole, row, case, mode):
     """What differs between parts and one run in memory. After an error there is no point.
 
     Triangles that lines have changed begin with another corner on ranks, and with it sums.
     """
     digits = 9 if case.lines and case.rings else None
     found, expected = (outcomes.joined(made, digits=digits) for made in (parts, [whole]))
-    if are_pieces:
-        pass_known(found, expected, row)
+    texts = [[text for _, text in made["messages"]] for made in (found, expected)]
+    if mode in WITHOUT_ADVICE and len(texts[0]) == len(texts[1]) and all(
+            right == told or ("without a triangle" in told and right.startswith(told)) for told, right in zip(*texts)):
+        found["messages"] = expected["messages"]
+    if "piece" in mode and row.filter == "Fill" and not any(len(block["triangles"]) for block in expected["ports"][0]):
+        found["ports"] = expected["ports"] = []  # without the arrays of filling
     if modes.has_error(expected["messages"]):
         if any(len(block["points"]) for port in found["ports"] for block in port):
             return "there are points after an error"
@@ -109,38 +125,28 @@ def why_another(parts, whole, row, case, are_pieces):
     return outcomes.difference(found, expected)
 
 
-def pass_known(found, expected, row):
-    """Leaves out what is another in pieces: advice on a limit, arrays of filling where there is no triangle."""
-    texts = [[text for _, text in made["messages"]] for made in (found, expected)]
-    if len(texts[0]) == len(texts[1]) and all(
-            right == told or ("without a triangle" in told and right.startswith(told)) for told, right in zip(*texts)):
-        found["messages"] = expected["messages"]
-    if row.filter == "Fill" and not any(len(block["triangles"]) for block in expected["ports"][0]):
-        found["ports"] = expected["ports"] = []
-
-
 def compare(number, seed):
     """A round: all ways to make one surface."""
     random = numpy.random.default_rng((seed, number, COUNT))
     row, case = draw(random)
     slices, pieces = (int(random.integers(1, 6)) for _ in range(2))
     case.dealt.setdefault(slices, numpy.sort(random.integers(slices, size=len(case.xyz))))
-    made = {"%d ranks" % COUNT: gather(modes.on_rank(row, case, RANK, COUNT))}
+    made = {("2 ranks", "%d ranks" % COUNT): gather(modes.on_rank(row, case, RANK, COUNT))}
     own = {}
-    if RANK == LAST and are_in_pieces(row, case):
+    if RANK == LAST and modes.has_pieces(row, case) and is_same(row, case, "4 pieces"):
         of_slices = [(i, slices) for i in range(slices)]
-        own["%d slices, %d pieces" % (slices, pieces)] = modes.in_pieces(row, case, of_slices, range(pieces), pieces)
+        own["4 pieces", "%d slices, %d pieces" % (slices, pieces)] = modes.in_pieces(
+            row, case, of_slices, range(pieces), pieces)
     if RANK == 0:
         own["memory"] = [modes.in_memory(row, case)]
     for one in gather(own):
         made.update(one)
     if RANK == 0:
         whole = made.pop("memory")[0]
-        for mode, parts in made.items():
-            why = why_another(parts, whole, row, case, "pieces" in mode)
+        for (mode, shown), parts in made.items():
+            why = why_another(parts, whole, row, case, mode)
             check(not why, "%s, round %d of seed %d on %d ranks (--seed %d --first %d --clouds 1): %s\n    %s, %d points" % (
-                mode, number, seed, COUNT, seed, number, why, describe(row, case), len(case.xyz)))
-    return set(made)
+                shown, number, seed, COUNT, seed, number, why, describe(row, case), len(case.xyz)))
 
 
 def describe(row, case):

@@ -190,8 +190,13 @@ def joined(parts, are_in_order=False, have_holes_numbers=False, digits=None):
     return whole
 
 
+def rounded(told, digits):
+    return tuple(rounded(one, digits) if isinstance(one, tuple) else round(one, digits) for one in told)
+
+
 def round_heights(block, digits):
-    """Rounds all of points and triangles but x and y."""
+    """Rounds all of points and triangles but x and y, and what is told of holes and rings."""
+    block["report"] = [rounded(told, digits) for told in block["report"]]
     width = block["points"].shape[1] if len(block["points"]) else 0
     for name in ("points", "triangles"):
         rows = block[name]
