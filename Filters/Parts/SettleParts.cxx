@@ -166,9 +166,11 @@ void Settling::SettleOnGiven(const Progress& progress)
   {
     throw GivenLatticeUnfit();
   }
-  this->Found.LatticeFound = true;
-  this->Found.Steps =
-    hasPoints ? FromLowestNode(this->All, this->Store.Slices(), lattice) : lattice.Steps();
+  if (hasPoints)
+  {
+    this->Found.LatticeFound = true;
+    this->Found.Steps = FromLowestNode(this->All, this->Store.Slices(), lattice);
+  }
 }
 
 /** Whether so few points may fit a lattice by chance, or are all on one line of it. */

@@ -10,9 +10,10 @@ import numpy
 from on_ranks import (
     COUNT, RANK, check, check_refused, check_stops, end, fewer, gather, options_of, owners_in_places, updated)
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import outcomes
-from meshes import cloud, ghosts_of, triangles_of
+from meshes import cloud, ghosts_of, lines as lines_of, triangles_of
 from vtkelevationsurface import vtkGridDelaunay2D
 
 POLICIES = 4
@@ -99,6 +100,10 @@ def check_given_lattice(random):
     nodes = turned_nodes[:40]
     compare("a line of the given lattice", nodes, numpy.arange(40) % COUNT, None, Lattice=given)
     compare("no finite point", nodes * numpy.nan, numpy.arange(40) % COUNT, None, Lattice=given)
+    compare("all points of the given lattice on the last rank", nodes, numpy.full(40, COUNT - 1), None, Lattice=given)
+    across = lines_of(nodes[[0, -1]], [[0, 1]]) if RANK == COUNT - 1 else None
+    delaunay, _ = triangulate(cloud(nodes if across else nodes[:0]), False, Lattice=given, SourceData=across or vtkPolyData())
+    check(not delaunay.GetLatticeFound(), "constraints leave the given lattice, also with points on one rank alone")
 
 
 def check_elevation_error(random):

@@ -189,6 +189,7 @@ Triangulation TriangulateOnGivenLattice(const PointView& points, const DelaunayO
   try
   {
     Triangulation result = TriangulateNodes(points, lattice, options, true);
+    result.LatticeFound = hasPoints; // a part without points says nothing of those of others
     CheckTriangles(points, result.Triangles);
     LeaveOutLong(points, options.MaximumEdgeLength, result.Triangles);
     Report(options.Monitor, 1.0);
