@@ -102,7 +102,8 @@ def check_given_lattice(random):
     compare("no finite point", nodes * numpy.nan, numpy.arange(40) % COUNT, None, Lattice=given)
     compare("all points of the given lattice on the last rank", nodes, numpy.full(40, COUNT - 1), None, Lattice=given)
     across = lines_of(nodes[[0, -1]], [[0, 1]]) if RANK == COUNT - 1 else None
-    delaunay, _ = triangulate(cloud(nodes if across else nodes[:0]), False, Lattice=given, SourceData=across or vtkPolyData())
+    own, across = (nodes, across) if across else (nodes[:0], vtkPolyData())
+    delaunay, _ = triangulate(cloud(own), False, Lattice=given, SourceData=across)
     check(not delaunay.GetLatticeFound(), "constraints leave the given lattice, also with points on one rank alone")
 
 

@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random clouds, dealt at random, give one surface: in memory, on ranks, in pieces, and on ranks with pieces.
 
+And an abort, a full disk or a lost folder at a random moment is one message and nothing else. A mode is
+compared where the table of features.py says that what is drawn is the same there.
+
 Run by mpirun, as TestManyRanks.py, or alone on one rank. What a round works on is drawn by the seed, the
 number of the round and the number of ranks; a round that fails names the options that make it again.
 """
@@ -25,13 +28,13 @@ import outcomes
 from TestManyRanks import draw_points
 from TestManyRanksConstraints import draw_lines
 from TestManyRanksTrim import rings_for, torn
-from vtkelevationsurface import vtkReconstructPieces
 
 GUARD = 300  # seconds, after which a rank that still waits ends all of them
 ABORTED = ("Stopped", "Aborted")  # what a warning begins with: of filters, and of a source of pieces
 UNLIMITED = resource.getrlimit(resource.RLIMIT_FSIZE)
 # The words of the table, which say what is compared in a mode.
 WORDS = {(row.filter, row.feature): row.cells for row in features.rows()}
+WITH_PIECES = "2 ranks, 2 pieces each" if COUNT > 1 else "4 pieces"
 # Messages of pieces that say less than those of memory: no better limit of edges, and not where things are.
 WITHOUT_MORE = ("are left without a triangle", "The boundary encloses no triangle of the mesh.")
 REFUSED_IN_PIECES = "The boundary is too small or too large for pieces"  # in memory it can be trimmed
@@ -147,6 +150,11 @@ def compare(number, seed):
     case.dealt.setdefault(slices, numpy.sort(random.integers(slices, size=len(case.xyz))))
     made = {("2 ranks", "%d ranks" % COUNT): gather(modes.on_rank(row, case, RANK, COUNT))}
     own = {}
+    if modes.has_pieces(row, case) and is_same(row, case, WITH_PIECES):
+        of_each = int(random.integers(1, 4))
+        asked = range(RANK * of_each, (RANK + 1) * of_each)
+        made[WITH_PIECES, "%d ranks, %d pieces each" % (COUNT, of_each)] = sum(
+            gather(modes.in_pieces(row, case, [(RANK, COUNT)], asked, COUNT * of_each)), [])
     if RANK == LAST and modes.has_pieces(row, case) and is_same(row, case, "4 pieces"):
         of_slices = [(i, slices) for i in range(slices)]
         own["4 pieces", "%d slices, %d pieces" % (slices, pieces)] = modes.in_pieces(
@@ -159,8 +167,8 @@ def compare(number, seed):
         whole = made.pop("memory")[0]
         for (mode, shown), parts in made.items():
             why = why_another(parts, whole, row, case, mode)
-            check(not why, "%s, round %d of seed %d on %d ranks (--seed %d --first %d --clouds 1): %s\n    %s, %d points" % (
-                shown, number, seed, COUNT, seed, number, why, describe(row, case), len(case.xyz)))
+            check(not why, "%s, round on %d ranks (--seed %d --first %d --clouds 1): %s\n    %s, %d points" % (
+                shown, COUNT, seed, number, why, describe(row, case), len(case.xyz)))
 
 
 def describe(row, case):
@@ -275,7 +283,7 @@ def check_failure(number, seed):
     """A surface is made; again, where something fails at a moment; and once more. @return whether it failed"""
     random = numpy.random.default_rng((seed, number, COUNT, 0))
     row, case = draw_to_fail(random)
-    ways = ["memory"] * (COUNT > 1) + [1, 3] * (COUNT == 1 or hasattr(vtkReconstructPieces, "SetController"))
+    ways = ["memory"] * (COUNT > 1) + [1, 3] * is_same(row, case, WITH_PIECES)
     way = ways[random.integers(len(ways))]
     maker = InMemory(row, case) if way == "memory" else InPieces(row, case, way)
     kind, culprit = maker.KINDS[random.integers(len(maker.KINDS))], random.integers(COUNT)
@@ -291,7 +299,8 @@ def check_failure(number, seed):
     told = sum(gather(new), [])
     if told:
         event = "WarningEvent" if kind == "abort" else "ErrorEvent"
-        check(len(told) == 1 and told[0][0] == event and is_failure(told), "%s%s is all that is reported" % (claim, told))
+        is_right = len(told) == 1 and told[0][0] == event and is_failure(told)
+        check(is_right, "%s%s is all that is reported" % (claim, told))
         points = [len(block["points"]) for block in sum(parts[-1]["ports"], [])]
         check(not any(points), "%sthere are points: %s" % (claim, points))
     else:
