@@ -118,7 +118,6 @@ set(es_Parts
   CommonPoints
   ConstraintsOfRanks
   DistributedFill
-  DistributedTrim
   Engine
   FailureNotes
   FilledPart
@@ -141,9 +140,9 @@ set(es_Parts
   SurfacePart
   TriangulateParts
   TrimOfPart
-  TrimmedPieces)
+  TrimParts)
 set(es_headers_Parts
-  Bytes Parts)
+  Bytes Parts SurfaceParts)
 
 # Lists the files of a room, whose names are in variables with a prefix.
 macro (es_list_room prefix folder room)

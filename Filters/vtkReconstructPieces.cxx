@@ -175,22 +175,22 @@ vtkIdType vtkReconstructPieces::GetNumberOfTriangles()
 
 vtkIdType vtkReconstructPieces::GetNumberOfTrimmedTriangles()
 {
-  return this->Trimmed ? this->Trimmed->CountOfTriangles() : 0;
+  return this->Trimmed ? this->Trimmed->CountOfKept() : 0;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfOutwardTriangles()
 {
-  return this->Trimmed ? this->Trimmed->Counts().OutwardTriangles : 0;
+  return this->Trimmed ? this->Trimmed->All().OutwardTriangles : 0;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfRecoveredEdges()
 {
-  return this->Trimmed ? this->Trimmed->Counts().RecoveredEdges : 0;
+  return this->Trimmed ? this->Trimmed->All().RecoveredEdges : 0;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfInsertedPoints()
 {
-  return this->Trimmed ? this->Trimmed->Counts().InsertedPoints : 0;
+  return this->Trimmed ? this->Trimmed->All().InsertedPoints : 0;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfBoundaryRings()
@@ -212,7 +212,7 @@ vtkIdType vtkReconstructPieces::GetNumberOfFilledTriangles()
 {
   return !this->Filled ? 0
                        : this->Filled->CountOfNewTriangles() +
-      (this->Trimmed ? this->Trimmed->CountOfTriangles() : this->Work->All().Triangles);
+      (this->Trimmed ? this->Trimmed->CountOfKept() : this->Work->All().Triangles);
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfDuplicatePoints()
@@ -277,7 +277,7 @@ void vtkReconstructPieces::WorkOnAll(int count, const elevation::Progress& progr
   }
   if (isTrimmed)
   {
-    this->TrimAll(count, elevation::Part(progress, trimming, filling));
+    this->TrimAll(elevation::Part(progress, trimming, filling));
   }
   if (this->FillHoles)
   {
@@ -301,15 +301,19 @@ void vtkReconstructPieces::WarnOfMissing()
   elevation::ReportMessages(this, {}, warnings, this->Messages);
 }
 
-void vtkReconstructPieces::TrimAll(int count, const elevation::Progress& progress)
+void vtkReconstructPieces::TrimAll(const elevation::Progress& progress)
 {
   this->SetProgressText("trimming");
   this->Trim->GetInputAlgorithm(1, 0)->Update();
   elevation::TrimOptions options = elevation::OptionsOf(this->Trim);
   options.Monitor = progress;
-  const auto make = [this](int piece) { return this->MakePiece(piece, elevation::Progress()); };
-  this->Trimmed = std::make_unique<elevation::TrimmedPieces>(
-    count, this->Work->All().Triangles, make, this->Trim->GetBoundary(), options);
+  const auto make = [this](int piece, const elevation::Progress& ofPiece) {
+    return this->MakePiece(piece, ofPiece);
+  };
+  this->Trimmed =
+    std::make_unique<elevation::TrimParts>(elevation::SurfaceParts{ this->Work->Holders(), make },
+      this->Work->All().Triangles, this->Trim->GetBoundary(), options);
+  this->Trimmed->Trim();
 }
 
 void vtkReconstructPieces::FillAll(int count, const elevation::Progress& progress)
@@ -358,7 +362,7 @@ vtkSmartPointer<vtkPolyData> vtkReconstructPieces::MakeTrimmed(
     return this->MakePiece(piece, progress);
   }
   auto trimmed = vtkSmartPointer<vtkPolyData>::New();
-  this->Trimmed->Pass(piece, progress, trimmed);
+  this->Trimmed->Write(piece, progress, trimmed, nullptr);
   return trimmed->GetNumberOfPoints() > 0 ? trimmed : nullptr;
 }
 

@@ -70,7 +70,7 @@ namespace elevation
 class FilledPieces;
 class Ranks;
 class TriangulateParts;
-class TrimmedPieces;
+class TrimParts;
 using Progress = std::function<bool(double)>;
 } // namespace elevation
 class vtkFillElevationHoles;
@@ -163,7 +163,7 @@ public:
   /**
    * As of the three filters, but those of the last ErrorEvent or WarningEvent alone. Further codes are
    * HoleTooLarge, Aborted, TooFewPieces, TooFewPiecesToFill, ErrorNotInPieces, ConstraintsNotInPieces,
-   * InwardNormalNotInPieces and EdgeLengthNotInPieces.
+   * InwardNormalNotInPieces, BoundaryNotInPieces, OutlineNotInPieces and EdgeLengthNotInPieces.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 
@@ -184,7 +184,7 @@ private:
   vtkMTimeType TimeOfProperties();
   void WorkOnAll(int count, const elevation::Progress& progress);
   void WarnOfMissing();
-  void TrimAll(int count, const elevation::Progress& progress);
+  void TrimAll(const elevation::Progress& progress);
   void FillAll(int count, const elevation::Progress& progress);
   vtkSmartPointer<vtkPolyData> MakePiece(int piece, const elevation::Progress& progress);
   vtkSmartPointer<vtkPolyData> MakeTrimmed(int piece, const elevation::Progress& progress);
@@ -197,7 +197,7 @@ private:
   double MemoryOfHole = 0.0;
   std::unique_ptr<elevation::Ranks> Alone;
   std::unique_ptr<elevation::TriangulateParts> Work;
-  std::unique_ptr<elevation::TrimmedPieces> Trimmed;
+  std::unique_ptr<elevation::TrimParts> Trimmed;
   std::unique_ptr<elevation::FilledPieces> Filled;
   vtkMTimeType TimeOfWork = 0;
   bool HasFailed = false;

@@ -358,7 +358,8 @@ public:
    * text has the same for people, are invoked. Codes, besides those of data that are invalid, which
    * are "Words":
    * NothingToTrim, InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut,
-   * BoundaryLeavesOutAll, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, ArraysLeftOut,
+   * BoundaryLeavesOutAll, BoundaryEnclosesNothing (reasons: NothingInRing, NothingBetweenRings,
+   * BoundaryElsewhere), StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, ArraysLeftOut,
    * NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }

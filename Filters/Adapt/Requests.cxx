@@ -65,4 +65,18 @@ void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count)
   fieldData->AddArray(array);
 }
 
+void AddTuple(vtkFieldData* fieldData, const char* name,
+  const std::vector<std::pair<const char*, vtkIdType>>& counts)
+{
+  vtkNew<vtkIdTypeArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(static_cast<int>(counts.size()));
+  for (const auto& [component, count] : counts)
+  {
+    array->SetComponentName(array->GetNumberOfValues(), component);
+    array->InsertNextValue(count);
+  }
+  fieldData->AddArray(array);
+}
+
 } // namespace elevation

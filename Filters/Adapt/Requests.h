@@ -13,6 +13,8 @@
 #include "vtkType.h"
 
 #include <exception>
+#include <utility>
+#include <vector>
 
 class vtkAlgorithm;
 class vtkFieldData;
@@ -66,6 +68,9 @@ void CheckMaximumEdgeLength(double length);
 
 /** Adds a count to the field data, as an array of one value. */
 void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count);
+/** Adds counts with names, as an array of one tuple. */
+void AddTuple(vtkFieldData* fieldData, const char* name,
+  const std::vector<std::pair<const char*, vtkIdType>>& counts);
 
 } // namespace elevation
 

@@ -99,6 +99,12 @@ bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& option
   return true;
 }
 
+Message BoundaryZone::NothingEnclosed(const BoundaryLines& boundary) const
+{
+  return elevation::NothingEnclosed(
+    this->Triangles.View.Points, boundary.Points, JoinLines(boundary));
+}
+
 namespace
 {
 constexpr const char* NameOfStates = "States";
@@ -159,7 +165,7 @@ bool BoundaryZone::TrimOutline(
   TrimOptions ofParts = options;
   ofParts.ReturnParents = true;
   ofParts.Monitor = Part(options.Monitor, 0.4, 0.95);
-  std::optional<Trimmed> trimmed = TrimParts(list,
+  std::optional<Trimmed> trimmed = TrimNearOutline(list,
     { states, spacings, std::move(*border), innerPoints + atBorders.Count(), triangles }, ofParts);
   if (trimmed)
   {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The triangles of several ranks near a boundary, trimmed on one of them. Private to the module.
+ * The triangles of all parts of a surface near a boundary, trimmed together. Private to the module.
  */
 #ifndef BoundaryZone_h
 #define BoundaryZone_h
@@ -27,7 +27,7 @@ class vtkPolyData;
 namespace elevation
 {
 
-/** What of the near triangles goes back to the rank that had them. */
+/** What of the near triangles goes back to the part that had them. */
 struct TrimmedPart
 {
   /** The sides, kept and outward: near triangles of the rank (by number) that they are parts of. */
@@ -82,6 +82,9 @@ public:
 
   /** What goes back to each part. */
   std::vector<TrimmedPart> Split(const Progress& progress) const;
+
+  /** The error where the whole mesh has no triangle in a boundary. */
+  Message NothingEnclosed(const BoundaryLines& boundary) const;
 
   const Trimmed& Result() const { return this->Sides; }
   vtkPolyData* Joined() const { return this->Whole; }

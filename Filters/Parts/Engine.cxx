@@ -100,7 +100,7 @@ void Inbox::Clear()
 Engine::Engine(const Ranks& ranks, int ownParts, const std::vector<std::string>& boxes,
   const std::string& folder)
   : Crew(ranks)
-  , AreInFiles(!folder.empty())
+  , FolderOfFiles(folder)
   , BoxesOfPart(boxes.size())
   , Firsts{ 0 }
   , Outbox(ranks.Count())
@@ -114,7 +114,7 @@ Engine::Engine(const Ranks& ranks, int ownParts, const std::vector<std::string>&
   {
     for (const std::string& name : boxes)
     {
-      this->Boxes.push_back(this->AreInFiles && !name.empty()
+      this->Boxes.push_back(this->IsInFiles() && !name.empty()
           ? Inbox(folder + "/" + name + "-" + std::to_string(part))
           : Inbox());
     }

@@ -86,7 +86,8 @@ public:
     const std::string& folder);
 
   const Ranks& All() const { return this->Crew; }
-  bool IsInFiles() const { return this->AreInFiles; }
+  bool IsInFiles() const { return !this->FolderOfFiles.empty(); }
+  const std::string& Folder() const { return this->FolderOfFiles; } ///< of the files; empty: in memory
 
   int CountOfParts() const { return this->Firsts.back(); }
   /** The rank that holds a part. */
@@ -117,7 +118,7 @@ private:
   };
 
   const Ranks& Crew;
-  const bool AreInFiles;
+  const std::string FolderOfFiles;
   const std::size_t BoxesOfPart;
   std::vector<int> Firsts;                // part of each rank, and the end
   std::vector<Inbox> Boxes;               // of the parts of this rank

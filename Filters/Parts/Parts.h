@@ -8,12 +8,12 @@
 #define Parts_h
 
 #include "DistributedFill.h"
-#include "DistributedTrim.h"
 #include "FilledPieces.h"
 #include "FilterRun.h"
 #include "Joining.h"
+#include "PointRows.h"
 #include "Ranks.h"
 #include "TriangulateParts.h"
-#include "TrimmedPieces.h"
+#include "TrimParts.h"
 
 #endif

@@ -11,10 +11,6 @@
 #include "ConstraintsOfRanks.h"
 #include "SettleParts.h"
 
-#include "vtkFieldData.h"
-#include "vtkIdTypeArray.h"
-#include "vtkNew.h"
-
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -370,18 +366,9 @@ SurfacePart TriangulateParts::Take(int part, const Progress& progress)
 void AddWork(
   const Ranks::Traffic& traffic, const TriangulateParts::Effort& effort, vtkFieldData* fieldData)
 {
-  vtkNew<vtkIdTypeArray> work;
-  work->SetName("WorkOfRank");
-  work->SetNumberOfComponents(4);
-  const char* const names[] = { "OwnPoints", "SeamPoints", "BytesSent", "Exchanges" };
-  const vtkIdType values[] = { effort.Points, effort.SeamPoints, traffic.BytesSent,
-    traffic.Rounds };
-  for (int i = 0; i < 4; ++i)
-  {
-    work->SetComponentName(i, names[i]);
-    work->InsertNextValue(values[i]);
-  }
-  fieldData->AddArray(work);
+  AddTuple(fieldData, "WorkOfRank",
+    { { "OwnPoints", effort.Points }, { "SeamPoints", effort.SeamPoints },
+      { "BytesSent", traffic.BytesSent }, { "Exchanges", traffic.Rounds } });
 }
 
 } // namespace elevation

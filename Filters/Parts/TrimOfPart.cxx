@@ -166,25 +166,7 @@ void TrimOfPart::Take(TrimmedPart&& back, const Progress& progress)
 vtkIdType TrimOfPart::CountOfSide(int side) const
 {
   const std::vector<char>& flags = this->Swept.IsOutward;
-  return static_cast<vtkIdType>(std::count(flags.begin(), flags.end(), static_cast<char>(side)) +
-    static_cast<std::ptrdiff_t>(this->Back.Parents[side].size()));
-}
-
-vtkIdType TrimOfPart::CountOfInserted() const
-{
-  const std::vector<char>& inserted = this->Back.IsInserted;
-  return static_cast<vtkIdType>(std::count(inserted.begin(), inserted.end(), char(1)));
-}
-
-vtkIdType TrimOfPart::CountOfOwnInserted() const
-{
-  const std::vector<char>& owned = this->Back.IsOwned;
-  return static_cast<vtkIdType>(std::count(owned.begin(), owned.end(), char(1)));
-}
-
-vtkIdType TrimOfPart::CountOfOthers() const
-{
-  return static_cast<vtkIdType>(this->Points.OfOthers.size());
+  return static_cast<vtkIdType>(std::count(flags.begin(), flags.end(), static_cast<char>(side)));
 }
 
 /**

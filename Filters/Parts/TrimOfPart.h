@@ -3,8 +3,7 @@
 /**
  * @file
  * Trims one part of a mesh along a boundary or its outline, whose near triangles are trimmed with
- * those of all parts: on ranks (DistributedTrim.h), and piece by piece (TrimmedPieces.h). Private to
- * the module.
+ * those of all parts: see TrimParts.h. Private to the module.
  */
 #ifndef TrimOfPart_h
 #define TrimOfPart_h
@@ -16,6 +15,7 @@
 #include "vtkSmartPointer.h"
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 class vtkPolyData;
@@ -27,8 +27,8 @@ namespace elevation
 class TrimOfPart
 {
 public:
-  explicit TrimOfPart(vtkPolyData* part)
-    : Input(part)
+  explicit TrimOfPart(vtkSmartPointer<vtkPolyData> part)
+    : Input(std::move(part))
   {
   }
 
@@ -45,17 +45,14 @@ public:
   /** The same without a boundary: the near triangles tell the outline. See FindPartOfOutline() */
   bool SweepForOutline(int margin, const TrimOptions& options, const Progress& progress);
   std::int64_t CountOfInnerPoints() const { return this->Outline.NumberOfInnerPoints; }
-  std::size_t CountOfNear() const { return this->Swept.Near.size(); }
+  vtkIdType CountOfNear() const { return static_cast<vtkIdType>(this->Swept.Near.size()); }
+  vtkIdType CountOfSide(int side) const; ///< triangles that are not near: 0 kept, 1 outward
 
   /** The near triangles and, as lines, the border of all: for BoundaryZone. */
   vtkSmartPointer<vtkPolyData> NearPart();
 
   /** Takes what has become of the near triangles. */
   void Take(TrimmedPart&& back, const Progress& progress);
-  vtkIdType CountOfSide(int side) const; ///< triangles: 0 kept, 1 outward; before, without the near
-  vtkIdType CountOfInserted() const;     ///< points, also those that another part owns
-  vtkIdType CountOfOwnInserted() const;
-  vtkIdType CountOfOthers() const; ///< points that another part owns
 
   /**
    * Writes the sides to outputs 0 and 1; nullptr: not wanted.
@@ -70,7 +67,7 @@ private:
   void FindOwn(const Progress& progress);
   TrimmedSide SideOf(int side, const Progress& progress) const;
 
-  vtkPolyData* const Input;
+  const vtkSmartPointer<vtkPolyData> Input;
   TrianglesOfDataSet Triangles;
   std::vector<Index> Sources; // of the triangles, if some were left out
   TriangleList List;

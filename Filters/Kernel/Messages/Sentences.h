@@ -95,6 +95,16 @@ ELEVATION_SENTENCE(BoundaryLeavesOutAll,
   "The extracted boundary leaves out every point: at a gap tolerance of {tolerance} spacings, "
   "that is no surface. A {property:GapTolerance} of {better} would keep {kept}. Or give the "
   "boundary.");
+ELEVATION_SENTENCE(
+  BoundaryEnclosesNothing, "The boundary encloses no triangle of the mesh. {reason}");
+/** @} */
+
+/** @name Why it encloses none: {reason} of BoundaryEnclosesNothing @{ */
+ELEVATION_SENTENCE(NothingInRing, "Its first ring begins at {place}.");
+ELEVATION_SENTENCE(NothingBetweenRings,
+  "Its first ring begins at {place}; of rings in each other, what lies between two is enclosed.");
+ELEVATION_SENTENCE(BoundaryElsewhere,
+  "It is at {box}, the mesh at {extent}: are both in the same coordinates?");
 /** @} */
 
 /** @name Of filling @{ */
@@ -157,6 +167,11 @@ ELEVATION_SENTENCE(ErrorNotInPieces,
 ELEVATION_SENTENCE(ConstraintsNotInPieces, "Constraints are for points in memory, not for pieces.");
 ELEVATION_SENTENCE(InwardNormalNotInPieces,
   "{property:OutwardTest} InwardNormal is for a surface in memory, not for pieces.");
+ELEVATION_SENTENCE(BoundaryNotInPieces,
+  "The boundary is too small or too large for pieces; trim the surface in memory.");
+ELEVATION_SENTENCE(OutlineNotInPieces,
+  "What is near the borders of pieces does not tell the outline, as in surveys along lines: give a "
+  "{property:GapTolerance} or the boundary, or trim the surface in memory.");
 ELEVATION_SENTENCE(EdgeLengthNotInPieces,
   "{property:MaximumEdgeLength} of the filter that fills holes is for a surface in memory, not "
   "for pieces.");

@@ -112,21 +112,10 @@ void PutBackInserted(const NearTriangles& near, const Mesh& mesh, InsertedRings&
 void CheckEnclosed(const TriangleList& list, const std::vector<char>& isOutward,
   const NamedPoints& points, const Rings& rings)
 {
-  if (std::find(isOutward.begin(), isOutward.end(), char(0)) != isOutward.end())
+  if (std::find(isOutward.begin(), isOutward.end(), char(0)) == isOutward.end())
   {
-    return;
+    throw CodedError(NothingEnclosed(list.Points, points, rings));
   }
-  Box box;
-  for (const Index vertex : rings.Vertices)
-  {
-    box.Add(points[vertex]);
-  }
-  const Box ofMesh = FindExtent(list.Points, 1, Progress(), [](Index, const Point2&) {});
-  throw Error("The boundary encloses no triangle of the mesh. " +
-    (box.Intersects(ofMesh) ? "Its first ring begins at " + NameOf(points[rings.Vertices.front()]) +
-          (rings.Count() > 1 ? "; of rings in each other, what lies between two is enclosed." : ".")
-                            : "It is at " + NameOf(box) + ", the mesh at " + NameOf(ofMesh) +
-          ": are both in the same coordinates?"));
 }
 
 /** The ids of the ends of marked half-edges; increasing. */
@@ -544,6 +533,21 @@ Trimmed Trim(
     });
 }
 
+Message NothingEnclosed(const PointView& points, const NamedPoints& boundary, const Rings& rings)
+{
+  Box box;
+  for (const Index vertex : rings.Vertices)
+  {
+    box.Add(boundary[vertex]);
+  }
+  const Box ofMesh = FindExtent(points, 1, Progress(), [](Index, const Point2&) {});
+  const std::string first = NameOf(boundary[rings.Vertices.front()]);
+  return MakeMessage<sentences::BoundaryEnclosesNothing>(!box.Intersects(ofMesh)
+      ? MakeMessage<sentences::BoundaryElsewhere>(NameOf(box), NameOf(ofMesh))
+      : rings.Count() > 1 ? MakeMessage<sentences::NothingBetweenRings>(first)
+                          : MakeMessage<sentences::NothingInRing>(first));
+}
+
 Trimmed TrimNear(const TriangleList& triangles, const BoundaryLines& boundary,
   const std::vector<BorderEdge>& border, const TrimOptions& options)
 {
@@ -562,7 +566,7 @@ Trimmed SplitAlong(
     });
 }
 
-std::optional<Trimmed> TrimParts(
+std::optional<Trimmed> TrimNearOutline(
   const TriangleList& triangles, MeshOfParts&& mesh, const TrimOptions& options)
 {
   std::optional<ExtractedBoundary> found = FindOutlineOfParts(

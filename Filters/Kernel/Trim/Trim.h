@@ -116,6 +116,13 @@ Trimmed TrimNear(const TriangleList& triangles, const BoundaryLines& boundary,
   const std::vector<BorderEdge>& border, const TrimOptions& options);
 
 /**
+ * The error of Trim() where a boundary encloses no triangle.
+ * @param[in] points  of the mesh
+ * @param[in] rings   vertices of boundary
+ */
+Message NothingEnclosed(const PointView& points, const NamedPoints& boundary, const Rings& rings);
+
+/**
  * Splits triangles where lines cross their edges, so that the lines are edges and the surface is as
  * it was. All triangles are kept. Lines may cross, be open, and leave the mesh; those of one point
  * do nothing.
@@ -131,7 +138,7 @@ Trimmed SplitAlong(
  * @return nothing where FindOutlineOfParts() returns nothing, or no triangle is surface
  * @throws Aborted; std::bad_alloc
  */
-std::optional<Trimmed> TrimParts(
+std::optional<Trimmed> TrimNearOutline(
   const TriangleList& triangles, MeshOfParts&& mesh, const TrimOptions& options);
 
 } // namespace elevation

@@ -185,7 +185,7 @@ TEST(OutlineOfParts, IsThatOfTheWhole)
       EXPECT_EQ(round % 7 % 3, 2);
       continue;
     }
-    const auto trimmed = TrimParts(parts.List.List(),
+    const auto trimmed = TrimNearOutline(parts.List.List(),
       { parts.States, parts.Spacings, parts.Border, parts.NumberOfPoints, triangles }, options);
     if (!trimmed)
     {

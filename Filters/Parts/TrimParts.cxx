@@ -1,0 +1,287 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TrimParts.h"
+
+#include "BoundaryZone.h"
+#include "PackedData.h"
+
+#include "vtkPointData.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+/** The boxes of a part. */
+enum BoxOfTrim
+{
+  NearTriangles, // of all parts, at the part with most; it takes them at once
+  Back           // what became of a part's own
+};
+} // namespace
+
+TrimParts::TrimParts(const SurfaceParts& surface, vtkIdType triangles, vtkPolyData* boundary,
+  const TrimOptions& options)
+  : Surface(surface)
+  , Crew(surface.Crew.All(), surface.Crew.EndOwn() - surface.Crew.FirstOwn(), { "", "trimmed" },
+      surface.Crew.Folder())
+  , Given(boundary)
+  , Options(options)
+  , Swept(this->Crew.IsInFiles() ? 0.8 : 0.4)
+  , NumberOfAll(triangles)
+{
+}
+
+// Parts in memory can be gathered, those in files cannot. Steps throw on all ranks or on none.
+bool TrimParts::Trim()
+{
+  try
+  {
+    this->TrimAll();
+    return true;
+  }
+  catch (const Error& error)
+  {
+    const bool isMemory = MessageOf(error).GetCode() == sentences::NotEnoughMemory.Code;
+    if (this->Crew.IsInFiles() || isMemory)
+    {
+      throw;
+    }
+    return false;
+  }
+}
+
+void TrimParts::TrimAll()
+{
+  const Message wrong = WrongOption(this->Options);
+  if (!wrong.IsEmpty())
+  {
+    throw CodedError(wrong);
+  }
+  if (this->Options.Test != OutwardTest::Exact)
+  {
+    throw MakeError<sentences::InwardNormalNotInPieces>();
+  }
+  this->Read();
+  const auto isTrimmedWith = [this](int margin) {
+    this->FindNear(margin);
+    return this->TrimNear();
+  };
+  // A boundary needs no margin, and most outlines a small one.
+  constexpr int small = 4, large = 10;
+  if (!isTrimmedWith(small) && (this->Given || !isTrimmedWith(large)))
+  {
+    throw this->Refusal();
+  }
+  this->AddUp();
+}
+
+CodedError TrimParts::Refusal() const
+{
+  return this->Given ? MakeError<sentences::BoundaryNotInPieces>()
+                     : MakeError<sentences::OutlineNotInPieces>();
+}
+
+/** The part, whose triangles are read. In memory the step finds it as it was left by the last one. */
+template <typename Step>
+void TrimParts::WithPart(int part, const Progress& progress, const Step& step)
+{
+  std::unique_ptr<TrimOfPart> anew;
+  std::unique_ptr<TrimOfPart>& found = this->Crew.IsInFiles() ? anew : this->InMemory;
+  if (!found)
+  {
+    vtkSmartPointer<vtkPolyData> made = this->Surface.Make(part, progress);
+    if (!made)
+    {
+      return;
+    }
+    found = std::make_unique<TrimOfPart>(std::move(made));
+    found->Read();
+  }
+  step(*found);
+}
+
+void TrimParts::Sweep(TrimOfPart& part, const Progress& progress) const
+{
+  const bool isSwept = this->Given ? part.Sweep(this->Lines, static_cast<double>(this->NumberOfAll),
+                                       this->Options.NumberOfThreads, progress)
+                                   : part.SweepForOutline(this->Margin, this->Options, progress);
+  if (!isSwept)
+  {
+    throw this->Refusal();
+  }
+}
+
+/** The boundary, and how many triangles there are. */
+void TrimParts::Read()
+{
+  const bool isInFiles = this->Crew.IsInFiles();
+  this->Crew.ForEach(this->Fraction(0.0, 0.02), [&](int part, const Progress& progress) {
+    Report(progress, 0.0);
+    if (this->Given && part == this->Crew.FirstOwn())
+    {
+      CheckArrays(this->Given, "The boundary's");
+      this->Lines = ToLines(this->Given, progress);
+    }
+    if (!isInFiles)
+    {
+      this->WithPart(
+        part, progress, [this](TrimOfPart& own) { this->Triangles = own.CountOfTriangles(); });
+    }
+  });
+  if (!isInFiles)
+  {
+    std::vector<vtkIdType> count = { this->Triangles };
+    this->Crew.All().Sum(count);
+    this->NumberOfAll = count[0];
+  }
+  if (this->NumberOfAll == 0)
+  {
+    throw MakeError<sentences::NothingToTrim>();
+  }
+}
+
+/** Pass 1, with a margin of an outline. The near triangles wait here until all ranks know which part has most of them. */
+void TrimParts::FindNear(int margin)
+{
+  this->Margin = margin;
+  this->OfRank = TrimCounts();
+  this->Near = 0;
+  this->NearParts.clear();
+  std::vector<vtkIdType> near, sums(2, 0);
+  this->Crew.ForEach(this->Fraction(0.02, this->Swept), [&](int part, const Progress& progress) {
+    near.push_back(-1);
+    this->NearParts.emplace_back();
+    this->WithPart(part, Part(progress, 0.0, 0.5), [&](TrimOfPart& own) {
+      this->Sweep(own, Part(progress, 0.5, 1.0));
+      near.back() = own.CountOfNear() + (own.CountOfTriangles() > 0 ? 1 : 0);
+      this->NearParts.back() = PackData(own.NearPart());
+      this->Near += own.CountOfNear();
+      this->OfRank.OutwardTriangles += own.CountOfSide(1);
+      sums[0] += own.CountOfSide(0);
+      sums[1] += static_cast<vtkIdType>(own.CountOfInnerPoints());
+    });
+  });
+  this->NearOfParts = this->Crew.All().Collect(near);
+  this->Home =
+    static_cast<int>(std::max_element(this->NearOfParts.begin(), this->NearOfParts.end()) -
+      this->NearOfParts.begin());
+  this->Crew.All().Sum(sums);
+  this->Kept = sums[0];
+  this->InnerPoints = sums[1];
+}
+
+/** Pass 2. @return false on all ranks if the near triangles do not tell what to keep */
+bool TrimParts::TrimNear()
+{
+  const Ranks& all = this->Crew.All();
+  for (Bytes& bytes : this->NearParts)
+  {
+    this->Crew.Send(this->Home, NearTriangles, std::move(bytes));
+  }
+  this->Crew.Deliver(this->Fraction(this->Swept, this->Swept));
+  bool isTrimmed = false;
+  all.Agree([&]() {
+    if (!this->Crew.IsOwn(this->Home))
+    {
+      return;
+    }
+    elevation::Parts parts;
+    for (Bytes& bytes : this->Crew.At(this->Home, NearTriangles).Take())
+    {
+      parts.push_back(UnpackData(bytes.data(), bytes.size()));
+      bytes = Bytes();
+    }
+    TrimOptions options = this->Options;
+    options.Monitor = all.Watched(this->Fraction(this->Swept, 0.95));
+    BoundaryZone zone(std::move(parts));
+    isTrimmed = this->Given ? zone.Trim(this->Lines, options)
+                            : zone.TrimOutline(this->InnerPoints, this->NumberOfAll, options);
+    if (isTrimmed)
+    {
+      this->SendBack(zone);
+    }
+  });
+  this->Crew.Deliver(this->Fraction(0.97, 0.97));
+  return IsOnAny(all, isTrimmed);
+}
+
+/** Pass 3, on the rank that has trimmed the near triangles. */
+void TrimParts::SendBack(const BoundaryZone& zone)
+{
+  const Trimmed& result = zone.Result();
+  if (this->Given && this->Kept == 0 && result.Kept.Parents.empty())
+  {
+    throw CodedError(zone.NothingEnclosed(this->Lines));
+  }
+  const Progress progress = this->Crew.All().Watched(this->Fraction(0.95, 0.97));
+  std::vector<TrimmedPart> backs = zone.Split(progress);
+  auto back = backs.begin();
+  for (int part = 0; part < this->Crew.CountOfParts(); ++part)
+  {
+    if (this->NearOfParts[part] >= 0)
+    {
+      const TrimmedPart taken = std::move(*back++);
+      this->Crew.Send(part, Back, taken.Pack());
+    }
+  }
+  this->OfRank.RecoveredEdges = result.NumberOfRecoveredEdges;
+  this->OfRank.PointsLeftOut = result.NumberOfPointsLeftOut;
+  this->OfRank.GapTolerance = result.GapTolerance;
+  this->LossOfAll = result.Loss;
+  this->Outline->GetPointData()->CopyAllOn();
+  PassRings(result.Boundary, this->Given ? this->Given : zone.Joined(), progress, this->Outline);
+}
+
+/** What there is of all parts. */
+void TrimParts::AddUp()
+{
+  const Ranks& all = this->Crew.All();
+  vtkIdType kept = 0, marked = 0;
+  this->Crew.ForEach(this->Fraction(0.97, 1.0), [&](int part, const Progress& progress) {
+    Report(progress, 0.0);
+    this->Crew.At(part, Back).ForEach([&](const Bytes& bytes) {
+      const TrimmedPart back(bytes);
+      const vtkIdType owned = std::count(back.IsOwned.begin(), back.IsOwned.end(), char(1));
+      kept += static_cast<vtkIdType>(back.Parents[0].size());
+      marked += static_cast<vtkIdType>(back.OfOthers.size() + back.IsOwned.size()) - owned;
+      this->OfRank.OutwardTriangles += static_cast<vtkIdType>(back.Parents[1].size());
+      this->OfRank.InsertedPoints += owned;
+    });
+  });
+  std::vector<vtkIdType> sums = { this->OfRank.OutwardTriangles, this->OfRank.RecoveredEdges,
+    this->OfRank.PointsLeftOut, this->OfRank.InsertedPoints, kept, marked,
+    this->Outline->GetNumberOfLines() };
+  std::vector<double> tolerance = { this->OfRank.GapTolerance };
+  all.Sum(sums);
+  all.Maximum(tolerance);
+  this->OfRank.GapTolerance = this->OfAll.GapTolerance = tolerance[0];
+  this->OfAll.OutwardTriangles = sums[0];
+  this->OfAll.RecoveredEdges = sums[1];
+  this->OfAll.PointsLeftOut = sums[2];
+  this->OfAll.InsertedPoints = sums[3];
+  this->Kept += sums[4];
+  this->AreMarked = sums[5] > 0;
+  this->Rings = sums[6];
+}
+
+void TrimParts::Write(int part, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
+{
+  this->WithPart(part, Part(progress, 0.0, 0.3), [&](TrimOfPart& own) {
+    if (this->Crew.IsInFiles())
+    {
+      this->Sweep(own, Part(progress, 0.3, 0.5));
+      own.NearPart();
+    }
+    this->Crew.At(part, Back).ForEach([&](const Bytes& bytes) {
+      own.Take(TrimmedPart(bytes), Part(progress, 0.5, 0.6));
+    });
+    own.Write(this->OfAll.InsertedPoints > 0, this->AreMarked, this->Given ? &this->Lines : nullptr,
+      this->Options, Part(progress, 0.6, 1.0), kept, outward);
+  });
+}
+
+} // namespace elevation

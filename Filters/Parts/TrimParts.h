@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Trims a surface in parts where they are, along a given boundary or the outline of what is measured.
+ * Private to the module.
+ *
+ * In: the parts of an engine (Engine.h): one for each rank in memory, or some of each rank in files.
+ * Out: the triangles of both sides of each part, and the boundary. The passes, each of which all ranks
+ * do at the same time:
+ *   1. Each part finds its triangles near the boundary, and the sides of the others. If no boundary is
+ *      given, those are near that may tell where the outline is (Outline.h), and the others are inside.
+ *   2. These near triangles, and the border of each part, go to the part with most of them. Its rank
+ *      joins them, proves by the border of all that the surface covers nothing twice, and trims them
+ *      (BoundaryZone.h).
+ *   3. Each part gets back what became of its own, with the points that it does not have. Of a point
+ *      that several parts get, the first is the owner; in the others it is a ghost.
+ *   4. Each part is written, when it is asked for.
+ *
+ * Guarantee: what is kept covers what one surface would keep; beside inserted points, diagonals may
+ * differ. It is refused where only the whole surface would tell: triangles that the sweep cannot prove,
+ * near triangles that do not tell the outline, InwardNormal.
+ *
+ * Cost: only what is near the boundary or on the border of a part is sent. Passes 1 and 4 make a part
+ * from files each, and look for its near triangles. Memory for files: one part, or what is near in all.
+ */
+#ifndef TrimParts_h
+#define TrimParts_h
+
+#include "Kernel/Trim/Trim.h"
+#include "SurfaceParts.h"
+#include "TrimOfPart.h"
+
+#include "vtkNew.h"
+#include "vtkPolyData.h"
+
+#include <memory>
+#include <vector>
+
+namespace elevation
+{
+
+class TrimParts
+{
+public:
+  /**
+   * @param[in] triangles  of all parts in files; in memory they are counted
+   * @param[in] boundary   the same on all ranks; nullptr: the outline
+   */
+  TrimParts(const SurfaceParts& surface, vtkIdType triangles, vtkPolyData* boundary,
+    const TrimOptions& options);
+
+  /**
+   * Does all passes but the last, on all ranks.
+   * @return false on all ranks if parts in memory have to be gathered, because they are refused as
+   *         above, or for whatever is an error, so that it is reported as of one surface
+   * @throws Error on all ranks, for parts in files; Aborted; std::bad_alloc
+   */
+  bool Trim();
+
+  /**
+   * Writes a part of this rank, if it has points; in memory once.
+   * @param[out] outward  nullptr: not wanted
+   */
+  void Write(int part, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward);
+
+  const TrimCounts& Own() const { return this->OfRank; }   ///< of the parts of this rank
+  const TrimCounts& All() const { return this->OfAll; }    ///< of all
+  vtkIdType CountOfKept() const { return this->Kept; }     ///< triangles, of all
+  vtkIdType CountOfRings() const { return this->Rings; }   ///< of all
+  vtkPolyData* Boundary() const { return this->Outline; }  ///< as lines; on one rank, else empty
+  const Message& Loss() const { return this->LossOfAll; }  ///< as of Trimmed; on the same rank
+  vtkIdType CountOfOwn() const { return this->Triangles; } ///< of this rank, in memory
+  vtkIdType CountOfNear() const { return this->Near; }     ///< of them
+
+private:
+  Progress Fraction(double begin, double end) const
+  {
+    return Part(this->Options.Monitor, begin, end);
+  }
+  template <typename Step>
+  void WithPart(int part, const Progress& progress, const Step& step);
+  void Sweep(TrimOfPart& part, const Progress& progress) const;
+  void TrimAll();
+  CodedError Refusal() const;
+  void Read();
+  void FindNear(int margin);
+  bool TrimNear();
+  void SendBack(const BoundaryZone& zone);
+  void AddUp();
+
+  const SurfaceParts Surface;
+  Engine Crew;
+  vtkPolyData* const Given; // the boundary
+  const TrimOptions Options;
+  const double Swept; // of the progress
+  BoundaryLines Lines;
+  vtkIdType NumberOfAll; // triangles
+  int Margin = 0;        // of an outline
+  std::unique_ptr<TrimOfPart> InMemory;
+  std::vector<Bytes> NearParts;       // of this rank, until they are sent
+  std::vector<vtkIdType> NearOfParts; // triangles of each part, and 1; -1 if it has no points
+  int Home = 0;                       // the part with most of them
+  vtkIdType InnerPoints = 0;          // of all parts
+  vtkIdType Triangles = 0, Near = 0;
+  TrimCounts OfRank, OfAll;
+  vtkIdType Kept = 0, Rings = 0;
+  bool AreMarked = false; // points that another part owns
+  vtkNew<vtkPolyData> Outline;
+  Message LossOfAll;
+};
+
+} // namespace elevation
+
+#endif
