@@ -116,7 +116,7 @@ set(es_Parts
   BorderOfParts
   BoundaryZone
   CommonPoints
-  ConstraintsOfRanks
+  ConstrainParts
   DistributedFill
   Engine
   FailureNotes

@@ -206,7 +206,6 @@ elevation::ConstrainedTriangulation TriangulateSpread(
   elevation::ConstrainedTriangulation counts;
   counts.NumberOfCrossings = all.Crossings;
   ranks.Agree([&]() {
-    counts.Added.resize(parts.Own().AddedPoints);
     if (block.Outputs.empty())
     {
       return;
@@ -214,6 +213,7 @@ elevation::ConstrainedTriangulation TriangulateSpread(
     const Progress progress = ranks.Watched(Part(options.Monitor, 1.0, 1.0));
     vtkPolyData* const output = block.Outputs.front();
     elevation::SurfacePart part = parts.Take(parts.FirstOwn(), progress);
+    counts.Added.resize(static_cast<std::size_t>(part.AddedPoints));
     elevation::PassPart(part, elevation::ResolveNumberOfThreads(options.NumberOfThreads), output);
     if (block.Input)
     {

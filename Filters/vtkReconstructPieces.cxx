@@ -5,6 +5,7 @@
 #include "Adapt/Adapt.h"
 #include "FilterOptions.h"
 #include "Kernel/Base/Base.h"
+#include "Kernel/Lattice/Lattice.h"
 #include "Kernel/Messages/Messages.h"
 #include "Parts/Parts.h"
 #include "vtkFillElevationHoles.h"
@@ -225,6 +226,16 @@ vtkIdType vtkReconstructPieces::GetNumberOfNonFinitePoints()
   return this->Work ? this->Work->All().NotFinite : 0;
 }
 
+vtkIdType vtkReconstructPieces::GetNumberOfConstraintCrossings()
+{
+  return this->Work ? static_cast<vtkIdType>(this->Work->All().Crossings) : 0;
+}
+
+vtkIdType vtkReconstructPieces::GetNumberOfAddedPoints()
+{
+  return this->Work ? this->Work->All().AddedPoints : 0;
+}
+
 bool vtkReconstructPieces::GetLatticeFound()
 {
   return this->Work && this->Work->All().LatticeFound;
@@ -235,11 +246,17 @@ void vtkReconstructPieces::CheckProperties()
 {
   const elevation::DelaunayOptions options = elevation::OptionsOf(this->Delaunay);
   elevation::CheckLimits(options);
-  if (options.GivenLattice.IsSet() || options.MaximumElevationError > 0.0)
+  const bool areLines = this->Delaunay->GetNumberOfInputConnections(1) > 0;
+  if (options.GivenLattice.IsSet() && options.UseLattice == elevation::LatticeMode::Automatic &&
+    !areLines)
+  {
+    elevation::StepsOfGiven(options.GivenLattice);
+  }
+  if (options.MaximumElevationError > 0.0)
   {
     throw elevation::MakeError<elevation::sentences::ErrorNotInPieces>();
   }
-  if (this->Delaunay->GetNumberOfInputConnections(1) > 0)
+  if (areLines && this->Delaunay->GetDrapeConstraints())
   {
     throw elevation::MakeError<elevation::sentences::ConstraintsNotInPieces>();
   }
@@ -268,9 +285,15 @@ void vtkReconstructPieces::WorkOnAll(int count, const elevation::Progress& progr
   elevation::DelaunayOptions options = elevation::OptionsOf(this->Delaunay);
   options.Monitor = elevation::Part(progress, 0.0, trimming);
   this->SetProgressText("triangulating");
-  std::vector<elevation::Message> warnings; // there are no constraints
-  this->Work->Triangulate(count, nullptr, options, warnings);
-  this->WarnOfMissing();
+  vtkSmartPointer<vtkPolyData> constraints;
+  if (this->Delaunay->GetNumberOfInputConnections(1) > 0)
+  {
+    this->Delaunay->GetInputAlgorithm(1, 0)->Update();
+    constraints = elevation::JoinBlocks(this->Delaunay->GetInputDataObject(1, 0), "constraints");
+  }
+  std::vector<elevation::Message> warnings;
+  this->Work->Triangulate(count, constraints, options, warnings);
+  this->WarnOfMissing(warnings);
   if (this->Work->All().Triangles == 0)
   {
     return;
@@ -285,18 +308,18 @@ void vtkReconstructPieces::WorkOnAll(int count, const elevation::Progress& progr
   }
 }
 
-/** Tells why there is no triangle, or why most points are without one. */
-void vtkReconstructPieces::WarnOfMissing()
+/** Tells what there is to tell, and why there is no triangle, or most points are without one. */
+void vtkReconstructPieces::WarnOfMissing(std::vector<elevation::Message>& warnings)
 {
   const elevation::TriangulateParts::Totals& all = this->Work->All();
-  std::vector<elevation::Message> warnings;
   if (all.Settled == 0)
   {
-    warnings = { elevation::MakeMessage<elevation::sentences::NoTriangle>(all.Points) };
+    warnings.push_back(elevation::MakeMessage<elevation::sentences::NoTriangle>(all.Points));
   }
   else if (all.Effect.AreMostMissing())
   {
-    warnings = { elevation::AdviceOnLimit(this->Delaunay->GetMaximumEdgeLength(), all.Effect) };
+    warnings.push_back(
+      elevation::AdviceOnLimit(this->Delaunay->GetMaximumEdgeLength(), all.Effect));
   }
   elevation::ReportMessages(this, {}, warnings, this->Messages);
 }
@@ -326,8 +349,8 @@ void vtkReconstructPieces::FillAll(int count, const elevation::Progress& progres
     return this->MakeTrimmed(piece, ofPiece);
   };
   this->Filled = std::make_unique<elevation::FilledPieces>(count, this->Folder,
-    this->Work->All().Points + this->GetNumberOfInsertedPoints(), make, options,
-    this->Fill->GetInterpolatePointData() != 0);
+    this->Work->All().Points + this->GetNumberOfAddedPoints() + this->GetNumberOfInsertedPoints(),
+    make, options, this->Fill->GetInterpolatePointData() != 0);
   const std::vector<elevation::Message> warnings = elevation::WarningsOf(this->Filled->Result());
   if (!warnings.empty())
   {
@@ -348,6 +371,8 @@ vtkSmartPointer<vtkPolyData> vtkReconstructPieces::MakePiece(
   elevation::PassPart(
     part, elevation::ResolveNumberOfThreads(this->Delaunay->GetNumberOfThreads()), made);
   elevation::ConstrainedTriangulation counts;
+  counts.Added.resize(static_cast<std::size_t>(part.AddedPoints));
+  counts.NumberOfCrossings = this->Work->All().Crossings;
   counts.Result = std::move(part.Result);
   elevation::AddReport(counts, progress, made->GetFieldData());
   return made;
@@ -458,6 +483,8 @@ void vtkReconstructPieces::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfTriangles: " << this->GetNumberOfTriangles() << "\n";
   os << indent << "NumberOfDuplicatePoints: " << this->GetNumberOfDuplicatePoints() << "\n";
   os << indent << "NumberOfNonFinitePoints: " << this->GetNumberOfNonFinitePoints() << "\n";
+  os << indent << "NumberOfConstraintCrossings: " << this->GetNumberOfConstraintCrossings() << "\n";
+  os << indent << "NumberOfAddedPoints: " << this->GetNumberOfAddedPoints() << "\n";
   os << indent << "LatticeFound: " << this->GetLatticeFound() << "\n";
   os << indent << "NumberOfTrimmedTriangles: " << this->GetNumberOfTrimmedTriangles() << "\n";
   os << indent << "NumberOfOutwardTriangles: " << this->GetNumberOfOutwardTriangles() << "\n";

@@ -19,12 +19,13 @@
  * piece.
  *
  * @par Properties:
- * All properties of the triangulation are those of GetDelaunay(), except MaximumElevationError,
- * Lattice and constraints, which are for points in memory, and are errors. Where
- * GetTrim() has a boundary, all pieces are trimmed along it, as that filter would trim the whole
- * surface; points that it inserts get ids after the largest. OutwardTest InwardNormal is an error.
- * Beside points that are inserted, diagonals may differ from those of that filter, as they do with
- * that filter for triangles in another order.
+ * All properties of the triangulation are those of GetDelaunay(), and so are constraints. As those of
+ * the other filters, they are brought up to date. MaximumElevationError and DrapeConstraints are for
+ * points in memory, and are errors. Where GetTrim() has a boundary, all pieces are trimmed along it, as
+ * that filter would trim the whole surface. Points that constraints add get ids after the largest, and
+ * points that trimming inserts after those. OutwardTest InwardNormal is an error. Beside points that
+ * trimming inserts, diagonals may differ from those of that filter, as they do with that filter for
+ * triangles in another order.
  *
  * With FillHoles on, holes are filled as GetFill() would fill them in the whole surface: their
  * patches are the same to the last bit, and go to the piece with the first point of the rim.
@@ -41,7 +42,8 @@
  * which is linear in the points. Memory is what a piece takes, some 250 bytes a point of it; the
  * seams of pieces, which it holds too, have some multiple of the square root of so many points. To
  * fill the holes of a piece takes the surface around them, mostly up to 1.5 times the size of a
- * hole away from it, and all outlines of the surface, some 400 bytes an edge.
+ * hole away from it, and all outlines of the surface, some 400 bytes an edge. Constraints take their
+ * lines, the points near them and the triangles that they cross.
  *
  * Points are float where all that are added are. While it works, the progress text names the step:
  * triangulating, trimming or filling holes.
@@ -64,10 +66,12 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace elevation
 {
 class FilledPieces;
+class Message;
 class Ranks;
 class TriangulateParts;
 class TrimParts;
@@ -141,6 +145,8 @@ public:
   vtkIdType GetNumberOfTriangles();
   vtkIdType GetNumberOfDuplicatePoints();
   vtkIdType GetNumberOfNonFinitePoints();
+  vtkIdType GetNumberOfConstraintCrossings();
+  vtkIdType GetNumberOfAddedPoints(); ///< by constraints
   bool GetLatticeFound();
   ///@}
 
@@ -183,7 +189,7 @@ private:
   void CheckProperties();
   vtkMTimeType TimeOfProperties();
   void WorkOnAll(int count, const elevation::Progress& progress);
-  void WarnOfMissing();
+  void WarnOfMissing(std::vector<elevation::Message>& warnings);
   void TrimAll(const elevation::Progress& progress);
   void FillAll(int count, const elevation::Progress& progress);
   vtkSmartPointer<vtkPolyData> MakePiece(int piece, const elevation::Progress& progress);

@@ -340,7 +340,7 @@ def notes_on(cloud, lines):
     """
     notes = [antimeridian_note(cloud.points)]
     if "faults" in lines:
-        notes.append(faults_note(cloud.points, lines["faults"]))
+        notes.append(faults_note(heights_of(cloud.points), lines["faults"]))
     return [note for note in notes if note]
 
 
@@ -351,16 +351,19 @@ def check_system(*pair):
     return check(*pair)
 
 
-def faults_note(points, faults):
-    """A line for the user when z of faults is far from z of the points, else None."""
-    ranges = []
-    for data in (points, faults):
-        z = vtk_to_numpy(data.GetPoints().GetData())[:, 2].astype("f8")
-        z = z[numpy.isfinite(z)]
-        if not len(z):
-            return None
-        ranges.append((float(z.min()), float(z.max())))
-    (low, high), (first, last) = ranges
+def heights_of(data):
+    """(lowest, highest) finite z, or None."""
+    z = vtk_to_numpy(data.GetPoints().GetData())[:, 2].astype("f8")
+    z = z[numpy.isfinite(z)]
+    return (float(z.min()), float(z.max())) if len(z) else None
+
+
+def faults_note(heights, faults):
+    """A line for the user when z of faults is far from that of the points, see heights_of(); else None."""
+    of_faults = heights_of(faults)
+    if not heights or not of_faults:
+        return None
+    (low, high), (first, last) = heights, of_faults
     allowed = 0.0 if first == last == 0.0 else high - low  # lines without z have 0
     if max(low - last, first - high) <= allowed:
         return None

@@ -128,13 +128,18 @@ class Run:
         if options.boundary:
             lines["boundary"] = reading.read_boundary(options.boundary)
         if options.faults:
-            lines["faults"] = reading.read_faults(options.faults, options.depth)
-            if options.depth and not bare_lines(lines["faults"]).all():
-                cloud.notes.append("z of the faults is turned over too, as --depth says")
+            lines["faults"] = self.read_faults(cloud)
         names = {"points": options.files[0], "boundary": options.boundary, "faults": options.faults}
         lines, notes = fitted(cloud, lines, names, options.given, options.strict)
         cloud.notes += notes + notes_on(cloud, lines)
         return cloud, lines.get("boundary"), lines.get("faults")
+
+    def read_faults(self, cloud):
+        options = self.options
+        faults = reading.read_faults(options.faults, options.depth)
+        if options.depth and not bare_lines(faults).all():
+            cloud.notes.append("z of the faults is turned over too, as --depth says")
+        return faults
 
     def set_crs(self, cloud):
         """What --crs says counts, and is told where the file says something else."""

@@ -8,7 +8,7 @@ Each gets a vertex where it crosses an edge of that surface, as the surface bend
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import bare_lines, make_lines, mark_bare, parts_of_lines
+from .clouds import bare_lines, heights_of, make_lines, mark_bare, parts_of_lines
 from .messages import ElevationSurfaceError, Messages, counted
 from .names import option
 from .outline import between, places_of
@@ -25,22 +25,10 @@ def draped(cloud, faults, name, given, strict=False):
     given   properties, see checked(): faults_z and duplicates count
     strict  True: faults without z are an error
     """
-    wanted = FAULTS_Z[given.get("faults_z", 0)]
-    names, parts = parts_of_lines(faults)
-    bare = bare_lines(faults)
-    words = f"{name}: {numpy.count_nonzero(bare):,} of {counted(len(parts), 'line')} without z"
-    if wanted == "drape":
-        bare[:] = True
-        words = f"{name}: z of its lines is left aside, as {option('faults_z')} says"
-    elif wanted == "automatic" and not bare.all() and is_zero_beside(parts, bare, cloud.points):
-        bare[:] = True
-        words = (
-            f"{name}: z of its lines is 0 everywhere and that of the points never, so that they "
-            f"count as lines without z; {option('faults_z')} given takes the 0"
-        )
-    if not bare.any():
+    names, parts, bare, words = without_z(faults, name, given, heights_of(cloud.points))
+    if not words:
         return faults, []
-    words += f" (first: {names[int(numpy.argmax(bare))]})"
+    wanted = FAULTS_Z[given.get("faults_z", 0)]
     if wanted == "given" or strict and wanted != "drape":
         advice = f"; {option('faults_z')} drape takes z of the surface of the points"
         raise ElevationSurfaceError(words + advice, "faults")
@@ -75,13 +63,44 @@ def draped(cloud, faults, name, given, strict=False):
     return lines, notes
 
 
-def is_zero_beside(parts, bare, points):
-    """Whether z of all lines that have one is 0, and z of the points never comes to 0."""
+def without_z(faults, name, given, heights):
+    """(names, parts, which have no z, words about these, or ""), as draped() counts lines.
+
+    heights  of the points, see heights_of()
+    """
+    wanted = FAULTS_Z[given.get("faults_z", 0)]
+    names, parts = parts_of_lines(faults)
+    bare = bare_lines(faults)
+    words = f"{name}: {numpy.count_nonzero(bare):,} of {counted(len(parts), 'line')} without z"
+    if wanted == "drape":
+        bare[:] = True
+        words = f"{name}: z of its lines is left aside, as {option('faults_z')} says"
+    elif wanted == "automatic" and not bare.all() and is_zero_beside(parts, bare, heights):
+        bare[:] = True
+        words = (
+            f"{name}: z of its lines is 0 everywhere and that of the points never, so that they "
+            f"count as lines without z; {option('faults_z')} given takes the 0"
+        )
+    if not bare.any():
+        return names, parts, bare, ""
+    return names, parts, bare, f"{words} (first: {names[int(numpy.argmax(bare))]})"
+
+
+def check_given_z(faults, name, given, heights):
+    """Raises ElevationSurfaceError for faults that would have to be draped on points that are not in
+    memory; see without_z()."""
+    *_, words = without_z(faults, name, given, heights)
+    if words:
+        raise ElevationSurfaceError(
+            f"{words}: to follow the surface of the points takes the whole surface in memory", "faults"
+        )
+
+
+def is_zero_beside(parts, bare, heights):
+    """Whether z of all lines that have one is 0, and that of the points never comes to 0."""
     if any(part[:, 2].any() for part, is_bare in zip(parts, bare) if not is_bare):
         return False
-    z = vtk_to_numpy(points.GetPoints().GetData())[:, 2]
-    z = z[numpy.isfinite(z)]
-    return len(z) > 0 and (z.min() > 0.0 or z.max() < 0.0)
+    return heights is not None and (heights[0] > 0.0 or heights[1] < 0.0)
 
 
 class Surface:

@@ -15,8 +15,9 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import reading
-from .clouds import Cloud, corner_flags, make_points, set_crs, slices
+from .clouds import Cloud, corner_flags, faults_note, heights_of, make_points, set_crs, slices
 from .description import DESCRIBED
+from .draping import check_given_z
 from .given_lines import in_system
 from .heights import HeightsOfPieces
 from .holes import report_of_holes
@@ -31,7 +32,7 @@ from .reconstruction import AS_GIVEN, check_spacing, least_reach
 from .report import MOST_LISTED, OUTSIDE, REASONS
 from .results import Failure, WrongOption, write_report
 from .spreading import IN_NO_TRIANGLE
-from .steps import STEPS, in_our_names
+from .steps import STEPS, in_our_names, is_of_constraints
 from .supervisor import note_partial_file
 from .vtkElevationSurface import vtkReconstructPieces
 from .writing.xml_writer import write_vtp
@@ -174,6 +175,7 @@ class Pieces:
         self.source = vtkReconstructPieces()
         self.unused = {number: numpy.empty(0, "i8") for number in (1, 2)}  # of REASONS
         self.low, self.high = numpy.full(3, numpy.inf), numpy.full(3, -numpy.inf)
+        self.range = None  # of z of the points
         self.lattice = self.told_of = self.holes = None
         self.heights, self.several = HeightsOfPieces(), None
 
@@ -213,6 +215,7 @@ class Pieces:
         problems = self.messages.errors or (self.messages.warnings if self.options.strict else [])
         if problems:
             file = self.options.boundary if problems[0].step == "trim" else self.options.file
+            file = self.options.faults if is_of_constraints(problems[0]) else file
             more = (in_our_names(one, one.step) for one in problems[1:])
             raise Failure(" ".join([f"{file}: {with_step(problems[0])}", *more]))
 
@@ -222,6 +225,9 @@ class Pieces:
         path = options.boundary
         if path:
             boundary, notes = mended(reading.read_boundary(path), path, options.strict)
+        if options.faults:
+            faults = self.run.read_faults(self.cloud)
+            self.check_faults(faults)
         wanted = self.run.read_options()
         for points in read_files(options.files, self.cloud, **wanted):
             for part in slices(len(points), AT_ONCE):
@@ -229,6 +235,7 @@ class Pieces:
                 reach = min(reach, least_reach(given))
                 self.source.AddPoints(given)
                 self.heights.see(points[part])
+                self.see_heights(given)
                 self.check()
         try:
             check_spacing(reach, options.given.get("spacing", 0.0))
@@ -241,6 +248,25 @@ class Pieces:
             )
             self.cloud.notes += notes + told
             self.source.GetTrim().SetBoundaryData(boundary)
+        if options.faults:
+            self.check_faults(faults)
+            faults, told = in_system(
+                faults, options.faults, self.cloud, options.files[0], options.strict
+            )
+            note = faults_note(self.range, faults)
+            self.cloud.notes += told + [note] * bool(note)
+            self.source.GetDelaunay().SetSourceData(faults)
+
+    def see_heights(self, points):
+        found = [pair for pair in (self.range, heights_of(points)) if pair]
+        self.range = (min(low for low, _ in found), max(high for _, high in found)) if found else None
+
+    def check_faults(self, faults):
+        """Refuses faults without z, also before points are read."""
+        try:
+            check_given_z(faults, self.options.faults, self.options.given, self.range)
+        except ElevationSurfaceError as error:
+            raise Failure(str(error)) from None
 
     def update(self, piece, count):
         """The output for a piece. The first one takes the time of the triangulation."""
@@ -362,6 +388,12 @@ class Pieces:
                 "boundary_rings": source.GetNumberOfBoundaryRings(),
             }
             report["triangles"]["trimmed"] = source.GetNumberOfTrimmedTriangles()
+        if options.faults:
+            report["faults"] = {
+                "file": options.faults,
+                "added_points": source.GetNumberOfAddedPoints(),
+                "crossings": source.GetNumberOfConstraintCrossings(),
+            }
         if self.several:
             report["several_heights"] = self.several
         if options.fill:

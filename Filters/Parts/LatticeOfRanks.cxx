@@ -178,34 +178,36 @@ bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
   return lattice.Set(steps, all, nodes, tolerance) && nodes.IsFilledEnough(all.Count);
 }
 
-bool TakeGivenLattice(const Ranks& ranks, const PointView& points, const Buffer<vtkIdType>& ids,
+bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
+  const std::function<void(const std::function<void(const PointRows&)>&)>& forEachRows,
   const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice)
 {
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
+  const int threads = ThreadsAtOnce(options.NumberOfThreads);
   Lattice steps;
-  Extent own;
-  std::vector<vtkIdType> beside; // the first of each rank
+  Box own;
+  std::vector<vtkIdType> beside; // the id of the first of each rank
+  Point2 place;                  // of that of this one
   ranks.Agree([&]() {
     steps = StepsOfGiven(options.GivenLattice);
-    own = FindExtent(points, ThreadsAtOnce(options.NumberOfThreads),
-      ranks.Watched(Part(progress, 0.0, 0.3)), [](Index, const Point2&) {});
-    const Index first = FirstOffLattice(
-      points, own.NotFinite, steps, tolerance, ranks.Watched(Part(progress, 0.3, 0.7)));
-    if (first != None)
-    {
-      beside = { ids[first], first };
-    }
+    const Progress looking = ranks.Watched(Part(progress, 0.0, 0.0));
+    forEachRows([&](const PointRows& rows) {
+      const PointView view = ViewOf(rows);
+      const Extent extent = FindExtent(view, threads, looking, [](Index, const Point2&) {});
+      own.Join(extent);
+      const Index first = FirstOffLattice(view, extent.NotFinite, steps, tolerance, looking);
+      if (first != None && (beside.empty() || rows.Ids[first] < beside[0]))
+      {
+        beside = { rows.Ids[first] };
+        place = view.At(first);
+      }
+    });
   });
   const std::vector<vtkIdType> all = ranks.Collect(beside);
   ranks.Agree([&]() {
-    for (std::size_t i = 0; i < all.size() && !beside.empty(); i += 2)
+    if (!beside.empty() && beside[0] == *std::min_element(all.begin(), all.end()))
     {
-      beside = all[i] < beside[0] ? std::vector<vtkIdType>() : beside;
-    }
-    if (!beside.empty())
-    {
-      const Point2 p = points.At(static_cast<Index>(beside[1]));
-      throw BesideGivenLattice(beside[0], p, steps, tolerance);
+      throw BesideGivenLattice(beside[0], place, steps, tolerance);
     }
   });
   const Box box = BoxOfAll(ranks, own);
@@ -213,7 +215,7 @@ bool TakeGivenLattice(const Ranks& ranks, const PointView& points, const Buffer<
   {
     return false;
   }
-  const NodeBox nodes = NodesOfAll(ranks, InOneSlice(points), box, steps, Part(progress, 0.7, 1.0));
+  const NodeBox nodes = NodesOfAll(ranks, points, box, steps, Part(progress, 0.7, 1.0));
   if (!lattice.Set(steps, box, nodes, tolerance))
   {
     throw GivenLatticeTooLarge();

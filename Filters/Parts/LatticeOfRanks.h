@@ -7,8 +7,9 @@
 #ifndef LatticeOfRanks_h
 #define LatticeOfRanks_h
 
-#include "Kernel/Lattice/Lattice.h"
 #include "Kernel/Cells/Cells.h"
+#include "Kernel/Lattice/Lattice.h"
+#include "PointRows.h"
 #include "Ranks.h"
 
 #include <functional>
@@ -45,12 +46,14 @@ bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
 
 /**
  * Takes the lattice that options give.
- * @param[in] points, ids  of this rank, and their global ids, increasing
+ * @param[in] points  of this rank
+ * @param[in] forEachRows  hands over the same points with their ids
  * @param[out] lattice  the same on all ranks
  * @return false if no rank has a finite point
  * @throws Error on all ranks, as on one; of several points that do not fit, that with the lowest id
  */
-bool TakeGivenLattice(const Ranks& ranks, const PointView& points, const Buffer<vtkIdType>& ids,
+bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
+  const std::function<void(const std::function<void(const PointRows&)>&)>& forEachRows,
   const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice);
 
 /** The lattice with the lowest node that a point of any rank is on as its origin. */

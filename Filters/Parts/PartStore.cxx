@@ -13,7 +13,7 @@ namespace elevation
 const std::vector<std::string>& NamesOfBoxes()
 {
   static const std::vector<std::string> names = { "points", "triangles", "seam-points", "seams",
-    "corners", "", "" };
+    "corners", "changed", "", "", "" };
   return names;
 }
 
@@ -37,6 +37,16 @@ void PartStore::Number(std::vector<vtkIdType>&& counts, const Progress& progress
   this->Crew.All().Sum(counts);
   this->Part.Bases.assign(1, 0);
   std::partial_sum(counts.begin(), counts.end(), std::back_inserter(this->Part.Bases));
+}
+
+void PartStore::AddOwn(int part, Bytes&& rows)
+{
+  if (this->Crew.IsInFiles())
+  {
+    this->Crew.At(part, OwnPoints).Append(std::move(rows));
+    return;
+  }
+  this->Part.Own.Unpack(&rows, 1);
 }
 
 void PartStore::CheckCounts() const
@@ -95,9 +105,22 @@ void PartStore::KeepSettled(int part, const SurfacePart& own, SettledCell& settl
   box.Append(result.Triangles.data(), result.Triangles.size() * sizeof(Index));
   // A corner of another part's triangle is on the seam of its own (Pieces.h).
   std::vector<vtkIdType> places(settled.Seam.Ids.begin(), settled.Seam.Ids.end());
-  std::sort(places.begin(), places.end());
   const GlobalId first = this->FirstOf(part);
   std::for_each(places.begin(), places.end(), [first](vtkIdType& number) { number -= first; });
+  this->Crew.At(part, OnSeam).Clear();
+  this->KeepForOthers(part, own, std::move(places));
+}
+
+void PartStore::KeepForOthers(int part, const SurfacePart& own, std::vector<vtkIdType>&& places)
+{
+  if (!this->Crew.IsInFiles())
+  {
+    return;
+  }
+  const std::vector<vtkIdType> before = this->ReadForOthers(part).Places;
+  places.insert(places.end(), before.begin(), before.end());
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
   Inbox& onSeam = this->Crew.At(part, OnSeam);
   onSeam.Clear();
   Bytes list;
@@ -106,11 +129,11 @@ void PartStore::KeepSettled(int part, const SurfacePart& own, SettledCell& settl
   onSeam.Append(own.Own.Pack(places));
 }
 
-// The box has two stretches, as written above.
+// The box has two stretches, as written above, or none.
 PartStore::RowsForOthers PartStore::ReadForOthers(int part) const
 {
   RowsForOthers read;
-  if (this->Crew.IsInFiles())
+  if (this->Crew.IsInFiles() && !this->Crew.At(part, OnSeam).IsEmpty())
   {
     const std::vector<Bytes> stretches = this->Crew.At(part, OnSeam).Copy();
     const char* from = stretches.at(0).data();
@@ -153,33 +176,91 @@ SurfacePart PartStore::ReadWhole(int part, const Progress& progress) const
     TakeList(from, result.UnusedPoints);
     TakeList(from, result.UnusedReasons);
   });
-  const auto fromSeams = ValuesIn<GlobalTriangle>(this->Crew.At(part, FromSeams));
-  const GlobalId first = read.Bases[part];
-  read.OtherNumbers = ListOthers(fromSeams, first, read.Bases[part + 1]);
-  read.Others.Unpack(this->Crew.At(part, Corners).Copy());
-  this->CheckCount(read.Own.Count() + read.Others.Count());
-  AppendTriangles(fromSeams, first, elevation::Part(progress, 0.6, 1.0), read);
+  this->PutTogether(part, elevation::Part(progress, 0.6, 1.0), read);
   return read;
+}
+
+std::vector<GlobalId> PartStore::ListOthersOf(int part) const
+{
+  auto triangles = ValuesIn<GlobalTriangle>(this->Crew.At(part, FromSeams));
+  for (const ChangedTriangle& changed : ValuesIn<ChangedTriangle>(this->Crew.At(part, Changed)))
+  {
+    triangles.push_back(changed.Corners);
+  }
+  return ListOthers(triangles, this->FirstOf(part), this->EndOf(part));
+}
+
+void PartStore::ForgetOthers(int part)
+{
+  this->Crew.At(part, Requests).Clear();
+  this->Crew.At(part, Corners).Clear();
+  if (std::exchange(this->IsWhole, false))
+  {
+    this->Part.Result.Triangles.Resize(this->CornersOfCell);
+  }
+}
+
+/** Adds to own points and the triangles of the cell what a whole part has besides. */
+void PartStore::PutTogether(int part, const Progress& progress, SurfacePart& whole) const
+{
+  const GlobalId first = this->FirstOf(part);
+  whole.OtherNumbers = this->ListOthersOf(part);
+  whole.Others = PointRows(whole.Kinds);
+  whole.Others.Unpack(this->Crew.At(part, Corners).Copy());
+  this->CheckCount(whole.Own.Count() + whole.Others.Count());
+  AppendTriangles(ValuesIn<GlobalTriangle>(this->Crew.At(part, FromSeams)), first, progress, whole);
+  for (const ChangedTriangle& changed : ValuesIn<ChangedTriangle>(this->Crew.At(part, Changed)))
+  {
+    std::transform(changed.Corners.begin(), changed.Corners.end(),
+      whole.Result.Triangles.data() + 3 * changed.Place,
+      [&](GlobalId number) { return static_cast<Index>(whole.PlaceOf(number, first)); });
+  }
+}
+
+/** In memory, once. */
+void PartStore::MakeWhole(int part, const Progress& progress)
+{
+  if (!std::exchange(this->IsWhole, true))
+  {
+    this->CornersOfCell = this->Part.Result.Triangles.size();
+    this->PutTogether(part, progress, this->Part);
+  }
+}
+
+SurfacePart PartStore::TakeWhole(int part, const Progress& progress)
+{
+  if (!this->Crew.IsInFiles())
+  {
+    this->MakeWhole(part, progress);
+  }
+  SurfacePart taken =
+    this->Crew.IsInFiles() ? this->ReadWhole(part, progress) : std::move(this->Part);
+  taken.AddedPoints = static_cast<Index>(std::count_if(taken.Own.Ids.begin(), taken.Own.Ids.end(),
+    [this](vtkIdType id) { return id >= this->FirstIdOfLines; }));
+  return taken;
+}
+
+void PartStore::ForEachRows(const std::function<void(const PointRows&)>& visit) const
+{
+  for (int part = this->Crew.FirstOwn(); part < this->Crew.EndOwn(); ++part)
+  {
+    if (!this->Crew.IsInFiles())
+    {
+      visit(this->Part.Own);
+      continue;
+    }
+    this->Crew.At(part, OwnPoints).ForEach([&](const Bytes& bytes) {
+      PointRows rows(this->Part.Kinds);
+      rows.Unpack(&bytes, 1);
+      visit(rows);
+    });
+  }
 }
 
 PointSlices PartStore::Slices() const
 {
-  const int first = this->Crew.FirstOwn(), end = this->Crew.EndOwn();
-  const double count = static_cast<double>(this->CountOfOwn());
-  return { count, [this, first, end](const auto& visit) {
-            for (int part = first; part < end; ++part)
-            {
-              if (!this->Crew.IsInFiles())
-              {
-                visit(ViewOf(this->Part.Own));
-                continue;
-              }
-              this->Crew.At(part, OwnPoints).ForEach([&](const Bytes& bytes) {
-                PointRows rows(this->Part.Kinds);
-                rows.Unpack(&bytes, 1);
-                visit(ViewOf(rows));
-              });
-            }
+  return { static_cast<double>(this->CountOfOwn()), [this](const auto& visit) {
+            this->ForEachRows([&visit](const PointRows& rows) { visit(ViewOf(rows)); });
           } };
 }
 

@@ -13,15 +13,19 @@
  * whenever it is asked for. The boxes:
  *
  *   box        what is in it                          written by           read by
- *   OwnPoints  rows of points                         pass 1               2, 6, for output
+ *   OwnPoints  rows of points                         pass 1, lines        2, 6, for output
  *   Settled    unused points; then corners, as        pass 2, in files     6, for output
  *              places among the own points
- *   OnSeam     places of the seam's points, and       pass 2, in files     5
- *              their rows: others may ask for these
+ *   OnSeam     places of the seam's points, and       pass 2, lines, in    5
+ *              their rows: others may ask for these   files
  *   FromSeams  in pass 3, the seam of the other half  the other half       3
  *              of a cell; then triangles, by numbers  pass 4               5, 6, for output
  *   Requests   the part that asks, and places         pass 5               5, 6
  *   Corners    rows of points of other parts          pass 5               6, for output
+ *   Meeting    of the first part: triangles that      lines                lines
+ *              meet lines
+ *   Changed    what has become of triangles that      lines                5, 6, for output
+ *              meet lines
  *   Covered    places with a triangle elsewhere       pass 6               6
  *
  * Cost: reading is linear; a part that is read takes twice the memory of its rows for a while.
@@ -34,6 +38,8 @@
 #include "SurfacePart.h"
 
 #include <cstddef>
+#include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -48,8 +54,17 @@ enum BoxOfPart
   OnSeam,
   FromSeams,
   Corners,
+  Changed,
   Requests,
+  Meeting,
   Covered
+};
+
+/** What has become of a triangle of a part. */
+struct ChangedTriangle
+{
+  std::size_t Place; ///< among those of the cell, followed by those from seams
+  GlobalTriangle Corners;
 };
 
 /** Names of their files; those without one are small. */
@@ -64,7 +79,10 @@ public:
   }
 
   Engine& Crew;
-  /** In memory, that of this rank, maybe without points; in files, what all parts have in common. */
+  /**
+   * In memory, that of this rank, maybe without points; in files, what all parts have in common.
+   * The triangles in memory are those of the cell, or all of them after WithWhole().
+   */
   SurfacePart Part;
 
   /**
@@ -73,6 +91,10 @@ public:
    * @param[in] counts  of the points that this rank has sent to each part
    */
   void Number(std::vector<vtkIdType>&& counts, const Progress& progress);
+
+  /** Adds packed points of lines, with ids from FirstIdOfLines on; Part.Bases has to count them. */
+  void AddOwn(int part, Bytes&& rows);
+  vtkIdType FirstIdOfLines = std::numeric_limits<vtkIdType>::max(); ///< above all others
 
   GlobalId FirstOf(int part) const { return this->Part.Bases[part]; }
   GlobalId EndOf(int part) const { return this->Part.Bases[part + 1]; }
@@ -102,6 +124,9 @@ public:
   /** Keeps what the cell of a part settles, and the own points on its seam. */
   void KeepSettled(int part, const SurfacePart& own, SettledCell& settled);
 
+  /** Keeps further own points for which other parts may ask. */
+  void KeepForOthers(int part, const SurfacePart& own, std::vector<vtkIdType>&& places);
+
   /** What other parts may ask for; in memory, nothing is read. */
   struct RowsForOthers
   {
@@ -112,17 +137,42 @@ public:
   /** Packs own points that another part asks for: in files, points on the seam. */
   Bytes PackForOthers(const RowsForOthers& rows, std::vector<vtkIdType>&& places) const;
 
-  /**
-   * A whole part, from files: own points, triangles of its cell and of seams, and the corners that
-   * these have in other parts; without a limit of edges.
-   */
-  SurfacePart ReadWhole(int part, const Progress& progress) const;
+  /** The numbers of other parts' points that are corners of triangles from seams, or changed. */
+  std::vector<GlobalId> ListOthersOf(int part) const;
+  /** Before they are asked for anew: a part is whole again when they are there. */
+  void ForgetOthers(int part);
 
-  /** The points of this rank, part after part, without holding more than a stretch from files. */
+  /**
+   * Does a step with a whole part: own points, triangles of its cell and of seams as lines have changed
+   * them, and the corners that these have in other parts; without a limit of edges.
+   */
+  template <typename Step>
+  void WithWhole(int part, const Progress& progress, const Step& step)
+  {
+    if (!this->Crew.IsInFiles())
+    {
+      this->MakeWhole(part, progress);
+      step(static_cast<const SurfacePart&>(this->Part));
+      return;
+    }
+    const SurfacePart read = this->ReadWhole(part, progress);
+    step(read);
+  }
+  /** The same part; from memory it can be taken once. */
+  SurfacePart TakeWhole(int part, const Progress& progress);
+
+  /** Visits the points of this rank, part after part; from files, stretch after stretch. */
+  void ForEachRows(const std::function<void(const PointRows&)>& visit) const;
   PointSlices Slices() const;
 
 private:
   SurfacePart ReadOwn(int part, const Progress& progress) const;
+  SurfacePart ReadWhole(int part, const Progress& progress) const;
+  void MakeWhole(int part, const Progress& progress);
+  void PutTogether(int part, const Progress& progress, SurfacePart& whole) const;
+
+  std::size_t CornersOfCell = 0; // in memory, while IsWhole
+  bool IsWhole = false;
 };
 
 } // namespace elevation

@@ -156,12 +156,14 @@ SettledParts Settling::SettleAll()
   return std::move(this->Found);
 }
 
-/** The same on the lattice that is given, for parts in memory. */
+/** The same on the lattice that is given. */
 void Settling::SettleOnGiven(const Progress& progress)
 {
   SharedLattice lattice;
-  const bool hasPoints = TakeGivenLattice(this->All, ViewOf(this->Store.Part.Own),
-    this->Store.Part.Own.Ids, this->Options, progress, lattice);
+  const PointSlices points = this->Store.Slices();
+  const bool hasPoints = TakeGivenLattice(
+    this->All, points, [this](const auto& visit) { this->Store.ForEachRows(visit); }, this->Options,
+    progress, lattice);
   if (!this->SettleOn(hasPoints ? &lattice : nullptr))
   {
     throw GivenLatticeUnfit();
@@ -169,7 +171,7 @@ void Settling::SettleOnGiven(const Progress& progress)
   if (hasPoints)
   {
     this->Found.LatticeFound = true;
-    this->Found.Steps = FromLowestNode(this->All, this->Store.Slices(), lattice);
+    this->Found.Steps = FromLowestNode(this->All, points, lattice);
   }
 }
 

@@ -43,7 +43,6 @@ struct SettledParts
 
 /**
  * All ranks call it.
- * @param[in] options  a lattice that is given is for parts in memory
  * @throws Error, Aborted on all ranks when any of them fails; std::bad_alloc on one rank alone
  */
 SettledParts SettleParts(PartStore& store, const Cuts& plane, const DelaunayOptions& options);

@@ -27,6 +27,7 @@ int OwnerOf(GlobalId number, const std::vector<vtkIdType>& bases);
 struct SurfacePart
 {
   PointRows Own;                 ///< points that this part owns, in the order of their ids
+  Index AddedPoints = 0;         ///< by lines: the last ones of Own
   PointRows Others;              ///< of other parts, corners of its triangles
   std::vector<ArrayKind> Kinds;  ///< of the arrays of both
   std::string NameOfIds;         ///< of the array of global ids
@@ -46,6 +47,12 @@ struct SurfacePart
   int OwnerOf(GlobalId number) const { return elevation::OwnerOf(number, this->Bases); }
   /** The place of a corner among Own, whose numbers begin with @a first, followed by Others. */
   std::size_t PlaceOf(GlobalId number, GlobalId first) const;
+  /** The reverse. */
+  GlobalId NumberAt(Index place, GlobalId first) const
+  {
+    const Index ownCount = static_cast<Index>(this->Own.Count());
+    return place < ownCount ? first + place : this->OtherNumbers[place - ownCount];
+  }
   Point2 PointAt(std::size_t place) const;
 };
 

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /*
  * The passes in their order; 2 and 3 are those of SettleParts.h. What they leave for each other lies in
- * the boxes of parts (PartStore.h). A part in memory is not packed in between: its triangles from seams
- * are listed once, and its corners are placed as soon as all points are there, so that lines can be
- * recovered and long edges measured without reading anything.
+ * the boxes of parts (PartStore.h), whether these are files or in memory.
  */
 #include "TriangulateParts.h"
 
-#include "ConstraintsOfRanks.h"
+#include "ConstrainParts.h"
 #include "SettleParts.h"
 
 #include <algorithm>
@@ -67,46 +65,38 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
     *this->Crew, OwnPoints, this->Fraction(0.0, 0.1), this->Store->Part, counts));
   this->Store->Number(std::move(counts), this->Fraction(0.1, 0.15));
   this->Store->CheckCounts();
-  // Lines add points, which belong to the parts of their cells, and keep to no lattice.
-  LinesOfRanks lines;
+  this->Total.Points = this->Store->Part.Bases.back();
+  // Lines keep to no lattice.
+  LinesOfParts lines;
   if (constraints)
   {
-    lines = AddLines(*this->Crew, constraints, *this->Plane, this->Options,
-      this->Fraction(0.14, 0.15), this->Store->Part, warnings);
+    lines = AddLines(
+      *this->Store, constraints, *this->Plane, this->Options, this->Fraction(0.14, 0.15), warnings);
     this->Options.UseLattice = LatticeMode::Off;
     this->Total.Crossings = lines.NumberOfCrossings;
-    this->Work.AddedPoints = lines.NumberOfOwnPoints;
+    this->Total.AddedPoints = this->Store->Part.Bases.back() - this->Total.Points;
     this->Store->CheckCounts();
   }
   // Passes 2 to 5
   this->SendTriangles(this->Settle());
   this->FetchOthers();
   // Pass 6
-  if (constraints)
+  if (constraints && this->Total.Settled > 0 &&
+    RecoverLines(*this->Store, lines, this->Fraction(0.9, 0.95)))
   {
-    this->Recover(lines);
-  }
-  if (!this->Crew->IsInFiles())
-  {
-    this->PlaceCorners();
+    this->FetchOthers();
   }
   if (this->Options.MaximumEdgeLength > 0.0)
   {
     this->LimitEdges(this->Fraction(0.95, 1.0));
   }
-  this->Everybody.Agree([&]() {
-    KeepCorners(this->Store->Part);
-    Report(this->Everybody.Watched(this->Options.Monitor), 1.0);
-  });
+  this->Everybody.Agree([&]() { Report(this->Everybody.Watched(this->Options.Monitor), 1.0); });
 }
 
 /** Passes 2 and 3. @return the triangles that this rank has settled for several parts */
 std::vector<GlobalTriangle> TriangulateParts::Settle()
 {
   SettledParts settled = SettleParts(*this->Store, *this->Plane, this->Options);
-  std::vector<vtkIdType> added = { this->Work.AddedPoints };
-  this->Everybody.Sum(added);
-  this->Total.Points = this->Store->Part.Bases.back() - added[0];
   this->Total.Duplicates = settled.Duplicates;
   this->Total.NotFinite = settled.NotFinite;
   this->Total.Settled = this->Total.Triangles = settled.Triangles;
@@ -130,15 +120,6 @@ void TriangulateParts::SendTriangles(std::vector<GlobalTriangle>&& ofSeams)
     SendTo(*this->Crew, FromSeams, triangles);
   });
   this->Crew->Deliver();
-  if (!this->Crew->IsInFiles())
-  {
-    this->Crew->ForEach(Progress(), [this](int part, const Progress&) {
-      this->Triangles = ValuesIn<GlobalTriangle>(this->Crew->At(part, FromSeams));
-      this->Crew->At(part, FromSeams).Clear();
-      this->Store->Part.OtherNumbers =
-        ListOthers(this->Triangles, this->Store->FirstOf(part), this->Store->EndOf(part));
-    });
-  }
 }
 
 /**
@@ -149,13 +130,9 @@ void TriangulateParts::FetchOthers()
 {
   // Each part asks.
   this->Crew->ForEach(Progress(), [this](int part, const Progress&) {
-    this->Crew->At(part, Requests).Clear();
-    const std::vector<GlobalId> numbers = !this->Crew->IsInFiles()
-      ? this->Store->Part.OtherNumbers
-      : ListOthers(ValuesIn<GlobalTriangle>(this->Crew->At(part, FromSeams)),
-          this->Store->FirstOf(part), this->Store->EndOf(part));
+    this->Store->ForgetOthers(part);
     ValuesForParts<vtkIdType> places;
-    for (const GlobalId number : numbers)
+    for (const GlobalId number : this->Store->ListOthersOf(part))
     {
       const int owner = this->Store->Part.OwnerOf(number);
       std::vector<vtkIdType>& ofOwner = places[owner];
@@ -188,79 +165,6 @@ void TriangulateParts::FetchOthers()
     });
   });
   this->Crew->Deliver();
-  if (!this->Crew->IsInFiles())
-  {
-    this->Crew->ForEach(Progress(), [this](int part, const Progress&) {
-      this->Store->Part.Others.Unpack(this->Crew->At(part, Corners).Take());
-      this->Store->CheckCount(this->Store->Part.Own.Count() + this->Store->Part.Others.Count());
-    });
-  }
-}
-
-/** The numbers of the corners of a triangle of the part in memory: those of its cell come first. */
-GlobalTriangle TriangulateParts::CornersOf(std::size_t triangle) const
-{
-  const std::size_t ofCell = this->Store->Part.Result.Triangles.size() / 3;
-  if (triangle >= ofCell)
-  {
-    return this->Triangles[triangle - ofCell];
-  }
-  const GlobalId first = this->Store->FirstOf(this->Crew->FirstOwn());
-  const Index* const c = this->Store->Part.Result.Triangles.data() + 3 * triangle;
-  return { first + c[0], first + c[1], first + c[2] };
-}
-
-/**
- * Makes the pieces of lines edges, in memory. The triangles that change may get corners that this part
- * has not had, so all others are fetched again.
- */
-void TriangulateParts::Recover(const LinesOfRanks& lines)
-{
-  const int first = this->Crew->FirstOwn(), end = this->Crew->EndOwn();
-  const std::vector<vtkIdType>& bases = this->Store->Part.Bases;
-  const std::size_t ofCell = this->Store->Part.Result.Triangles.size() / 3;
-  const TrianglesOfRank own = { ofCell + this->Triangles.size(),
-    [this](std::size_t triangle) { return this->CornersOf(triangle); },
-    [&](GlobalId number) {
-      return this->Store->Part.PointAt(this->Store->Part.PlaceOf(number, bases[first]));
-    } };
-  const std::vector<ChangedTriangle> changed =
-    RecoverLines(this->Everybody, lines, this->Crew->RankOf(0), own, this->Fraction(0.9, 0.92));
-  this->Everybody.Agree([&]() {
-    std::vector<GlobalTriangle> mayHaveOthers;
-    for (const ChangedTriangle& triangle : changed)
-    {
-      if (triangle.Place < ofCell)
-      {
-        this->Changed.push_back(triangle);
-        mayHaveOthers.push_back(triangle.Corners);
-        continue;
-      }
-      this->Triangles[triangle.Place - ofCell] = triangle.Corners;
-    }
-    mayHaveOthers.insert(mayHaveOthers.end(), this->Triangles.begin(), this->Triangles.end());
-    this->Store->Part.OtherNumbers = ListOthers(mayHaveOthers, bases[first], bases[end]);
-    this->Store->Part.Others = PointRows(this->Store->Part.Kinds);
-  });
-  this->FetchOthers();
-}
-
-/** The corners of all triangles of the part in memory as places of its points, own ones first. */
-void TriangulateParts::PlaceCorners()
-{
-  this->Everybody.Agree([&]() {
-    const GlobalId first = this->Store->FirstOf(this->Crew->FirstOwn());
-    for (const ChangedTriangle& changed : this->Changed)
-    {
-      std::transform(changed.Corners.begin(), changed.Corners.end(),
-        this->Store->Part.Result.Triangles.data() + 3 * changed.Place, [&](GlobalId number) {
-          return static_cast<Index>(this->Store->Part.PlaceOf(number, first));
-        });
-    }
-    AppendTriangles(this->Triangles, first, this->Everybody.Watched(this->Fraction(0.92, 0.95)),
-      this->Store->Part);
-    this->Triangles = std::vector<GlobalTriangle>();
-  });
 }
 
 /**
@@ -270,12 +174,13 @@ void TriangulateParts::PlaceCorners()
  */
 void TriangulateParts::LimitEdges(const Progress& progress)
 {
-  Buffer<Index> kept;                         // of the part in memory
   std::map<int, std::vector<vtkIdType>> open; // places without a triangle yet, of each part
   std::vector<vtkIdType> sums(2, 0);          // triangles, and vertices without one
   this->Crew->ForEach(progress, [&](int part, const Progress& ofPart) {
-    const auto measure = [&](const SurfacePart& whole) {
-      kept = WithinLimit(this->Options.MaximumEdgeLength, whole, elevation::Part(ofPart, 0.5, 1.0));
+    const Progress reading = elevation::Part(ofPart, 0.0, 0.5);
+    this->Store->WithWhole(part, reading, [&](const SurfacePart& whole) {
+      const Buffer<Index> kept =
+        WithinLimit(this->Options.MaximumEdgeLength, whole, elevation::Part(ofPart, 0.5, 1.0));
       const std::size_t ownCount = whole.Own.Count();
       std::vector<char> areMissing(ownCount + whole.Others.Count(), 1);
       for (const Index corner : kept)
@@ -312,10 +217,7 @@ void TriangulateParts::LimitEdges(const Progress& progress)
       });
       sums[0] += static_cast<vtkIdType>(kept.size() / 3);
       sums[1] += std::count(areMissing.begin(), areMissing.begin() + ownCount, char(1));
-    };
-    this->Crew->IsInFiles()
-      ? measure(this->Store->ReadWhole(part, elevation::Part(ofPart, 0.0, 0.5)))
-      : measure(this->Store->Part);
+    });
   });
   this->Crew->Deliver();
   this->Crew->ForEach(Progress(), [&](int part, const Progress&) {
@@ -330,34 +232,22 @@ void TriangulateParts::LimitEdges(const Progress& progress)
   this->Total.Triangles = sums[0];
   effect.Vertices = this->Store->Part.Bases.back() - this->Total.Duplicates - this->Total.NotFinite;
   effect.Missing = sums[1];
-  if (!this->Crew->IsInFiles())
+  if (!this->Crew->IsInFiles() && effect.AreMostMissing())
   {
-    if (effect.AreMostMissing())
-    {
-      MeasureAll(*this->Crew, Covered, progress, this->Store->Part, effect);
-    }
-    this->Store->Part.Result.Triangles = std::move(kept);
+    MeasureAll(*this->Crew, Covered, progress, this->Store->Part, effect);
   }
 }
 
-// In files the limit of edges is applied again, which is faster than writing what it leaves.
+// The limit of edges is applied again, which is faster than writing what it leaves.
 SurfacePart TriangulateParts::Take(int part, const Progress& progress)
 {
-  SurfacePart taken;
-  if (!this->Crew->IsInFiles())
+  SurfacePart taken = this->Store->TakeWhole(part, elevation::Part(progress, 0.0, 0.7));
+  if (this->Options.MaximumEdgeLength > 0.0)
   {
-    taken = std::move(this->Store->Part);
+    taken.Result.Triangles =
+      WithinLimit(this->Options.MaximumEdgeLength, taken, elevation::Part(progress, 0.7, 1.0));
   }
-  else
-  {
-    taken = this->Store->ReadWhole(part, elevation::Part(progress, 0.0, 0.7));
-    if (this->Options.MaximumEdgeLength > 0.0)
-    {
-      taken.Result.Triangles =
-        WithinLimit(this->Options.MaximumEdgeLength, taken, elevation::Part(progress, 0.7, 1.0));
-    }
-    KeepCorners(taken);
-  }
+  KeepCorners(taken);
   taken.Result.LatticeFound = this->Total.LatticeFound;
   taken.Result.Steps = this->Total.Steps;
   return taken;

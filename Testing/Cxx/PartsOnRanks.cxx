@@ -6,7 +6,8 @@
  */
 #include "Check.h"
 
-#include "Kernel/Triangulate/Triangulate.h"
+#include "Adapt/Adapt.h"
+#include "Kernel/Constrain/Constrain.h"
 #include "Parts/Parts.h"
 
 #include "vtkCellArray.h"
@@ -80,13 +81,49 @@ std::vector<Corners> ByPlaces(const Buffer<Index>& triangles, const PlaceOf& pla
   return found;
 }
 
-std::vector<Corners> AllAtOnce(const std::vector<Place>& cloud, const DelaunayOptions& options)
+/** Long lines across the cloud, most of which no edge follows, and a ring; of none, nullptr. */
+vtkSmartPointer<vtkPolyData> Lines(const std::vector<Place>& cloud, int count)
+{
+  if (count == 0)
+  {
+    return nullptr;
+  }
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> place(-3.0, 103.0);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> lines, rings;
+  for (int line = 0; line < count; ++line)
+  {
+    (line == 0 ? rings : lines)->InsertNextCell(line == 0 ? 6 : 2);
+    for (int i = 0; i < (line == 0 ? 6 : 2); ++i)
+    {
+      const double z = place(random);
+      const vtkIdType last = line % 3 == 2
+        ? points->InsertNextPoint(cloud[100 * static_cast<std::size_t>(line + i)].data())
+        : points->InsertNextPoint(place(random), place(random), z);
+      (line == 0 ? rings : lines)->InsertCellPoint(last);
+    }
+  }
+  auto made = vtkSmartPointer<vtkPolyData>::New();
+  made->SetPoints(points);
+  made->SetLines(lines);
+  made->SetPolys(rings);
+  return made;
+}
+
+std::vector<Corners> AllAtOnce(
+  const std::vector<Place>& cloud, vtkPolyData* source, const DelaunayOptions& options)
 {
   PointView points;
   points.Double = cloud.front().data();
   points.Count = static_cast<Index>(cloud.size());
-  const Triangulation all = Triangulate(points, options);
-  return ByPlaces(all.Triangles, [&](Index i) { return points.At(i); });
+  const PointsOfDataSet own = source ? ViewPoints(source) : PointsOfDataSet();
+  const ConstrainedTriangulation all = TriangulateConstrained(
+    points, source ? ToLines(source, own, Progress()) : ConstraintLines(), options);
+  return ByPlaces(all.Result.Triangles, [&](Index i) {
+    return i < points.Count ? points.At(i) : all.Added[i - points.Count].Position;
+  });
 }
 
 /** An empty folder of this rank, or no name, for parts in memory. */
@@ -137,14 +174,15 @@ std::vector<Corners> AllSorted(const Ranks& ranks, const std::vector<double>& ow
 
 /** The triangles of all ranks, on each; 0 parts of a rank: one, in memory. */
 std::vector<Corners> InParts(const Ranks& ranks, int partsOfRank, const std::vector<Place>& cloud,
-  const DelaunayOptions& options)
+  vtkPolyData* lines, const DelaunayOptions& options)
 {
   std::vector<vtkSmartPointer<vtkPolyData>> kept;
   TriangulateParts parts(ranks, FolderOf(ranks, partsOfRank));
   AddShare(parts, ranks, cloud, partsOfRank > 0, kept);
   std::vector<Message> warnings;
-  parts.Triangulate(std::max(1, partsOfRank), nullptr, options, warnings);
+  parts.Triangulate(std::max(1, partsOfRank), lines, options, warnings);
   std::vector<double> own;
+  std::vector<vtkIdType> added = { 0 };
   for (int i = 0; i < std::max(1, partsOfRank); ++i)
   {
     const SurfacePart part = parts.Take(parts.FirstOwn() + i, Progress());
@@ -153,7 +191,11 @@ std::vector<Corners> InParts(const Ranks& ranks, int partsOfRank, const std::vec
     {
       own.insert(own.end(), corners.begin(), corners.end());
     }
+    added[0] += part.AddedPoints;
   }
+  ranks.Sum(added);
+  Check(parts.All().AddedPoints == added[0], "points that lines add are counted");
+  Check((added[0] > 0) == (lines != nullptr), "lines add points");
   std::vector<Corners> triangles = AllSorted(ranks, own);
   Check(parts.All().Triangles == static_cast<vtkIdType>(triangles.size()), "triangles are counted");
   Check(parts.All().NotFinite == 1 && parts.All().Duplicates > 0, "unused points are counted");
@@ -165,18 +207,59 @@ void CheckTriangles(const Ranks& ranks)
   for (const bool isLattice : { false, true })
   {
     const std::vector<Place> cloud = Cloud(isLattice);
-    for (const double limit : { 0.0, isLattice ? 2.5 : 2.0 })
+    for (const int count : { 0, 12 })
     {
-      DelaunayOptions options;
-      options.MaximumEdgeLength = limit;
-      const std::vector<Corners> expected = AllAtOnce(cloud, options);
-      for (const int partsOfRank : { 0, 1, 3 })
+      const vtkSmartPointer<vtkPolyData> lines = Lines(cloud, count);
+      for (const double limit : { 0.0, isLattice ? 2.5 : 2.0 })
       {
-        Check(InParts(ranks, partsOfRank, cloud, options) == expected,
-          std::string(isLattice ? "lattice, " : "random, ") + std::to_string(partsOfRank) +
-            " parts of a rank, limit " + std::to_string(limit) + ": the triangles of all at once");
+        DelaunayOptions options;
+        options.UseLattice = LatticeMode::Automatic;
+        options.MaximumEdgeLength = limit;
+        const std::vector<Corners> expected = AllAtOnce(cloud, lines, options);
+        for (const int partsOfRank : { 0, 1, 3 })
+        {
+          Check(InParts(ranks, partsOfRank, cloud, lines, options) == expected,
+            std::string(isLattice ? "lattice, " : "random, ") + std::to_string(partsOfRank) +
+              " parts of a rank, " + std::to_string(count) + " lines, limit " +
+              std::to_string(limit) + ": the triangles of all at once");
+        }
       }
     }
+  }
+}
+
+/** A lattice that is given is that of all parts; one that does not fit names the first point. */
+void CheckGivenLattice(const Ranks& ranks)
+{
+  std::vector<Place> cloud = Cloud(true);
+  DelaunayOptions options;
+  options.UseLattice = LatticeMode::Automatic;
+  options.GivenLattice = { { 0.0, 0.0 }, { 3.0, -0.25 }, { 0.5, 2.0 } };
+  const std::vector<Corners> expected = AllAtOnce(cloud, nullptr, options);
+  for (const int partsOfRank : { 0, 1, 3 })
+  {
+    Check(InParts(ranks, partsOfRank, cloud, nullptr, options) == expected,
+      std::to_string(partsOfRank) + " parts of a rank on a lattice: the triangles of all at once");
+  }
+  for (const std::size_t i : { 3000, 1234, 2000 })
+  {
+    cloud[i][1] += 0.5;
+  }
+  for (const int partsOfRank : { 0, 1, 3 })
+  {
+    std::string thrown = "nothing";
+    try
+    {
+      InParts(ranks, partsOfRank, cloud, nullptr, options);
+    }
+    catch (const Error& error)
+    {
+      thrown = error.what();
+    }
+    // In slices, points of a rank have numbers one after another.
+    const bool isInOrder = partsOfRank == 0 || ranks.Count() == 1;
+    Check(thrown.rfind(isInOrder ? "Point 1234 at" : "Point ", 0) == 0, "it is " + thrown);
+    Check(thrown.find("away from the nearest node") != std::string::npos, "it is " + thrown);
   }
 }
 
@@ -200,9 +283,10 @@ std::string FailureAt(const Ranks& ranks, int partsOfRank, int report, bool isAb
       return isAbort ? false : throw Error("a fault");
     };
     std::vector<Message> warnings;
+    const vtkSmartPointer<vtkPolyData> lines = Lines(cloud, isAbort ? 0 : 12);
     try
     {
-      parts.Triangulate(std::max(1, partsOfRank), nullptr, options, warnings);
+      parts.Triangulate(std::max(1, partsOfRank), lines, options, warnings);
     }
     catch (const Aborted&)
     {
@@ -471,6 +555,7 @@ int main(int argc, char** argv)
     const Ranks ranks(vtkMultiProcessController::GetGlobalController(), nullptr, outputs);
     CheckOrder(ranks);
     CheckTriangles(ranks);
+    CheckGivenLattice(ranks);
     CheckFailures(ranks);
     CheckTrimming(ranks);
     CheckFailuresOfTrimming(ranks);

@@ -299,14 +299,30 @@ class InPieces(WithFilter):
         self.assertIn("Reset()", self.errors_of(source, lambda: source.UpdatePiece(0, 2, 0))[0])
         for name, value, words in (
             ("MaximumEdgeLength", numpy.nan, "MaximumEdgeLength is nan"),
-            ("Lattice", (0, 0, 1, 0, 0, 1), "in memory, not for pieces"),
             ("MaximumElevationError", 1.0, "in memory, not for pieces"),
-            ("SourceData", make_points(points), "Constraints are for points in memory"),
+            ("DrapeConstraints", True, "Constraints with DrapeConstraints are for points in memory"),
         ):
-            source = self.source(points, **{name: value})
+            source = self.source(points, SourceData=make_lines([star((4e5, 4e5), 9.0)]), **{name: value})
             errors = self.errors_of(source, lambda: source.UpdatePiece(0, 2, 0))
             self.assertIn(words, errors[0])
             self.assertEqual(source.GetOutput().GetNumberOfPoints(), 0)
+
+    def test_a_lattice_that_is_given_is_that_of_all_points(self):
+        points = clouds()["lattice"][::40]  # too few to find it
+        given = (4e5, 5e6, 3.0, 0.5, -0.25, 2.0)
+        for count in (1, 3, 6):
+            one, parts = self.assert_as_one(points, count, Lattice=given)
+            for part in parts:
+                lattices = [data.GetFieldData().GetArray("Lattice") for data in (one, part)]
+                self.assertEqual(*(lattice.GetTuple(0) for lattice in lattices))
+        points[[55, 33, 44], 1] += 0.7
+        whole = vtkGridDelaunay2D()
+        whole.SetInputData(make_points(points))
+        whole.SetLattice(given)
+        source = self.source(points, at_once=20, Lattice=given)
+        errors = self.errors_of(source, lambda: source.UpdatePiece(0, 3, 0))
+        self.assertEqual(errors, self.errors_of(whole, whole.Update))
+        self.assertRegex(errors[0], "^Point 33 at .*away from the nearest node")
 
     def test_what_can_be_put_right_loses_no_points(self):
         source = self.source(clouds()["random"])
@@ -318,6 +334,10 @@ class InPieces(WithFilter):
         source.GetDelaunay().SetMaximumEdgeLength(-1.0)
         self.assertEqual(len(self.errors_of(source, lambda: source.UpdatePiece(0, 2, 0))), 1)
         source.GetDelaunay().SetMaximumEdgeLength(0.0)
+        source.GetDelaunay().SetLattice(0.0, 0.0, 1.0, 1.0, 2.0, 2.0)
+        errors = self.errors_of(source, lambda: source.UpdatePiece(0, 2, 0))
+        self.assertIn("The given lattice has no nodes", errors[0])
+        source.GetDelaunay().SetLattice([0.0] * 6)
         self.assertEqual(sum(part.GetNumberOfPolys() for part in self.parts(source, 2)),
                          whole.GetNumberOfTriangles())
         for piece in (2, -1):
@@ -347,6 +367,114 @@ def star(centre, radius, points=240):
     ring = numpy.column_stack((reach * numpy.cos(turn), reach * numpy.sin(turn), 0 * turn))
     ring[-1] = ring[0]
     return ring + (*centre, 0.0)
+
+
+class Constrained(WithFilter):
+    """Pieces with lines that become edges."""
+
+    def lines(self, points, count=9):
+        """Long lines in all directions, which few edges follow, a ring, and a line through points."""
+        points = points[numpy.isfinite(points).all(axis=1)]
+        rng, low = numpy.random.default_rng(4), points.min(axis=0)
+        places = low + (points.max(axis=0) - low) * (1.2 * rng.random((2 * count, 3)) - 0.1)
+        middle = points.mean(axis=0)
+        return make_lines([*places.reshape(count, 2, 3), star(middle[:2], 0.2 * numpy.ptp(points[:, 0]), 30),
+                           points[100:103]])
+
+    def both(self, points, lines, count, **properties):
+        """(one run in memory, a source of pieces, the pieces)"""
+        one = vtkGridDelaunay2D()
+        for name, value in properties.items():
+            getattr(one, "Set" + name)(value)
+        one.SetInputData(make_points(points))
+        one.SetSourceData(lines)
+        one.Update()
+        source = self.source(points, SourceData=lines, **properties)
+        return one, source, self.parts(source, count)
+
+    def test_the_triangles_are_those_of_all_points_at_once(self):
+        for name in ("random", "lattice", "clustered", "tracks", "few"):
+            points = clouds()[name]
+            lines = self.lines(points) if name != "few" else make_lines([points[:2], points[:3] + 0.1])
+            for limit in (0.0, 0.1 * numpy.ptp(points[:, 0][numpy.isfinite(points[:, 0])])):
+                for count in (1, 2, 7, 16):
+                    with self.subTest(cloud=name, pieces=count, limit=limit):
+                        one, source, parts = self.both(points, lines, count, MaximumEdgeLength=limit)
+                        found = sorted_rows(numpy.concatenate([by_places(part) for part in parts]))
+                        numpy.testing.assert_array_equal(found, by_places(one.GetOutput()))
+                        for counted in ("AddedPoints", "ConstraintCrossings", "DuplicatePoints"):
+                            self.assertEqual(
+                                *(getattr(f, "GetNumberOf" + counted)() for f in (source, one)))
+                        fields = [part.GetFieldData().GetArray("NumberOfAddedPoints") for part in parts]
+                        self.assertEqual(
+                            sum(int(field.GetValue(0)) for field in fields), one.GetNumberOfAddedPoints())
+                        self.assert_one_owner(parts, len(points), one.GetNumberOfAddedPoints())
+
+    def test_a_surface_with_lines_is_trimmed_and_filled_as_in_memory(self):
+        points = clouds()["random"]
+        lines, rings = self.lines(points, 5), make_lines(Filled.rings(None, points))
+        whole, trim, fill = vtkGridDelaunay2D(), vtkTrimOutwardTriangles(), vtkFillElevationHoles()
+        whole.SetInputData(make_points(points))
+        whole.SetSourceData(lines)
+        trim.SetInputConnection(whole.GetOutputPort())
+        trim.SetBoundaryData(rings)
+        fill.SetInputConnection(trim.GetOutputPort())
+        fill.FillCutOutsOn()
+        fill.Update()
+        for count in (1, 5):
+            source = self.source(points, SourceData=lines)
+            source.SetFillHoles(True)
+            source.GetTrim().SetBoundaryData(rings)
+            source.GetFill().FillCutOutsOn()
+            parts = self.parts(source, count)
+            found = sorted_rows(numpy.concatenate([by_places(part) for part in parts]))
+            numpy.testing.assert_array_equal(found, by_places(fill.GetOutput()))
+            self.assertGreaterEqual(source.GetNumberOfFilledHoles(), 3)
+            new = sum(
+                int(vtk_to_numpy(part.GetPointData().GetArray("FilledPoint")).sum()) for part in parts)
+            added = source.GetNumberOfAddedPoints()
+            self.assertGreater(min(new, added, source.GetNumberOfInsertedPoints()), 20)
+            self.assert_one_owner(parts, len(points), added + source.GetNumberOfInsertedPoints() + new)
+
+    def test_warnings_and_errors_on_lines_are_those_of_one_run(self):
+        points = clouds()["random"]
+        far = make_lines([numpy.array([(4e5, 4e5, 1.0), (400500.0, 400500.0, 2.0), *((4e5 - 9e3 * i, 4e5, 0) for i in range(1, 9))])])
+        for lines, words in (
+            (far, "lie far outside the points"),
+            (make_lines([numpy.zeros((2, 3))]), "do not overlap the points"),
+            (make_points(points), "have no line and no polygon"),
+        ):
+            whole = vtkGridDelaunay2D()
+            whole.SetInputData(make_points(points))
+            whole.SetSourceData(lines)
+            source = self.source(points, SourceData=lines)
+            told = []
+            for filter_, update in ((source, lambda: source.UpdatePiece(0, 4, 0)), (whole, whole.Update)):
+                with Messages(filter_, filter_.GetExecutive()) as messages:
+                    update()
+                told.append((messages.errors, messages.warnings))
+            self.assertEqual(*told)
+            self.assertIn(words, sum(told[0], [])[0])
+
+    def test_progress_rises_and_a_stop_leaves_empty_output(self):
+        points = clouds()["random"]
+        lines = self.lines(points)
+        source, told = self.source(points, SourceData=lines), []
+        source.AddObserver("ProgressEvent", lambda *_: told.append(source.GetProgress()))
+        source.UpdatePiece(0, 4, 0)
+        self.assertEqual(told, sorted(told))
+        for when in numpy.linspace(0.1, 0.89, 12):
+            source = self.source(points, SourceData=lines)
+            source.AddObserver(
+                "ProgressEvent",
+                lambda caller, _, when=when: caller.SetAbortExecute(bool(caller.GetProgress() >= when)),
+            )
+            with Messages(source, source.GetExecutive()) as messages:
+                source.UpdatePiece(0, 4, 0)
+            self.assertEqual((messages.errors, len(messages.warnings)), ([], 1))
+            self.assertEqual(source.GetOutput().GetNumberOfPoints(), 0)
+            source.Reset()
+            self.assertEqual(os.listdir(source.GetFolder()), [])
 
 
 class Trimmed(WithFilter):
@@ -860,6 +988,43 @@ class Command(Program):
         done = self.call(name, "--pieces", "4", "--boundary", "far.txt", "--no-fill")
         self.assertIn("far.txt: trimming: The boundary", done.stderr)
 
+    def test_faults_are_edges_and_told_as_by_one_run(self):
+        points = clouds()["random"]
+        points[:, 2] += 100.0
+        name = self.npy("a.npy", points)
+        lines = [points[[5, 900]] + (3.0, 0.0, 1.0), points[[7, 60]] + (0.0, 4.0, 2.0)]
+        rows = ["".join("%r %r %r\n" % tuple(place) for place in line.tolist()) for line in lines]
+        self.file("f.txt", "\n".join(rows))
+        self.file("bare.txt", "\n".join(re.sub(" [^ ]*\n", "\n", text) for text in rows))
+        self.file("zero.txt", "\n".join(re.sub(" [^ ]*\n", " 0\n", text) for text in rows))
+        self.file("high.txt", "\n".join(re.sub(" [^ ]*\n", " 9000\n", text) for text in rows))
+        for faults in ("f.txt", "high.txt"):
+            options = ("--faults", faults, *TRIANGULATION_ONLY, "--report")
+            self.assertEqual(self.call(name, *options, "--no-picture").returncode, 0)
+            whole = self.json("a_surface.json")
+            done = self.call(name, "--pieces", "4", *options)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            report = self.json("a_surface.json")
+            for key in ("points", "unused", "triangles", "bounds", "faults"):
+                self.assertEqual(report[key], whole[key], key)
+            self.assertEqual([note for note in report["notes"] if "faults" in note],
+                             [note for note in whole["notes"] if "faults" in note])
+            self.assertGreater(report["faults"]["added_points"], 0)
+        for options, words in (
+            (("--faults", "bare.txt"), "bare.txt: 2 of 2 lines without z (first: "),
+            (("--faults", "zero.txt"), "zero.txt: z of its lines is 0 everywhere"),
+            (("--faults", "f.txt", "--faults-z", "drape"), "f.txt: z of its lines is left aside"),
+        ):
+            done = self.call(name, "--pieces", "4", *TRIANGULATION_ONLY, *options)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done.stderr)
+            self.assertIn(words, done.stderr)
+            self.assertIn("takes the whole surface in memory", done.stderr)
+        done = self.call(name, "--pieces", "4", *TRIANGULATION_ONLY, "--faults", "zero.txt", "--faults-z", "given")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.file("far.txt", "1 1 1\n2 2 2\n")
+        done = self.call(name, "--memory", "2G", *TRIANGULATION_ONLY, "--faults", "far.txt")
+        self.assertIn("far.txt: triangulating: The constraints", done.stderr)
+
     def cloud_with_lakes(self, count):
         """The name of a file of points; a coast and so many lakes are in lakes.txt."""
         points = clouds()["random"]
@@ -999,7 +1164,6 @@ class Command(Program):
             (("--pieces", "2", "--grid", "5", *TRIANGULATION_ONLY), "--grid needs the whole"),
             (("--pieces", "2", "--boundary", "a.npy", "--outward-test", "inward-normal"), "--outward-test needs"),
             (("--pieces", "2", "--view", "top", *TRIANGULATION_ONLY), "--view needs the whole"),
-            (("--memory", "2G", "--faults", "f", *TRIANGULATION_ONLY), "--faults needs the whole"),
             (("--pieces", "2", "-o", "a.vtp", *TRIANGULATION_ONLY), ".vtp cannot be written in"),
             (("b.stl", "--pieces", "2", *TRIANGULATION_ONLY), "an STL file cannot be read in pieces"),
             (("--pieces", "2", "-o", "taken.vtpd", *TRIANGULATION_ONLY), "has this name"),

@@ -12,7 +12,7 @@ from in_folder import InFolder, Program, coordinates
 from osgeo import gdal, ogr, osr
 from vtkelevationsurface import reading
 from vtkelevationsurface.clouds import (
-    Cloud, bare_lines, crs_of, faults_note, make_points, merged, parts_of_lines,
+    Cloud, bare_lines, crs_of, faults_note, heights_of, make_points, merged, parts_of_lines,
 )
 from vtkelevationsurface.gdal_common import check_system, reference_of, same_system
 from vtkelevationsurface.messages import FileError
@@ -426,7 +426,7 @@ class Systems(Vectors, Program):
             ((0, 1), False), ((50, 60), False), ((500, 600), False), ((-900, 900), False),
         ):
             with self.subTest(z=z):
-                note = faults_note(points, make_points([(0.0, i, z[i]) for i in range(2)]))
+                note = faults_note(heights_of(points), make_points([(0.0, i, z[i]) for i in range(2)]))
                 self.assertEqual(note is not None, told)
         self.make("p.gpkg", "GPKG", wkt_of([(x, y, 100 + x) for x in range(9) for y in range(9)]))
         self.make("f.gpkg", "GPKG", ["LINESTRING Z (1.5 1 0, 5.5 5 0)"])

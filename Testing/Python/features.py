@@ -29,7 +29,7 @@ points of floats                  |                            | points + float 
 search by voxel traversal         | SearchStrategy=0           | points                       | s  s  s  s  s  s  a
 search for compactness            | SearchStrategy=1           | points                       | s  s  s  s  s  s  a
 lattice found                     | LatticeMode=0              | lattice                      | s  s  s  s  s  s  a
-lattice given                     | Lattice=(600000.0, 6000000.0, 2.0, 1.5, -0.9, 1.2) | sparse lattice               | s  s  s  s  r  r  r
+lattice given                     | Lattice=(600000.0, 6000000.0, 2.0, 1.5, -0.9, 1.2) | sparse lattice               | s  s  s  s  s  s  a
 lattice off                       | LatticeMode=1              | lattice                      | s  s  s  s  s  s  a
 lattice within a tolerance        | LatticeTolerance=0.1       | loose lattice                | s  s  s  s  s  s  a
 edge limit                        | MaximumEdgeLength=2.0      | points                       | s  s  s  s  s  s  a
@@ -38,9 +38,9 @@ elevation error                   | MaximumElevationError=0.03  | points        
 the same, edges by their data     | MaximumElevationError=0.03, DataDependentEdges=True | points                       | s  s  G  G  r  r  r
 the same, with constraints        | MaximumElevationError=0.03  | straight line                | s  s  G  G  r  r  r
 the same, constraints simplified  | MaximumElevationError=0.03, SimplifyConstraints=True | straight line                | s  s  G  G  r  r  r
-constraints                       |                            | breaklines                   | s  s  s  s  r  r  r
-constraints that one rank has     |                            | breaklines + on one          | s  s  s  s  r  r  r
-constraints, values of points     |                            | breaklines + strings + integers | s  s  s  s  r  r  r
+constraints                       |                            | breaklines                   | s  s  s  s  s  s  a
+constraints that one rank has     |                            | breaklines + on one          | s  s  s  s  s  s  a
+constraints, values of points     |                            | breaklines + strings + integers | s  s  s  s  s  s  a
 constraints draped                | DrapeConstraints=True      | breaklines                   | s  s  G  G  r  r  r
 duplicates, keep the first        | DuplicatePolicy=0          | duplicates                   | s  s  s  s  s  s  a
 duplicates, keep the last         | DuplicatePolicy=1          | duplicates                   | s  s  s  s  s  s  a

@@ -161,10 +161,10 @@ ELEVATION_SENTENCE(
 ELEVATION_SENTENCE(TooFewPiecesToFill,
   "There is not enough memory for this input. More pieces take less, and so does a "
   "{property:MaximumHoleSize}.");
-ELEVATION_SENTENCE(ErrorNotInPieces,
-  "{property:MaximumElevationError} and a given {property:Lattice} are for points in memory, not "
-  "for pieces.");
-ELEVATION_SENTENCE(ConstraintsNotInPieces, "Constraints are for points in memory, not for pieces.");
+ELEVATION_SENTENCE(
+  ErrorNotInPieces, "{property:MaximumElevationError} is for points in memory, not for pieces.");
+ELEVATION_SENTENCE(ConstraintsNotInPieces,
+  "Constraints with {property:DrapeConstraints} are for points in memory, not for pieces.");
 ELEVATION_SENTENCE(InwardNormalNotInPieces,
   "{property:OutwardTest} InwardNormal is for a surface in memory, not for pieces.");
 ELEVATION_SENTENCE(BoundaryNotInPieces,

@@ -1,0 +1,462 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ConstrainParts.h"
+
+#include "Adapt/Adapt.h"
+
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+/** A point of some part. */
+struct PlaceInPart
+{
+  int Part;
+  vtkIdType Place; // in Own
+};
+
+/** Step 1; the functions are what it does, in their order. */
+class AddedLines
+{
+public:
+  AddedLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
+    const DelaunayOptions& options, const Progress& progress)
+    : Store(store)
+    , All(store.Crew.All())
+    , Source(source)
+    , Plane(plane)
+    , Options(options)
+    , Monitor(progress)
+    , Near(store.Part.Kinds)
+  {
+  }
+
+  void Read();
+  void ListNear(std::vector<Message>& warnings);
+  void ShareNear();
+  void Cut();
+  void AddPoints();
+  LinesOfParts Result() const;
+
+private:
+  Progress Fraction(double begin, double end) const
+  {
+    return elevation::Part(this->Monitor, begin, end);
+  }
+  void PassNear(vtkPolyData* points) const;
+
+  PartStore& Store;
+  const Ranks& All;
+  vtkPolyData* const Source;
+  const Cuts& Plane;
+  const DelaunayOptions& Options;
+  const Progress& Monitor;
+  PointsOfDataSet SourcePoints;
+  ConstraintLines Given;
+  PointRows Near; // those of this rank; then of all ranks, by their ids
+  std::vector<PlaceInPart> PlacesOfNear, PlacesOfAdded;
+  vtkIdType LargestId = -1;
+  LinePieces Pieces;
+};
+
+void AddedLines::Read()
+{
+  this->All.Agree([&]() {
+    CheckPointArrays(this->Source, "The constraints'");
+    this->SourcePoints = ViewPoints(this->Source);
+    this->Given = ToLines(this->Source, this->SourcePoints, Progress());
+  });
+}
+
+/** What one look at each part tells: where points are, and which are near lines. */
+void AddedLines::ListNear(std::vector<Message>& warnings)
+{
+  Box box;
+  this->Store.Crew.ForEach(this->Fraction(0.0, 0.5), [&](int part, const Progress& ofPart) {
+    const Progress reading = elevation::Part(ofPart, 0.0, 0.5);
+    this->Store.WithOwn(part, reading, [&](const SurfacePart& own) {
+      const PointRows& rows = own.Own;
+      for (std::size_t i = 0; i < rows.Count(); ++i)
+      {
+        if (rows.IsFinite(i))
+        {
+          box.Add({ rows.At(i)[0], rows.At(i)[1] });
+        }
+        this->LargestId = std::max(this->LargestId, rows.Ids[i]);
+      }
+      const std::vector<Index> near =
+        ListNearLines(ViewOf(rows), this->Given, elevation::Part(ofPart, 0.5, 1.0));
+      const Bytes packed = rows.Pack(std::vector<vtkIdType>(near.begin(), near.end()));
+      this->Near.Unpack(&packed, 1);
+      std::transform(
+        near.begin(), near.end(), std::back_inserter(this->PlacesOfNear), [part](Index place) {
+          return PlaceInPart{ part, place };
+        });
+    });
+  });
+  box = BoxOfAll(this->All, box);
+  this->All.Agree([&]() { CheckLines(this->Given, box, warnings); });
+}
+
+/** All ranks get the points near lines, and the largest id of all points. */
+void AddedLines::ShareNear()
+{
+  std::vector<Bytes> packed(this->All.Count());
+  std::vector<vtkIdType> places; // part and place of each
+  this->All.Agree([&]() {
+    std::vector<vtkIdType> all(this->Near.Count());
+    std::iota(all.begin(), all.end(), vtkIdType(0));
+    std::generate(packed.begin(), packed.end(), [&]() { return this->Near.Pack(all); });
+    for (const PlaceInPart& at : this->PlacesOfNear)
+    {
+      places.insert(places.end(), { at.Part, at.Place });
+    }
+  });
+  packed = this->All.Exchange(std::move(packed));
+  places = this->All.Collect(places);
+  const std::vector<vtkIdType> largest =
+    this->All.Collect(std::vector<vtkIdType>{ this->LargestId });
+  this->LargestId = *std::max_element(largest.begin(), largest.end());
+  this->All.Agree([&]() {
+    this->Near = PointRows(this->Store.Part.Kinds);
+    this->Near.Unpack(packed); // rank by rank, as the places
+    std::vector<vtkIdType> order(this->Near.Count());
+    std::iota(order.begin(), order.end(), vtkIdType(0));
+    std::sort(order.begin(), order.end(),
+      [this](vtkIdType a, vtkIdType b) { return this->Near.Ids[a] < this->Near.Ids[b]; });
+    this->Near.Choose(order);
+    this->PlacesOfNear.clear();
+    for (const vtkIdType i : order)
+    {
+      this->PlacesOfNear.push_back({ static_cast<int>(places[2 * i]), places[2 * i + 1] });
+    }
+  });
+}
+
+void AddedLines::Cut()
+{
+  this->All.Agree([&]() {
+    this->Pieces = CutLines(ViewOf(this->Near), this->Given, this->Options.Duplicates,
+      this->All.Watched(this->Fraction(0.5, 0.9)));
+  });
+}
+
+/** The points near lines, with their arrays. */
+void AddedLines::PassNear(vtkPolyData* output) const
+{
+  const SurfacePart& common = this->Store.Part;
+  vtkNew<vtkPoints> points;
+  points->SetDataType(common.TypeOfPoints);
+  points->SetNumberOfPoints(static_cast<vtkIdType>(this->Near.Count()));
+  for (std::size_t i = 0; i < this->Near.Count(); ++i)
+  {
+    points->SetPoint(static_cast<vtkIdType>(i), this->Near.At(i));
+  }
+  output->SetPoints(points);
+  for (std::size_t i = 0; i < common.Kinds.size(); ++i)
+  {
+    const int index = output->GetPointData()->AddArray(this->Near.Arrays[i]);
+    if (common.Kinds[i].Attribute >= 0)
+    {
+      output->GetPointData()->SetActiveAttribute(index, common.Kinds[i].Attribute);
+    }
+  }
+}
+
+/** Each point that is added follows those of its part, with an id after the largest. */
+void AddedLines::AddPoints()
+{
+  SurfacePart& common = this->Store.Part;
+  Engine& crew = this->Store.Crew;
+  this->All.Agree([&]() {
+    const Progress watched = this->All.Watched(this->Fraction(0.9, 1.0));
+    vtkNew<vtkPolyData> near, extended;
+    this->PassNear(near);
+    PassPoints(near, this->Source, this->Pieces.Added, watched, extended);
+    common.TypeOfPoints = extended->GetPoints()->GetDataType();
+    const vtkIdType ofNear = static_cast<vtkIdType>(this->Near.Count());
+    PointRows rows(common.Kinds);
+    rows.Read(extended, this->LargestId + 1 - ofNear, watched);
+    std::vector<vtkIdType> counts;
+    std::map<int, std::vector<vtkIdType>> added; // rows, for each part
+    for (int part = 0; part < crew.CountOfParts(); ++part)
+    {
+      counts.push_back(this->Store.EndOf(part) - this->Store.FirstOf(part));
+    }
+    for (const AddedPoint& point : this->Pieces.Added)
+    {
+      const int owner = this->Plane.OwnerOf(point.Position);
+      added[owner].push_back(ofNear + static_cast<vtkIdType>(this->PlacesOfAdded.size()));
+      this->PlacesOfAdded.push_back({ owner, counts[owner]++ });
+    }
+    for (const auto& ofPart : added)
+    {
+      if (crew.IsOwn(ofPart.first))
+      {
+        this->Store.AddOwn(ofPart.first, rows.Pack(ofPart.second));
+      }
+    }
+    std::partial_sum(counts.begin(), counts.end(), common.Bases.begin() + 1);
+    this->Store.FirstIdOfLines = this->LargestId + 1;
+  });
+}
+
+LinesOfParts AddedLines::Result() const
+{
+  LinesOfParts lines;
+  const Index near = static_cast<Index>(this->Near.Count());
+  const auto numberOf = [&](Index id) {
+    const PlaceInPart& at = id < near ? this->PlacesOfNear[id] : this->PlacesOfAdded[id - near];
+    return this->Store.FirstOf(at.Part) + at.Place;
+  };
+  const auto placeOf = [&](Index id) {
+    return id < near ? ViewOf(this->Near).At(id) : this->Pieces.Added[id - near].Position;
+  };
+  for (const Segment& piece : this->Pieces.Pieces)
+  {
+    GlobalId a = numberOf(piece.A), b = numberOf(piece.B);
+    lines.Pieces.push_back({ std::min(a, b), std::max(a, b) });
+    lines.Places.push_back(a < b ? Ends{ placeOf(piece.A), placeOf(piece.B) }
+                                 : Ends{ placeOf(piece.B), placeOf(piece.A) });
+  }
+  lines.NumberOfCrossings = this->Pieces.NumberOfCrossings;
+  return lines;
+}
+
+/** A triangle on its way to the first part. */
+struct SentTriangle
+{
+  int Part;          // that has it
+  std::size_t Place; // among its own
+  GlobalTriangle Corners;
+  std::array<Point2, 3> Places;
+};
+
+/** Visits the corners of all triangles of a part, by their numbers. */
+template <typename Visit>
+void ForEachTriangle(
+  const SurfacePart& whole, GlobalId first, const Progress& progress, const Visit& visit)
+{
+  const std::size_t count = whole.Result.Triangles.size() / 3;
+  for (std::size_t t = 0; t < count; ++t)
+  {
+    ReportStep(progress, t, count, 1 << 12);
+    const Index* const c = whole.Result.Triangles.data() + 3 * t;
+    visit(t, c,
+      GlobalTriangle{
+        whole.NumberAt(c[0], first), whole.NumberAt(c[1], first), whole.NumberAt(c[2], first) });
+  }
+}
+
+/**
+ * The pieces that are edges of no part's triangles; the same on all ranks.
+ * @param[out] extents  of the triangles of the parts of this rank
+ */
+std::vector<std::size_t> ListMissing(PartStore& store, const LinesOfParts& lines,
+  const Progress& progress, std::map<int, Box>& extents)
+{
+  std::vector<vtkIdType> isEdge(lines.Pieces.size(), 0);
+  std::map<std::array<GlobalId, 2>, std::size_t> pieces;
+  std::vector<GlobalId> ends;
+  store.Crew.All().Agree([&]() {
+    for (std::size_t i = 0; i < lines.Pieces.size(); ++i)
+    {
+      pieces[lines.Pieces[i]] = i;
+      ends.push_back(lines.Pieces[i][0]);
+    }
+    std::sort(ends.begin(), ends.end());
+  });
+  store.Crew.ForEach(progress, [&](int part, const Progress& ofPart) {
+    Box& extent = extents[part];
+    store.WithWhole(part, elevation::Part(ofPart, 0.0, 0.5), [&](const SurfacePart& whole) {
+      ForEachTriangle(whole, store.FirstOf(part), elevation::Part(ofPart, 0.5, 1.0),
+        [&](std::size_t, const Index* corners, const GlobalTriangle& triangle) {
+          for (int k = 0; k < 3; ++k)
+          {
+            extent.Add(whole.PointAt(corners[k]));
+            const GlobalId a = triangle[k], b = triangle[(k + 1) % 3];
+            const GlobalId low = std::min(a, b);
+            const auto found = std::binary_search(ends.begin(), ends.end(), low)
+              ? pieces.find({ low, std::max(a, b) })
+              : pieces.end();
+            if (found != pieces.end())
+            {
+              isEdge[found->second] = 1;
+            }
+          }
+        });
+    });
+  });
+  store.Crew.All().Sum(isEdge);
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < isEdge.size(); ++i)
+  {
+    if (isEdge[i] == 0)
+    {
+      missing.push_back(i);
+    }
+  }
+  return missing;
+}
+
+/** Sends the triangles of a part that meet one of the pieces to the first part. */
+void SendMeeting(
+  PartStore& store, int part, const std::vector<Ends>& pieces, const Progress& progress)
+{
+  const CellGrid grid = GridOf(pieces);
+  store.WithWhole(part, elevation::Part(progress, 0.0, 0.5), [&](const SurfacePart& whole) {
+    const Index ownCount = static_cast<Index>(whole.Own.Count());
+    Bytes bytes;
+    std::vector<vtkIdType> corners; // own ones
+    ForEachTriangle(whole, store.FirstOf(part), elevation::Part(progress, 0.5, 1.0),
+      [&](std::size_t t, const Index* c, const GlobalTriangle& triangle) {
+        const SentTriangle sent{ part, t, triangle,
+          { whole.PointAt(c[0]), whole.PointAt(c[1]), whole.PointAt(c[2]) } };
+        bool meets = false;
+        grid.Visit(sent.Places, [&](Index i) { meets = meets || Meet(sent.Places, pieces[i]); });
+        if (meets)
+        {
+          AppendTo(bytes, &sent, 1);
+          std::copy_if(c, c + 3, std::back_inserter(corners),
+            [ownCount](Index corner) { return corner < ownCount; });
+        }
+      });
+    if (!bytes.empty())
+    {
+      store.KeepForOthers(part, whole, std::move(corners));
+      store.Crew.Send(0, Meeting, std::move(bytes));
+    }
+  });
+}
+
+/** Recovers the pieces. @return what has become of the triangles of each part */
+ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
+  const LinesOfParts& lines, const std::vector<std::size_t>& missing, const Progress& progress)
+{
+  std::map<GlobalId, Point2> corners;
+  for (const SentTriangle& triangle : sent)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      corners[triangle.Corners[k]] = triangle.Places[k];
+    }
+  }
+  Mesh mesh;
+  std::vector<GlobalId> numbers;
+  for (const auto& corner : corners)
+  {
+    numbers.push_back(corner.first);
+    mesh.Points.push_back(corner.second);
+  }
+  const auto idOf = [&](GlobalId number) {
+    return static_cast<Index>(
+      std::lower_bound(numbers.begin(), numbers.end(), number) - numbers.begin());
+  };
+  for (const SentTriangle& triangle : sent)
+  {
+    std::transform(
+      triangle.Corners.begin(), triangle.Corners.end(), std::back_inserter(mesh.Triangles), idOf);
+  }
+  mesh.ConnectTwins();
+  std::vector<Segment> segments;
+  for (const std::size_t i : missing)
+  {
+    segments.push_back({ idOf(lines.Pieces[i][0]), idOf(lines.Pieces[i][1]) });
+  }
+  std::vector<char> flags;
+  RecoverSegments(mesh, segments, flags, progress);
+  ValuesForParts<ChangedTriangle> changed;
+  for (std::size_t t = 0; t < sent.size(); ++t)
+  {
+    const auto corners = mesh.Triangles.begin() + 3 * static_cast<std::ptrdiff_t>(t);
+    ChangedTriangle now{ sent[t].Place, {} };
+    const auto setCorners = [&]() {
+      std::transform(
+        corners, corners + 3, now.Corners.begin(), [&](Index corner) { return numbers[corner]; });
+    };
+    setCorners();
+    if (now.Corners != sent[t].Corners)
+    {
+      // The lowest comes first, as everywhere.
+      std::rotate(corners,
+        std::min_element(corners, corners + 3,
+          [&](Index a, Index b) { return IsLower(mesh.PointOf(a), mesh.PointOf(b)); }),
+        corners + 3);
+      setCorners();
+      changed[sent[t].Part].push_back(now);
+    }
+  }
+  return changed;
+}
+} // namespace
+
+LinesOfParts AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
+  const DelaunayOptions& options, const Progress& progress, std::vector<Message>& warnings)
+{
+  AddedLines lines(store, source, plane, options, progress);
+  lines.Read();
+  lines.ListNear(warnings);
+  lines.ShareNear();
+  lines.Cut();
+  lines.AddPoints();
+  LinesOfParts result;
+  store.Crew.All().Agree([&]() { result = lines.Result(); });
+  return result;
+}
+
+bool RecoverLines(PartStore& store, const LinesOfParts& lines, const Progress& progress)
+{
+  Engine& crew = store.Crew;
+  std::map<int, Box> extents;
+  const std::vector<std::size_t> missing =
+    ListMissing(store, lines, Part(progress, 0.0, 0.4), extents);
+  if (missing.empty())
+  {
+    return false;
+  }
+  std::vector<Ends> pieces;
+  crew.All().Agree([&]() {
+    for (const std::size_t i : missing)
+    {
+      pieces.push_back(lines.Places[i]);
+    }
+  });
+  crew.ForEach(Part(progress, 0.4, 0.6), [&](int part, const Progress& ofPart) {
+    const Box& extent = extents[part];
+    const auto isThere = [&extent](const Ends& piece) {
+      Box box;
+      box.Add(piece[0]);
+      box.Add(piece[1]);
+      return box.Intersects(extent);
+    };
+    if (std::any_of(pieces.begin(), pieces.end(), isThere))
+    {
+      SendMeeting(store, part, pieces, ofPart);
+    }
+  });
+  crew.Deliver();
+  crew.ForEach(Part(progress, 0.6, 1.0), [&](int part, const Progress& ofPart) {
+    if (part == 0)
+    {
+      const auto sent = ValuesIn<SentTriangle>(crew.At(part, Meeting));
+      crew.At(part, Meeting).Clear();
+      SendTo(crew, Changed, Recover(sent, lines, missing, ofPart));
+    }
+  });
+  crew.Deliver();
+  return true;
+}
+
+} // namespace elevation
