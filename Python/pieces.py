@@ -222,14 +222,17 @@ class Pieces:
         path = options.boundary
         if path:
             boundary, notes = mended(reading.read_boundary(path), path, options.strict)
-        wanted = self.run.read_options()
-        for points in read_files(options.files, self.cloud, **wanted):
+
+        def take(points):
+            nonlocal reach
             for part in slices(len(points), AT_ONCE):
                 given = make_points(points[part], copy=False)
                 reach = min(reach, least_reach(given))
                 self.source.AddPoints(given)
                 self.heights.see(points[part])
                 self.check()
+
+        read_files(options.files, self.cloud, take, **self.run.read_options())
         try:
             check_spacing(reach, options.given.get("spacing", 0.0))
         except ValueError as error:
