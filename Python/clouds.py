@@ -389,16 +389,6 @@ def antimeridian_note(points):
     )
 
 
-def with_data(rows, no_data, cloud, reason):
-    """Rows of x, y, z but those of this elevation, which the cloud counts as left out."""
-    keep = rows[:, 2] != no_data
-    if keep.all():
-        return rows
-    gone = len(keep) - int(numpy.count_nonzero(keep))
-    cloud.left_out[reason] = cloud.left_out.get(reason, 0) + gone
-    return rows[keep]
-
-
 def keep_points(cloud, keep):
     """Leaves only the points with the given ids (a numpy array) in a Cloud."""
     cloud.points = some_points(cloud.points, keep)
@@ -420,9 +410,29 @@ def turn_over(cloud):
     cloud.notes.append(f"z is turned over, as {option('depth')} says")
 
 
-def slices(count, at_once=AT_ONCE):
-    """Slices that cover count rows."""
-    return [slice(i, min(i + at_once, count)) for i in range(0, count, at_once)]
+def slices(count, at_once=None, first=0):
+    """Slices that cover the rows from first up to count."""
+    at_once = at_once or AT_ONCE
+    return [slice(i, min(i + at_once, count)) for i in range(first, count, at_once)]
+
+
+@dataclasses.dataclass(frozen=True)
+class Part:
+    """A part of a file: from first on, up to last, where the whole file goes from 0 to whole."""
+
+    first: int = 0
+    last: int = 1
+    whole: int = 1
+
+    def of(self, count):
+        """The slice of so many rows or blocks that is in this part. Parts side by side share none."""
+        return slice(self.first * count // self.whole, self.last * count // self.whole)
+
+    def is_whole(self):
+        return self.last - self.first == self.whole
+
+
+WHOLE = Part()
 
 
 def corner_flags(triangles, count):

@@ -60,6 +60,7 @@ class Reason(str):
 
     def __new__(cls, noun, rest=""):
         self = super().__new__(cls, f"{noun}s {rest}".rstrip())
+        self.parts = (noun, rest)
         self.singular = f"{noun} {rest}".rstrip()
         return self
 

@@ -228,8 +228,9 @@ class Pieces:
         if options.faults:
             faults = self.run.read_faults(self.cloud)
             self.check_faults(faults)
-        wanted = self.run.read_options()
-        for points in read_files(options.files, self.cloud, **wanted):
+
+        def take(points):
+            nonlocal reach
             for part in slices(len(points), AT_ONCE):
                 given = make_points(points[part], copy=False)
                 reach = min(reach, least_reach(given))
@@ -237,6 +238,8 @@ class Pieces:
                 self.heights.see(points[part])
                 self.see_heights(given)
                 self.check()
+
+        read_files(options.files, self.cloud, take, **self.run.read_options())
         try:
             check_spacing(reach, options.given.get("spacing", 0.0))
         except ValueError as error:

@@ -155,6 +155,14 @@ def shown_values(column):
     return shown_counts(value_counts(column))
 
 
+def in_order(counts):
+    """The same {value: count}, by the size of the values or, where not all are numbers, by their words."""
+    try:
+        return {value: counts[value] for value in sorted(counts, key=float)}
+    except ValueError:
+        return {value: counts[value] for value in sorted(counts)}
+
+
 def shown_counts(counts):
     words = [f"{value} ({count:,})" for value, count in counts.items()]
     more = f", and {len(words) - SHOWN:,} more" if len(words) > SHOWN else ""
@@ -202,35 +210,43 @@ class Selection:
     """The points that --where keeps: of each column that it names, one of the values.
 
     count  how many were left out
+    found  {column: {value that is wanted: how many points have it}}
+    known  {column: {value: how many points have it}} for errors
     """
 
     def __init__(self, path, conditions):
         self.path, self.wanted, self.count = path, {}, 0
         for name, value in conditions:
             self.wanted.setdefault(name, []).append(value)
-        self.found, self.values, self.known = set(), {}, {}
+        self.found, self.known = {}, {}
 
     def keep(self, columns):
         """(n,) of bool for the points of a cloud, or of a part of it, with these columns."""
         keep = True
         for name, values in self.wanted.items():
             name = column_of(self.path, name, columns)
-            here = False
+            here, found = False, self.found.setdefault(name, {})
             for value in values:
                 equal = are_equal(self.path, name, columns[name], value)
-                if equal.any():
-                    self.found.add((name, value))
+                found[value] = found.get(value, 0) + int(numpy.count_nonzero(equal))
                 here = here | equal
-            self.values[name] = values
             if self.missing(name):
                 self.note_values(name, columns[name])
             keep = keep & here
         self.count += int(numpy.count_nonzero(~keep))
         return keep
 
+    def facts(self):
+        """What was found, as plain values that can be added to those of other points."""
+        return {"count": self.count, "found": self.found, "known": self.known}
+
+    def take(self, facts):
+        """Takes the facts of all points as its own."""
+        self.count, self.found, self.known = facts["count"], facts["found"], facts["known"]
+
     def missing(self, name):
         """The wanted values of a column that no point has had so far."""
-        return [value for value in self.values[name] if (name, value) not in self.found]
+        return [value for value, count in self.found[name].items() if not count]
 
     def note_values(self, name, column):
         """Remembers what values there are, for an error."""
@@ -242,15 +258,19 @@ class Selection:
     def check(self, any_left):
         """Notes on values that no point has. Raises NothingChosen where that leaves no point."""
         notes = []
-        for name in self.values:
-            known = self.known.get(name, {})
+        for name in self.found:
+            known = in_order(self.known.get(name, {}))
             for value in self.missing(name):
                 notes.append(
                     f"no point has {name} = {value or 'nothing'}"
                     f"{did_you_mean(value, known) if value else ''}; values: {shown_counts(known)}"
                 )
-        if not any_left and self.values:
-            words = " and ".join(as_option(*pair) for pair in sorted(self.found))
+        if not any_left and self.found:
+            words = " and ".join(
+                as_option(name, value)
+                for name in sorted(self.found)
+                for value in sorted(self.found[name]) if self.found[name][value]
+            )
             words = notes[0] if notes else f"no point is left by {words} together"
             raise NothingChosen(f"{self.path}: {words}")
         return notes

@@ -20,7 +20,7 @@ class Format:
     is_it   tells from (first bytes, path) whether a file is of this kind
     module  the module that reads points, by read_points() if no other function is named
     lines   the module whose read_lines(path, singular) reads boundaries and faults, or ""
-    slices  the function that reads points slice by slice, or ""
+    slices  the class that reads points slice by slice, or ""
     """
 
     name: str
@@ -152,13 +152,13 @@ FORMATS = (
     Format("VTK's XML", ".vtp .vtu .vts .vtr .vti", begins(XML), "vtk_files", "vtk_files"),
     Format("VTK's legacy format", ".vtk", begins(rb"# vtk DataFile"), "vtk_files", "vtk_files"),
     Format("a PLY file", ".ply", begins(rb"ply\s"), "ply", "ply"),
-    Format("a LAS file", ".las .laz", begins(rb"LASF"), "las", slices="las.las_slices"),
+    Format("a LAS file", ".las .laz", begins(rb"LASF"), "las", slices="las.LasSlices"),
     Format("an STL file", ".stl", is_stl, "vtk_files", "vtk_files"),
     Format("an OBJ file", ".obj", begins(OBJ), "vtk_files", "vtk_files"),
     Format("a GOCAD file", ".ts .vs .pl", begins(rb"GOCAD\s"), "gocad", "gocad"),
     Format(
         "a numpy array", ".npy", begins(rb"\x93NUMPY"), "horizons.read_array",
-        slices="horizons.array_slices",
+        slices="horizons.ArraySlices",
     ),
     Format("an IRAP grid", ".irap .gri", begins(rb"\s*-996\s"), "horizons.read_irap_grid"),
     Format("a CPS-3 grid", ".cps .cps3", begins(rb"\s*FSASCI\b"), "horizons.read_cps3_grid"),
@@ -168,7 +168,7 @@ FORMATS = (
     Format("a raster", ".sgrd .sdat", is_saga_header, "rasters"),
     Format("a vector file", ".csv", is_table_with_geometry, "vectors", "vectors"),
     Format("a vector file", ".gmt", begins(rb"# ?@VGMT"), "vectors", "vectors"),
-    Format("a text table", TEXT, is_table, "text.read_text", slices="text.text_slices"),
+    Format("a text table", TEXT, is_table, "text.read_text", slices="text.TextSlices"),
     Format(
         "a vector file",
         ".gpkg .shp .geojson .json .dxf .gml .kml .kmz .fgb .gpx .tab .mif .dgn .dwg",
@@ -182,7 +182,7 @@ FORMATS = (
         is_of_gdal("raster"),
         "rasters",
     ),
-    Format("a text table", TEXT, is_numbers, "text.read_text", slices="text.text_slices"),
+    Format("a text table", TEXT, is_numbers, "text.read_text", slices="text.TextSlices"),
 )
 
 

@@ -12,7 +12,6 @@ from ..clouds import Cloud, add_array, make_lines, make_points, slices
 from .columns import meaning
 from ..messages import FileError, Reason, counted
 from ..progress import no_progress, told_lines
-from ..selecting import Selection
 from .rasters import points_of_raster
 
 AT_ONCE = 1 << 22  # bytes
@@ -280,23 +279,29 @@ def read_array(path, options):
     return cloud
 
 
-def array_slices(path, options, cloud):
-    """Yields x, y and z of an array of numpy, slice by slice. The cloud gets what is told."""
-    columns, notes = columns_of_array(path)
-    selection, left = Selection(path, options.where or ()), 0
-    cloud.notes += notes
-    others = [name for name in columns if name not in "xyz"]
-    if others:
-        cloud.notes.append(f"left out: {', '.join(others)}")
-    count = len(columns["x"])
-    for part in slices(count):
-        # Opened anew, as what has been read through a mapped file counts as memory in use.
-        columns = columns_of_array(path)[0]
-        points = numpy.column_stack([columns[axis][part].astype("f8") for axis in "xyz"])
-        if options.where:
-            points = points[selection.keep({name: columns[name][part] for name in others})]
-            left += len(points)
-        yield points
-        options.progress(part.stop / count)
-    cloud.notes += selection.check(left)
-    selection.tell(cloud.left_out)
+class ArraySlices:
+    """A part of an array of numpy: iterate to get (x y z, the other columns), slice by slice."""
+
+    def __init__(self, path, options, part):
+        self.path, self.progress = path, options.progress
+        columns, self.notes = columns_of_array(path)
+        self.part = part.of(len(columns["x"]))
+        self.others = [name for name in columns if name not in "xyz"]
+
+    def __iter__(self):
+        begin, end = self.part.start, self.part.stop
+        for part in slices(end, first=begin):
+            # Opened anew, as what has been read through a mapped file counts as memory in use.
+            columns = columns_of_array(self.path)[0]
+            points = numpy.column_stack([columns[axis][part].astype("f8") for axis in "xyz"])
+            yield points, {name: columns[name][part] for name in self.others}
+            self.progress((part.stop - begin) / (end - begin))
+
+    def facts(self):
+        return {}
+
+    def finish(self, _, cloud):
+        """Adds to a Cloud what is told once all points are read."""
+        cloud.notes += self.notes
+        if self.others:
+            cloud.notes.append(f"left out: {', '.join(self.others)}")

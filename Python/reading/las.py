@@ -7,10 +7,9 @@ import struct
 
 import numpy
 
-from ..clouds import Cloud, add_array, make_points, slices
+from ..clouds import WHOLE, Cloud, add_array, make_points, slices
 from ..messages import FileError, Reason
 from ..names import option
-from ..selecting import Selection
 
 # Bytes of a record, GPS time and colours in it, by point format.
 SIZES = (20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67)
@@ -112,11 +111,11 @@ def crs_of(stream, start, count, extended_start, extended_count):
     return wkt or (f"EPSG:{code}" if code and code != 32767 else None)
 
 
-def records(path, header):
-    """Yields the points as arrays of header.record(), about a million at a time."""
+def records(path, header, part):
+    """Yields the points of a slice as arrays of header.record(), about a million at a time."""
     kind = header.record()
     if not header.is_packed:
-        for part in slices(header.count, AT_ONCE):
+        for part in slices(part.stop, AT_ONCE, part.start):
             # Opened anew, as what has been read through a mapped file counts as memory in use.
             start = header.start + part.start * header.length
             yield numpy.memmap(path, kind, "r", start, (part.stop - part.start,))
@@ -130,24 +129,30 @@ def records(path, header):
         ) from None
     try:
         with laspy.open(path) as reader:
+            at = 0
             for chunk in reader.chunk_iterator(AT_ONCE):
-                yield numpy.frombuffer(chunk.array.tobytes(), kind)
+                rows = numpy.frombuffer(chunk.array.tobytes(), kind)
+                yield rows[max(part.start - at, 0) : max(part.stop - at, 0)]
+                at += len(rows)
+                if at >= part.stop:
+                    break
     except Exception as error:  # laspy and its decoders have errors of many kinds
         raise FileError(f"{path}: laspy cannot read it: {' '.join(str(error).split())}") from None
 
 
 class Chosen:
-    """The points that are not withheld, and of the classes that options name: iterate to get
-    (rows, their classes, x y z), some at a time. Raises FileError where there are none."""
+    """The points of a part of a file that are not withheld, and of the classes that options name:
+    iterate to get (rows, their classes, x y z), some at a time."""
 
-    def __init__(self, path, header, options):
-        self.path, self.header, self.options = path, header, options
-        self.count = self.withheld = 0
+    def __init__(self, path, options, part=WHOLE):
+        self.path, self.options, self.header = path, options, Header(path)
+        self.part = part.of(self.header.count)
+        self.total = self.count = self.withheld = 0
         self.of_class = numpy.zeros(256, "i8")
 
     def __iter__(self):
-        header, total = self.header, 0
-        for rows in records(self.path, header):
+        header = self.header
+        for rows in records(self.path, header, self.part):
             classes, gone = rows["Classification"], rows["flags"] & 4 > 0
             if header.kind < 6:
                 classes, gone = classes & 31, classes & 128 > 0
@@ -157,12 +162,16 @@ class Chosen:
             if self.options.classes:
                 keep &= numpy.isin(classes, self.options.classes)
             rows = rows[keep]
-            self.count, total = self.count + len(rows), total + len(keep)
+            self.count, self.total = self.count + len(rows), self.total + len(keep)
             yield rows, classes[keep], rows["XYZ"] * header.scale + header.offset
-            self.options.progress(total / header.count)
-        if total < header.count:
+            self.options.progress(self.total / (self.part.stop - self.part.start))
+
+    def check(self):
+        """Raises FileError where points of the file lack, or none is chosen."""
+        if self.total < self.header.count:
             raise FileError(
-                f"{self.path}: is cut off: {header.count:,} points are announced, {total:,} are there"
+                f"{self.path}: is cut off: {self.header.count:,} points are announced, "
+                f"{self.total:,} are there"
             )
         if self.count == 0:
             wanted = ", ".join(map(str, self.options.classes or ()))
@@ -197,22 +206,33 @@ class Chosen:
             cloud.left_out[Reason("point", "of other classes")] = others
 
 
-def las_slices(path, options, cloud):
-    """Yields x, y and z of the chosen points, slice by slice. The cloud gets what is told."""
-    chosen, left = Chosen(path, Header(path), options), 0
-    selection = Selection(path, options.where or ())
-    for rows, classes, points in chosen:
-        if options.where:
+class LasSlices(Chosen):
+    """The same, but iterate to get (x y z, the other columns)."""
+
+    def __iter__(self):
+        for rows, classes, points in super().__iter__():
             names = [name for name in ("Intensity", "GpsTime") if name in rows.dtype.names]
             columns = {name: rows[name] for name in names}
-            columns.update(Classification=classes, ReturnNumber=chosen.returns(rows))
-            points = points[selection.keep(columns)]
-            left += len(points)
-        yield points
-    cloud.notes += selection.check(left)
-    selection.tell(cloud.left_out)
-    chosen.tell(cloud)
-    cloud.notes.append("left out: point arrays, as intensity")
+            columns.update(Classification=classes, ReturnNumber=self.returns(rows))
+            yield points, columns
+
+    def facts(self):
+        """What was found, as plain values that can be added to those of other parts."""
+        return {
+            "total": self.total,
+            "count": self.count,
+            "withheld": self.withheld,
+            "classes": {str(i): int(self.of_class[i]) for i in numpy.flatnonzero(self.of_class)},
+        }
+
+    def finish(self, facts, cloud):
+        """Takes the facts of the whole file, and adds to a Cloud what is told then."""
+        self.total, self.count, self.withheld = facts["total"], facts["count"], facts["withheld"]
+        for number, count in facts["classes"].items():
+            self.of_class[int(number)] = count
+        self.check()
+        self.tell(cloud)
+        cloud.notes.append("left out: point arrays, as intensity")
 
 
 def read_points(path, options):
@@ -221,7 +241,8 @@ def read_points(path, options):
     Intensity, Classification, ReturnNumber, GpsTime and RGB become point arrays where they are not
     0 everywhere. Takes 24 bytes a point, and those of its arrays.
     """
-    header = Header(path)
+    chosen = Chosen(path, options)
+    header = chosen.header
     names = header.record().names
     points = numpy.empty((header.count, 3))
     arrays = {
@@ -233,7 +254,6 @@ def read_points(path, options):
         arrays["GpsTime"] = numpy.empty(header.count)
     if "RGB" in names:
         arrays["RGB"] = numpy.empty((header.count, 3), "u2")
-    chosen = Chosen(path, header, options)
     for rows, classes, xyz in chosen:
         here = slice(chosen.count - len(rows), chosen.count)
         points[here] = xyz
@@ -242,6 +262,7 @@ def read_points(path, options):
         for name in ("Intensity", "GpsTime", "RGB"):
             if name in arrays:
                 arrays[name][here] = rows[name]
+    chosen.check()
     cloud = Cloud(make_points(points[: chosen.count], copy=False))
     chosen.tell(cloud)
     for name, values in arrays.items():

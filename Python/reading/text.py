@@ -15,7 +15,7 @@ import re
 
 import numpy
 
-from ..clouds import Cloud, add_array, make_points, with_data
+from ..clouds import WHOLE, Cloud, Part, add_array, make_points
 from .columns import advice_on_columns, choose_columns
 from .layouts import (
     COMMENT_MARKS,
@@ -31,7 +31,7 @@ from .layouts import (
 )
 from ..messages import FileError, Reason, counted
 from ..progress import no_progress, told_items
-from ..selecting import MOST_VALUES, Selection, WordReader
+from ..selecting import MOST_VALUES, WordReader
 
 END_MARKS = b"\0\x1a\r\n "  # what DOS and full disks write behind the last line
 BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
@@ -43,36 +43,71 @@ SAMPLE = 3000  # lines at the start, and as many from the rest of the first bloc
 # ---- blocks -----------------------------------------------------------------------------------
 
 
-def blocks(path, stream):
-    """Yields (whole lines of a binary stream as bytes, fraction read), some 8 MB at once.
+class Blocks:
+    """The whole lines of a text file as bytes, some 8 MB at once: iterate to get (block, fraction).
 
-    UTF-16 with its mark becomes UTF-8; the mark of UTF-8 is taken away.
+    UTF-16 with its mark becomes UTF-8; the mark of UTF-8 is taken away. A part of a file has some of
+    the blocks of the whole file: a line is in the block in which it ends.
+
+    begin  where the first line begins
     """
-    size = os.fstat(stream.fileno()).st_size
-    rest, done = b"", 0
-    try:
-        data = stream.read(BLOCK)
-        if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-            text = (data + stream.read()).decode("utf-16", "replace")
-            stream = io.BytesIO(text.encode())
-            size = len(stream.getbuffer())
-            data = stream.read(BLOCK)
-        elif b"\0" in (data[:4096].rstrip(END_MARKS) or data[:4096]):
+
+    def __init__(self, path, stream, part=WHOLE):
+        self.path, self.file, self.stream = path, stream, stream
+        self.size = os.fstat(stream.fileno()).st_size
+        head = self.read(0, 4096)
+        if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
+            text = self.read(0, self.size).decode("utf-16", "replace")
+            self.stream = io.BytesIO(text.encode())
+            self.size = len(self.stream.getbuffer())
+        elif b"\0" in (head.rstrip(END_MARKS) or head):
             raise FileError(f"{path}: is not a text file")
-        if data.startswith(b"\xef\xbb\xbf"):
-            data = data[3:]
-        while data:
-            done += len(data)
-            data = rest + data
-            cut = 1 + max(data.rfind(b"\n"), data.rfind(b"\r", 0, len(data) - 1))
+        self.count = max(1, -(-self.size // BLOCK))
+        self.blocks = part.of(self.count)
+        self.begin = self.begin_of_line(self.blocks.start * BLOCK)
+
+    def __iter__(self):
+        first, last = self.blocks.start, self.blocks.stop
+        rest = self.read(self.begin, first * BLOCK - self.begin)
+        for block in range(first, last):
+            data = rest + self.read(block * BLOCK, BLOCK)
+            if block == first and self.begin == 0 and data.startswith(b"\xef\xbb\xbf"):
+                data = data[3:]
+            cut = end_of_lines(data)
             data, rest = data[:cut], data[cut:]
             if data:
-                yield plain(data), min(done / size, 1.0)
-            data = stream.read(BLOCK)
-    except OSError as error:
-        raise FileError(f"{path}: cannot be read: {error.strerror}") from None
-    if rest.strip(END_MARKS):
-        yield plain(rest), 1.0
+                yield plain(data), (block + 1 - first) / (last - first)
+        if last == self.count and rest.strip(END_MARKS):
+            yield plain(rest), 1.0
+
+    def read(self, at, count):
+        try:
+            self.stream.seek(at)
+            return self.stream.read(count)
+        except OSError as error:
+            raise FileError(f"{self.path}: cannot be read: {error.strerror}") from None
+
+    def begin_of_line(self, end):
+        """Where a line begins that is not at its end at a place."""
+        begin, data = end, b""
+        while begin > 0:
+            step = min(begin, 4096)
+            begin -= step
+            data = self.read(begin, step) + data
+            cut = end_of_lines(data)
+            if cut:
+                return begin + cut
+        return 0
+
+    def lines_before(self):
+        """How many lines there are before this part."""
+        before = Blocks(self.path, self.file, Part(0, self.blocks.start, self.count))
+        return sum(block.count(b"\n") for block, _ in before)
+
+
+def end_of_lines(data):
+    """The end of the last whole line; what follows \\r may belong to it."""
+    return 1 + max(data.rfind(b"\n"), data.rfind(b"\r", 0, len(data) - 1))
 
 
 def plain(data):
@@ -235,19 +270,21 @@ def first_of_data(table, preamble):
 class Parser:
     """Turns blocks of lines into rows of numbers: those of the axes first, then the extras.
 
+    blocks   the Blocks of the file, or of a part of it
     alive    is called now and then where a block takes long
     named    whether all columns of text are wanted; else those with more than MOST_VALUES words are
              given up
     """
 
-    def __init__(self, table, alive, named=False):
-        self.table, self.alive, self.named = table, alive, named
+    def __init__(self, table, blocks, alive, named=False):
+        self.table, self.blocks, self.alive, self.named = table, blocks, alive, named
         self.words = {index: WordReader() for index in table.texts}
         self.used = list(table.indices) + list(table.extras)
         self.parts, self.numbers, self.starts = [], [], []
         self.count = self.line = self.comments = self.repeated = 0
         self.after_blank = True
-        self.ragged = None  # the first line with more words than others
+        self.before = None  # lines before this part of the file, once a message needs their number
+        self.ragged = []  # the first line with more words than others, and their number
         self.no_numbers = {}  # {index of an extra: [count, first line, word] of what is no number}
         self.summaries = []  # (line number, word)
 
@@ -266,6 +303,12 @@ class Parser:
             self.add_carefully(lines, skip, b'"' in block)
         self.check_widths(block, lines, skip)
         self.line += len(lines)
+
+    def number(self, i):
+        """The number in the file of line i of the block."""
+        if self.before is None:
+            self.before = self.blocks.lines_before()
+        return self.before + self.line + 1 + i
 
     def keep(self, rows, numbers, lines):
         if self.words:
@@ -326,7 +369,7 @@ class Parser:
             elif line.strip() in self.table.head_lines:
                 self.repeated += 1
             elif self.table.summary(line):
-                self.summaries.append((self.line + 1 + i, self.table.summary(line)))
+                self.summaries.append((self.number(i), self.table.summary(line)))
             else:
                 if self.after_blank:
                     self.starts.append(self.count + len(kept))
@@ -354,25 +397,26 @@ class Parser:
         """A row that is not plain numbers: missing values, words in other columns, or an error."""
         table = self.table
         words, row = table.layout.words(line), []
-        where = f"{table.path}, line {self.line + 1 + i}"
+        where = f"{table.path}, line "
         for axis, index in zip("xyz", table.indices):
             if index >= len(words):
                 raise FileError(
-                    f"{where}: {counted(len(words), 'column')} found, "
+                    f"{where}{self.number(i)}: {counted(len(words), 'column')} found, "
                     f"but {axis} is column {index + 1}"
                 )
             value = table.layout.number(words[index])
             if value is None:
                 raise FileError(
-                    f"{where}: '{words[index][:40]}' in column {index + 1} ({axis}) is "
+                    f"{where}{self.number(i)}: '{words[index][:40]}' in column {index + 1} ({axis}) is "
                     f"not a number; {table.advice}"
                 )
             row.append(value)
         for index in table.extras:
             value = table.layout.number(words[index]) if index < len(words) else math.nan
             if value is None:
-                found = self.no_numbers.setdefault(index, [0, self.line + 1 + i, words[index]])
-                found[0] += 1
+                if index not in self.no_numbers:
+                    self.no_numbers[index] = [0, self.number(i), words[index]]
+                self.no_numbers[index][0] += 1
             row.append(math.nan if value is None else value)
         return row
 
@@ -382,14 +426,15 @@ class Parser:
         Where blanks part the words, a line that lacks one is an error: nothing shows which.
         """
         table = self.table
-        if not self.parts or b'"' in block and self.line and table.layout.separator:
+        is_first = self.line == 0 and self.blocks.begin == 0
+        if not self.parts or b'"' in block and not is_first and table.layout.separator:
             return
         for i in self.of_other_width(block, lines):
             if i < skip or not table.is_row(lines[i]):
                 continue
             words = table.layout.words(lines[i])
             if len(words) > table.words:
-                self.ragged = self.ragged or (self.line + 1 + i, len(words))
+                self.ragged = self.ragged or [self.number(i), len(words)]
                 if table.layout.separator:
                     return
             elif len(words) < table.words and not table.layout.separator:
@@ -422,7 +467,7 @@ class Parser:
         for column in self.table.of_numbers:
             if column >= len(words) or number(words[column]) is None:
                 raise FileError(
-                    f"{self.table.path}, line {self.line + 1 + i}: "
+                    f"{self.table.path}, line {self.number(i)}: "
                     f"{counted(len(words), 'column')} found where {self.table.words} are "
                     "expected, and blanks do not show which one lacks; part the columns by commas "
                     "or write nan for what is missing"
@@ -436,6 +481,25 @@ class Parser:
         ]
         self.parts, self.numbers = [], []
         return taken
+
+    def facts(self):
+        """What told() tells of lines, as plain values that can be added to those of other parts."""
+        return {
+            "comments": self.comments,
+            "repeated": self.repeated,
+            "ragged": self.ragged,
+            "summaries": self.summaries,
+            "no_numbers": {str(i): [found] for i, found in self.no_numbers.items()},
+        }
+
+    def take_facts(self, facts):
+        """Takes the facts of the whole file as its own."""
+        self.comments, self.repeated = facts["comments"], facts["repeated"]
+        self.ragged, self.summaries = facts["ragged"], facts["summaries"]
+        self.no_numbers = {
+            int(i): [sum(count for count, *_ in found), *found[0][1:]]
+            for i, found in facts["no_numbers"].items()
+        }
 
     def told(self):
         """Notes, once all lines are read."""
@@ -467,22 +531,28 @@ class Parser:
         return notes
 
 
-def parsed(path, columns, needed, advice, progress, named=False):
-    """Yields the Parser of a text file after each block of lines."""
-    parser, done = None, 0.0
+def parsed(path, columns, needed, advice, progress, named=False, part=WHOLE):
+    """Yields the Parser of a text file, or of a part of it, before and after each block of lines."""
+    done = 0.0
 
     with open(path, "rb") as stream:
-        for block, read in blocks(path, stream):
-            lines, skip = lines_of(block), 0
-            if parser is None:
-                table = Table(path, lines, columns, needed, advice)
-                parser, skip = Parser(table, lambda _: progress(done), named), table.first
+        blocks = Blocks(path, stream, part)
+        head = next(iter(blocks if part.is_whole() else Blocks(path, stream)), None)
+        if head is None:
+            raise FileError(f"{path}: is empty")
+        head = lines_of(head[0])
+        table = Table(path, head, columns, needed, advice)
+        parser, skip = Parser(table, blocks, lambda _: progress(done), named), 0
+        yield parser
+        for block, read in blocks:
+            if parser.line == 0 and blocks.begin == 0:
+                lines, skip = head, table.first
+            else:
+                lines, skip = lines_of(block), 0
             parser.add(block, lines, skip)
             done = read
             progress(done)
             yield parser
-    if parser is None:
-        raise FileError(f"{path}: is empty")
 
 
 def parse(path, columns, needed, advice, progress, named=False):
@@ -532,38 +602,46 @@ def read_text(path, options):
         keep = rows[:, 2] != options.no_data
         cloud.lines = numbers[keep]
         cloud.words = {name: words.some(keep) for name, words in cloud.words.items()}
-        rows = with_data(rows, options.no_data, cloud, Reason("row", "without data"))
+        if not keep.all():
+            cloud.left_out[Reason("row", "without data")] = int(numpy.count_nonzero(~keep))
+            rows = rows[keep]
         if not len(rows):
-            raise FileError(f"{path}: all rows are without data")
+            raise FileError(f"{path}: {TextSlices.without_data}")
     cloud.points = make_points(rows[:, :3])
     add_arrays(cloud.points, table.extras, rows[:, 3:])
     return cloud
 
 
-def text_slices(path, options, cloud):
-    """Yields x, y and z of the rows of a text file, block by block. The cloud gets what is told."""
-    count, selection = 0, Selection(path, options.where or ())
-    named = bool(options.where)
-    for parser in parsed(path, options.columns, 3, None, options.progress, named):
-        if not parser.parts:
-            continue
-        rows, words = parser.take()[0], parser.take_words()
-        if options.where:
-            numbers = zip(parser.table.extras.values(), rows[:, 3:].T)
-            rows = rows[selection.keep({**words, **dict(numbers)})]
-        rows = rows[:, :3]
-        if options.no_data is not None:
-            rows = with_data(rows, options.no_data, cloud, Reason("row", "without data"))
-        count += len(rows)
-        yield rows
-    cloud.notes += selection.check(count)
-    selection.tell(cloud.left_out)
-    if not count:
-        raise FileError(f"{path}: all rows are without data")
-    cloud.notes += parser.told()
-    cloud.z_name, cloud.is_horizon = parser.table.z_name, parser.table.is_horizon
-    if parser.table.extras:
-        cloud.notes.append(f"left out: {', '.join(parser.table.extras.values())}")
+class TextSlices:
+    """The rows of a part of a text file: iterate to get (x y z, the other columns), block by block."""
+
+    noun, without_data = "row", "all rows are without data"
+
+    def __init__(self, path, options, part):
+        self.parsed = parsed(
+            path, options.columns, 3, None, options.progress, bool(options.where), part
+        )
+        self.parser = next(self.parsed)
+
+    def __iter__(self):
+        parser = self.parser
+        for _ in self.parsed:
+            if parser.parts:
+                rows, words = parser.take()[0], parser.take_words()
+                numbers = zip(parser.table.extras.values(), rows[:, 3:].T)
+                yield rows[:, :3], {**words, **dict(numbers)}
+
+    def facts(self):
+        return self.parser.facts()
+
+    def finish(self, facts, cloud):
+        """Takes the facts of the whole file, and adds to a Cloud what is told then."""
+        table = self.parser.table
+        self.parser.take_facts(facts)
+        cloud.notes += self.parser.told()
+        cloud.z_name, cloud.is_horizon = table.z_name, table.is_horizon
+        if table.extras:
+            cloud.notes.append(f"left out: {', '.join(table.extras.values())}")
 
 
 def add_arrays(points, extras, values):

@@ -46,6 +46,15 @@ def copy(source, target, shown, report):
 
 
 @contextlib.contextmanager
+def named(local, shown):
+    """Lets errors on a local file name the file that the user named."""
+    try:
+        yield
+    except FileError as error:
+        raise type(error)(str(error).replace(local, shown)) from None
+
+
+@contextlib.contextmanager
 def unpacked(path, progress=no_progress):
     """Gives the path of a plain file with what standard input ("-") or a packed file holds, and the
     fraction of the work that is done then.
@@ -68,8 +77,6 @@ def unpacked(path, progress=no_progress):
             local, begun, size = os.path.join(folder, name), UNPACKING, os.path.getsize(packed)
             with open(packed, "rb") as raw, opener(raw) as source:
                 copy(source, local, shown, lambda: progress(UNPACKING * raw.tell() / size))
-        try:
+        with named(local, shown):
             check_readable(local)
             yield local, begun
-        except FileError as error:
-            raise type(error)(str(error).replace(local, shown)) from None

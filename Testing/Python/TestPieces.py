@@ -29,7 +29,7 @@ from vtkelevationsurface import (
 from vtkelevationsurface.clouds import Cloud, add_array, make_lines, make_points
 from vtkelevationsurface.messages import FileError, Messages
 from vtkelevationsurface.reading import text
-from vtkelevationsurface.reading.slicing import read_slices
+from vtkelevationsurface.reading.slicing import read_files
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
 from vtkmodules.vtkIOXML import vtkXMLPartitionedDataSetReader, vtkXMLPolyDataReader
@@ -831,12 +831,18 @@ def hole_rows(rims):
     return list(zip(*(vtk_to_numpy(cells.GetArray(name)).tolist() for name in names)))
 
 
+def points_of_slices(path, cloud, **options):
+    taken = []
+    read_files([path], cloud, taken.append, **options)
+    return numpy.concatenate(taken)
+
+
 class Slices(InFolder):
     """Files that are read slice by slice have the points of those read as a whole."""
 
     def assert_as_whole(self, path, **options):
         whole, cloud = reading.read(path, **options), Cloud(None)
-        found = numpy.concatenate(list(read_slices(path, cloud, **options)))
+        found = points_of_slices(path, cloud, **options)
         expected = vtk_to_numpy(whole.points.GetPoints().GetData())
         numpy.testing.assert_array_equal(found, expected)
         self.assertEqual(cloud.left_out, whole.left_out)
@@ -854,13 +860,13 @@ class Slices(InFolder):
             self.assert_as_whole(path, columns=("1", "2", "4"))
             self.assert_as_whole(path, where={"depth": list(range(100, 4000, 7))})
             with self.assertRaisesRegex(FileError, "no column name beside x, y and z; columns: D"):
-                list(read_slices(path, Cloud(None), where="name=a"))
+                points_of_slices(path, Cloud(None), where="name=a")
         rows = [f"{i % 70},{i // 70},{i % 11},{'abc'[i % 3]}" for i in range(5000)]
         path = self.file("words.csv", "\n".join(["X,Y,Z,name", *rows]))
         with mock.patch.object(text, "BLOCK", 3000):
             self.assert_as_whole(path, where="name=b")
             with self.assertRaisesRegex(FileError, r"name = d; values: a \(1,667\), b \(1,667"):
-                list(read_slices(path, Cloud(None), where="name=d"))
+                points_of_slices(path, Cloud(None), where="name=d")
         packed = self.path("b.csv.gz")
         with gzip.open(packed, "wb") as stream:
             stream.write(b"1 2 3\n4 5 6\n7 7 7\n")
@@ -899,15 +905,15 @@ class Slices(InFolder):
             self.assert_as_whole(path, classes=(1, 2))
             self.assert_as_whole(path, where={"Classification": [0, 2]})
             with self.assertRaisesRegex(FileError, "holds no point of class 9"):
-                list(read_slices(path, Cloud(None), classes=(9,)))
+                points_of_slices(path, Cloud(None), classes=(9,))
 
     def test_null_values_are_an_error_that_names_the_options(self):
         rows = "".join(f"{i % 40} {i // 40} {-9999 if i == 700 else i % 7}\n" for i in range(1000))
         path = self.file("a.xyz", rows)
-        with self.assertRaisesRegex(FileError, "z = -9999, of 1 point or more, .*--no-data -9999.*--keep"):
-            list(read_slices(path, Cloud(None)))
+        with self.assertRaisesRegex(FileError, "z = -9999, far from .*--no-data -9999.*--keep"):
+            points_of_slices(path, Cloud(None))
         self.assert_as_whole(path, no_data=-9999.0)
-        found = numpy.concatenate(list(read_slices(path, Cloud(None), keep_nulls=True)))
+        found = points_of_slices(path, Cloud(None), keep_nulls=True)
         self.assertEqual(len(found), 1000)
 
     def test_nulls_that_fill_a_slice_are_found(self):
@@ -919,7 +925,7 @@ class Slices(InFolder):
             numpy.save(path, numbers)
             with mock.patch("vtkelevationsurface.clouds.AT_ONCE", 250):
                 with self.assertRaisesRegex(FileError, "z = -9999"):
-                    list(read_slices(path, Cloud(None)))
+                    points_of_slices(path, Cloud(None))
 
 
 class Command(Program):
