@@ -117,12 +117,11 @@ set(es_Parts
   BoundaryZone
   CommonPoints
   ConstraintsOfRanks
-  DistributedFill
   DistributedTrim
   Engine
   FailureNotes
   FilledPart
-  FilledPieces
+  FillParts
   FilterRun
   Gathering
   HoleNeighborhoods
@@ -143,7 +142,7 @@ set(es_Parts
   TrimOfPart
   TrimmedPieces)
 set(es_headers_Parts
-  Bytes Parts)
+  Bytes Parts SurfaceParts)
 
 # Lists the files of a room, whose names are in variables with a prefix.
 macro (es_list_room prefix folder room)

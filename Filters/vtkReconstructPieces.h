@@ -67,7 +67,7 @@
 
 namespace elevation
 {
-class FilledPieces;
+class FillParts;
 class Ranks;
 class TriangulateParts;
 class TrimmedPieces;
@@ -185,7 +185,7 @@ private:
   void WorkOnAll(int count, const elevation::Progress& progress);
   void WarnOfMissing();
   void TrimAll(int count, const elevation::Progress& progress);
-  void FillAll(int count, const elevation::Progress& progress);
+  void FillAll(const elevation::Progress& progress);
   vtkSmartPointer<vtkPolyData> MakePiece(int piece, const elevation::Progress& progress);
   vtkSmartPointer<vtkPolyData> MakeTrimmed(int piece, const elevation::Progress& progress);
 
@@ -198,7 +198,7 @@ private:
   std::unique_ptr<elevation::Ranks> Alone;
   std::unique_ptr<elevation::TriangulateParts> Work;
   std::unique_ptr<elevation::TrimmedPieces> Trimmed;
-  std::unique_ptr<elevation::FilledPieces> Filled;
+  std::unique_ptr<elevation::FillParts> Filled;
   vtkMTimeType TimeOfWork = 0;
   bool HasFailed = false;
   vtkNew<vtkStringArray> Messages;

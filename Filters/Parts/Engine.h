@@ -86,7 +86,11 @@ public:
     const std::string& folder);
 
   const Ranks& All() const { return this->Crew; }
-  bool IsInFiles() const { return this->AreInFiles; }
+  bool IsInFiles() const { return !this->FolderOfFiles.empty(); }
+  const std::string& Folder() const
+  {
+    return this->FolderOfFiles;
+  } ///< of the files; empty: in memory
 
   int CountOfParts() const { return this->Firsts.back(); }
   /** The rank that holds a part. */
@@ -103,6 +107,13 @@ public:
   void ForEach(const Progress& progress,
     const std::function<void(int part, const Progress& ofPart)>& step) const;
 
+  /**
+   * The same in turns: after one part of each rank, what has been sent to the parts of another engine is
+   * delivered, so that no more of it is in memory.
+   */
+  void ForEachInTurn(const Progress& progress, Engine& receiving,
+    const std::function<void(int part, const Progress& ofPart)>& step) const;
+
   /** Sends to any part. It is there after Deliver(), which all ranks call. */
   void Send(int part, int box, Bytes&& stretch);
   void Deliver(const Progress& progress = Progress());
@@ -117,7 +128,7 @@ private:
   };
 
   const Ranks& Crew;
-  const bool AreInFiles;
+  const std::string FolderOfFiles;
   const std::size_t BoxesOfPart;
   std::vector<int> Firsts;                // part of each rank, and the end
   std::vector<Inbox> Boxes;               // of the parts of this rank

@@ -7,9 +7,8 @@
 #ifndef Parts_h
 #define Parts_h
 
-#include "DistributedFill.h"
 #include "DistributedTrim.h"
-#include "FilledPieces.h"
+#include "FillParts.h"
 #include "FilterRun.h"
 #include "Joining.h"
 #include "Ranks.h"

@@ -75,6 +75,7 @@ public:
   void Triangulate(int ownParts, vtkPolyData* constraints, const DelaunayOptions& options,
     std::vector<Message>& warnings);
 
+  Engine& Holders() const { return *this->Crew; } ///< of the parts, after it
   int CountOfParts() const { return this->Crew ? this->Crew->CountOfParts() : 0; } ///< 0: before it
   int FirstOwn() const { return this->Crew->FirstOwn(); }          ///< part of this rank
   vtkIdType CountOfPoints() const { return this->Source.Count(); } ///< that this rank has added
