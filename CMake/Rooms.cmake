@@ -117,11 +117,10 @@ set(es_Parts
   BoundaryZone
   CommonPoints
   ConstrainParts
-  DistributedFill
   Engine
   FailureNotes
   FilledPart
-  FilledPieces
+  FillParts
   FilterRun
   Gathering
   HoleNeighborhoods

@@ -304,7 +304,7 @@ void vtkReconstructPieces::WorkOnAll(int count, const elevation::Progress& progr
   }
   if (this->FillHoles)
   {
-    this->FillAll(count, elevation::Part(progress, filling, 1.0));
+    this->FillAll(elevation::Part(progress, filling, 1.0));
   }
 }
 
@@ -339,7 +339,7 @@ void vtkReconstructPieces::TrimAll(const elevation::Progress& progress)
   this->Trimmed->Trim();
 }
 
-void vtkReconstructPieces::FillAll(int count, const elevation::Progress& progress)
+void vtkReconstructPieces::FillAll(const elevation::Progress& progress)
 {
   this->SetProgressText("filling holes");
   elevation::FillOptions options = elevation::OptionsOf(this->Fill);
@@ -348,9 +348,12 @@ void vtkReconstructPieces::FillAll(int count, const elevation::Progress& progres
   const auto make = [this](int piece, const elevation::Progress& ofPiece) {
     return this->MakeTrimmed(piece, ofPiece);
   };
-  this->Filled = std::make_unique<elevation::FilledPieces>(count, this->Folder,
-    this->Work->All().Points + this->GetNumberOfAddedPoints() + this->GetNumberOfInsertedPoints(),
-    make, options, this->Fill->GetInterpolatePointData() != 0);
+  auto filled = std::make_unique<elevation::FillParts>(
+    elevation::SurfaceParts{ this->Work->Holders(), make }, options,
+    this->Fill->GetInterpolatePointData() != 0);
+  filled->FindHoles(0);
+  filled->Fill();
+  this->Filled = std::move(filled);
   const std::vector<elevation::Message> warnings = elevation::WarningsOf(this->Filled->Result());
   if (!warnings.empty())
   {
@@ -462,7 +465,7 @@ int vtkReconstructPieces::RequestData(
     }
     if (this->Filled && piece == 0)
     {
-      this->Filled->PassRims(rims);
+      this->Filled->PassRims(elevation::Progress(), rims);
       elevation::AddHoleCounts(this->Filled->Result(), { rims });
     }
   };

@@ -70,7 +70,7 @@
 
 namespace elevation
 {
-class FilledPieces;
+class FillParts;
 class Message;
 class Ranks;
 class TriangulateParts;
@@ -191,7 +191,7 @@ private:
   void WorkOnAll(int count, const elevation::Progress& progress);
   void WarnOfMissing(std::vector<elevation::Message>& warnings);
   void TrimAll(const elevation::Progress& progress);
-  void FillAll(int count, const elevation::Progress& progress);
+  void FillAll(const elevation::Progress& progress);
   vtkSmartPointer<vtkPolyData> MakePiece(int piece, const elevation::Progress& progress);
   vtkSmartPointer<vtkPolyData> MakeTrimmed(int piece, const elevation::Progress& progress);
 
@@ -204,7 +204,7 @@ private:
   std::unique_ptr<elevation::Ranks> Alone;
   std::unique_ptr<elevation::TriangulateParts> Work;
   std::unique_ptr<elevation::TrimParts> Trimmed;
-  std::unique_ptr<elevation::FilledPieces> Filled;
+  std::unique_ptr<elevation::FillParts> Filled;
   vtkMTimeType TimeOfWork = 0;
   bool HasFailed = false;
   vtkNew<vtkStringArray> Messages;

@@ -69,7 +69,7 @@ Index SharedPoints::Find(const PointKey& key) const
   return found != this->Sorted.end() && found->first == key ? found->second : None;
 }
 
-bool SharedPoints::Sort(const std::vector<char>& areUsed)
+void SharedPoints::Sort(const std::vector<char>& areUsed)
 {
   this->Sorted.clear();
   for (std::size_t i = 0; i < this->Places.size(); ++i)
@@ -84,21 +84,14 @@ bool SharedPoints::Sort(const std::vector<char>& areUsed)
   const auto isTwice = [&](const auto& a, const auto& b) {
     return a.first == b.first && areUsed[a.second] && areUsed[b.second];
   };
-  const bool isUnique =
-    std::adjacent_find(this->Sorted.begin(), this->Sorted.end(), isTwice) == this->Sorted.end();
+  if (std::adjacent_find(this->Sorted.begin(), this->Sorted.end(), isTwice) != this->Sorted.end())
+  {
+    throw Error("Two points of a part have the same global id or place.");
+  }
   const auto isSame = [](const auto& a, const auto& b) { return a.first == b.first; };
   this->Sorted.erase(
     std::unique(this->Sorted.begin(), this->Sorted.end(), isSame), this->Sorted.end());
-  return isUnique;
 }
-
-namespace
-{
-bool IsMarked(vtkUnsignedCharArray* marks, Index point)
-{
-  return marks && (marks->GetValue(point) & vtkDataSetAttributes::DUPLICATEPOINT);
-}
-} // namespace
 
 void SharedPoints::TakeMarks(vtkPolyData* data)
 {
@@ -106,18 +99,18 @@ void SharedPoints::TakeMarks(vtkPolyData* data)
   this->AreCopies.clear();
   for (const Index place : this->Places)
   {
-    this->AreCopies.push_back(IsMarked(marks, place) ? 1 : 0);
+    this->AreCopies.push_back(
+      marks && (marks->GetValue(place) & vtkDataSetAttributes::DUPLICATEPOINT) ? 1 : 0);
   }
 }
 
-void FindCopies(const Ranks& ranks, vtkPolyData* own, bool byIds, SharedPoints& points)
+void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
 {
   std::vector<Bytes> packed(ranks.Count());
   ranks.Agree([&]() {
-    vtkUnsignedCharArray* const marks = GhostsOf(own->GetPointData());
     for (std::size_t i = 0; i < points.Places.size(); ++i)
     {
-      const MetPoint met{ points.Keys[i], IsMarked(marks, points.Places[i]) ? 1 : 0, ranks.Own(),
+      const MetPoint met{ points.Keys[i], points.AreCopies[i], ranks.Own(),
         static_cast<vtkIdType>(i) };
       AppendTo(packed[RankOf(BitsOf(met.Key), ranks)], &met, 1);
     }
@@ -177,7 +170,10 @@ void AppendBorder(
   }
 }
 
-bool KeepSingleEdges(std::vector<EdgeOfPart>& edges)
+namespace
+{
+/** Takes away the edges that two parts have in common. */
+void KeepSingleEdges(std::vector<EdgeOfPart>& edges)
 {
   const auto keyOf = [](const EdgeOfPart& edge) {
     return std::make_tuple(
@@ -195,7 +191,7 @@ bool KeepSingleEdges(std::vector<EdgeOfPart>& edges)
       std::minmax(edges[i].Ends[0], edges[i].Ends[1]) ==
         std::minmax(edges[next].Ends[0], edges[next].Ends[1]))
     {
-      return false;
+      throw Error("An edge has more than two triangles.");
     }
     if (!isPair)
     {
@@ -204,8 +200,8 @@ bool KeepSingleEdges(std::vector<EdgeOfPart>& edges)
     i = next - 1;
   }
   edges = std::move(single);
-  return true;
 }
+} // namespace
 
 BorderOfAll::BorderOfAll(std::vector<EdgeOfPart>&& edges)
 {
@@ -248,35 +244,36 @@ PointView BorderOfAll::View() const
   return view;
 }
 
-bool CollectBorder(
-  const Ranks& ranks, const Mesh& mesh, const SharedPoints& points, BorderOfAll& border)
+// Those that are left on each rank are paired at a rank for each edge; what is single goes to all.
+BorderOfAll CollectBorder(const Ranks& ranks, std::vector<EdgeOfPart>&& edges)
 {
   std::vector<Bytes> packed(ranks.Count());
   ranks.Agree([&]() {
-    std::vector<EdgeOfPart> edges;
-    AppendBorder(mesh, points, ranks.Own(), edges);
-    for (const EdgeOfPart& edge : edges)
+    KeepSingleEdges(edges);
+    for (std::size_t i = 0; i < edges.size() && ranks.Count() > 1; ++i)
     {
-      AppendTo(packed[RankOf(BitsOf(edge.Ends[0]) + BitsOf(edge.Ends[1]), ranks)], &edge, 1);
+      const std::uint64_t bits = BitsOf(edges[i].Ends[0]) + BitsOf(edges[i].Ends[1]);
+      AppendTo(packed[RankOf(bits, ranks)], &edges[i], 1);
     }
   });
-  packed = ranks.Exchange(std::move(packed));
-  if (!CanAll(ranks, [&]() {
-        std::vector<EdgeOfPart> edges = Unpacked<EdgeOfPart>(packed);
-        const bool isManifold = KeepSingleEdges(edges);
-        packed = std::vector<Bytes>(ranks.Count());
-        for (Bytes& bytes : packed) // to all
-        {
-          AppendTo(bytes, edges);
-        }
-        return isManifold;
-      }))
+  if (ranks.Count() > 1)
   {
-    return false;
+    packed = ranks.Exchange(std::move(packed));
+    ranks.Agree([&]() {
+      edges = Unpacked<EdgeOfPart>(packed);
+      KeepSingleEdges(edges);
+      packed = std::vector<Bytes>(ranks.Count());
+      for (Bytes& bytes : packed)
+      {
+        AppendTo(bytes, edges);
+      }
+    });
+    packed = ranks.Exchange(std::move(packed));
+    ranks.Agree([&]() { edges = Unpacked<EdgeOfPart>(packed); });
   }
-  packed = ranks.Exchange(std::move(packed));
-  ranks.Agree([&]() { border = BorderOfAll(Unpacked<EdgeOfPart>(packed)); });
-  return true;
+  BorderOfAll border;
+  ranks.Agree([&]() { border = BorderOfAll(std::move(edges)); });
+  return border;
 }
 
 } // namespace elevation

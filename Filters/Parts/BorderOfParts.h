@@ -27,22 +27,22 @@ struct SharedPoints
 {
   std::vector<Index> Places;    ///< increasing: on the border of its triangles, or without any
   std::vector<PointKey> Keys;   ///< of them
-  std::vector<char> AreCopies;  ///< one each: another part's counts
+  std::vector<char> AreCopies;  ///< one each: another part's counts; before FindCopies() as marked
   std::vector<char> OnBoundary; ///< one each: marked as of BoundaryMarksOf()
 
   /** The place of the point with a key, or None. */
   Index Find(const PointKey& key) const;
   /** Takes for copies what is marked so. */
   void TakeMarks(vtkPolyData* data);
-  /** Sorts the keys for Find(). @return false if two points with a triangle have one key */
-  bool Sort(const std::vector<char>& areUsed);
+  /** Sorts the keys for Find(). @throws Error if two points with a triangle have one key */
+  void Sort(const std::vector<char>& areUsed);
 
 private:
   std::vector<std::pair<PointKey, Index>> Sorted;
 };
 
-/** Finds the copies, at a rank for each key. All ranks call it. */
-void FindCopies(const Ranks& ranks, vtkPolyData* own, bool byIds, SharedPoints& points);
+/** Finds the copies of parts in memory, at a rank for each key. All ranks call it. */
+void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points);
 
 /** A border edge of a part's triangles. */
 struct EdgeOfPart
@@ -73,18 +73,12 @@ void AppendBorder(
   const Mesh& mesh, const SharedPoints& points, int part, std::vector<EdgeOfPart>& edges);
 
 /**
- * Takes away the edges that two parts have in common.
- * @return false if an edge has more than two triangles, or two on one side
+ * The border of the parts of all ranks, the same on all of them: without the edges that two parts have
+ * in common. Pairs within a rank go before anything is sent.
+ * @param[in] edges  of the parts of this rank
+ * @throws Error on all ranks if an edge has more than two triangles, or two on one side
  */
-bool KeepSingleEdges(std::vector<EdgeOfPart>& edges);
-
-/**
- * The border of the parts of all ranks, the same on all of them.
- * @param[in] mesh  of this rank, with Twins
- * @return false on all ranks as KeepSingleEdges()
- */
-bool CollectBorder(
-  const Ranks& ranks, const Mesh& mesh, const SharedPoints& points, BorderOfAll& border);
+BorderOfAll CollectBorder(const Ranks& ranks, std::vector<EdgeOfPart>&& edges);
 
 } // namespace elevation
 

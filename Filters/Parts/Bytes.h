@@ -3,14 +3,21 @@
 /**
  * @file
  * Values as bytes, to be sent from rank to rank. Private to the module.
+ *
+ * Plain values go as they are in memory. A struct with lists or texts goes field by field: its FieldsOf
+ * lists them, once for both ways.
  */
 #ifndef Bytes_h
 #define Bytes_h
 
 #include "Kernel/Base/Base.h"
+#include "Kernel/Messages/Messages.h"
 
 #include <algorithm>
 #include <cstring>
+#include <string>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
 namespace elevation
@@ -55,22 +62,100 @@ void TakeFrom(const char*& from, std::size_t count, std::vector<Value>& values)
   TakeFrom(from, values.data(), count);
 }
 
-/** A list with its length, so that it can be taken without knowing that. */
-template <typename Value>
-void AppendList(Bytes& bytes, const std::vector<Value>& values)
+/** A list or text of plain values with its length, so that it can be taken without knowing that. */
+template <typename List>
+void AppendList(Bytes& bytes, const List& values)
 {
   const std::size_t count = values.size();
   AppendTo(bytes, &count, 1);
-  AppendTo(bytes, values);
+  AppendTo(bytes, values.data(), count);
 }
 
-template <typename Value>
-void TakeList(const char*& from, std::vector<Value>& values)
+template <typename List>
+void TakeList(const char*& from, List& values)
 {
   std::size_t count = 0;
   TakeFrom(from, &count, 1);
-  TakeFrom(from, count, values);
+  values.resize(count);
+  TakeFrom(from, values.data(), count);
 }
+
+/** FieldsOf<Struct>::In(value) is a tuple of references to what there is in a struct. */
+template <typename Struct>
+struct FieldsOf;
+
+/**
+ * Packs and unpacks values of any kind: plain ones, texts, messages, structs with FieldsOf, and lists of
+ * these. A value tells where it ends.
+ */
+struct AnyValue
+{
+  template <typename Value>
+  static void Append(Bytes& bytes, const Value& value)
+  {
+    if constexpr (std::is_trivially_copyable_v<Value>)
+    {
+      AppendTo(bytes, &value, 1);
+    }
+    else
+    {
+      std::apply([&bytes](const auto&... fields) { (Append(bytes, fields), ...); },
+        FieldsOf<Value>::In(value));
+    }
+  }
+  template <typename Value>
+  static void Append(Bytes& bytes, const std::vector<Value>& values)
+  {
+    if constexpr (std::is_trivially_copyable_v<Value>)
+    {
+      AppendList(bytes, values);
+    }
+    else
+    {
+      Append(bytes, values.size());
+      std::for_each(
+        values.begin(), values.end(), [&bytes](const Value& value) { Append(bytes, value); });
+    }
+  }
+  static void Append(Bytes& bytes, const std::string& text) { AppendList(bytes, text); }
+  static void Append(Bytes& bytes, const Message& message) { Append(bytes, message.Pack()); }
+
+  template <typename Value>
+  static void Take(const char*& from, Value& value)
+  {
+    if constexpr (std::is_trivially_copyable_v<Value>)
+    {
+      TakeFrom(from, &value, 1);
+    }
+    else
+    {
+      std::apply(
+        [&from](auto&... fields) { (Take(from, fields), ...); }, FieldsOf<Value>::In(value));
+    }
+  }
+  template <typename Value>
+  static void Take(const char*& from, std::vector<Value>& values)
+  {
+    if constexpr (std::is_trivially_copyable_v<Value>)
+    {
+      TakeList(from, values);
+    }
+    else
+    {
+      std::size_t count = 0;
+      Take(from, count);
+      values.resize(count);
+      std::for_each(values.begin(), values.end(), [&from](Value& value) { Take(from, value); });
+    }
+  }
+  static void Take(const char*& from, std::string& text) { TakeList(from, text); }
+  static void Take(const char*& from, Message& message)
+  {
+    std::string text;
+    Take(from, text);
+    message = Message::Unpack(text);
+  }
+};
 
 } // namespace elevation
 

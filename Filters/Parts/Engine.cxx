@@ -149,6 +149,30 @@ void Engine::ForEach(
   });
 }
 
+// As many turns as the rank with most parts needs; others have none left in the last ones.
+void Engine::ForEachInTurn(const Progress& progress, Engine& receiving,
+  const std::function<void(int, const Progress&)>& step) const
+{
+  int turns = 0;
+  for (std::size_t rank = 0; rank + 1 < this->Firsts.size(); ++rank)
+  {
+    turns = std::max(turns, this->Firsts[rank + 1] - this->Firsts[rank]);
+  }
+  for (int turn = 0; turn < turns; ++turn)
+  {
+    const double begin = turn, end = turn + 1;
+    const Progress ofTurn = Part(progress, begin / turns, end / turns);
+    const int part = this->FirstOwn() + turn;
+    this->Crew.Agree([&]() {
+      if (this->IsOwn(part))
+      {
+        step(part, this->Crew.Watched(ofTurn));
+      }
+    });
+    receiving.Deliver(Part(ofTurn, 1.0, 1.0));
+  }
+}
+
 // Nothing is sent before Deliver(): a step that fails has sent nothing.
 void Engine::Send(int part, int box, Bytes&& stretch)
 {

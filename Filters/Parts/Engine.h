@@ -104,6 +104,13 @@ public:
   void ForEach(const Progress& progress,
     const std::function<void(int part, const Progress& ofPart)>& step) const;
 
+  /**
+   * The same in turns: after one part of each rank, what has been sent to the parts of another engine is
+   * delivered, so that no more of it is in memory.
+   */
+  void ForEachInTurn(const Progress& progress, Engine& receiving,
+    const std::function<void(int part, const Progress& ofPart)>& step) const;
+
   /** Sends to any part. It is there after Deliver(), which all ranks call. */
   void Send(int part, int box, Bytes&& stretch);
   void Deliver(const Progress& progress = Progress());

@@ -9,6 +9,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -24,19 +25,14 @@
 namespace elevation
 {
 
-bool FilledPart::HasPoints() const
+void FilledPart::Read(bool byIds, const Progress& progress)
 {
-  return this->Input->GetNumberOfPoints() > 0;
-}
-
-void FilledPart::Read(const Progress& progress)
-{
-  CheckArrays(this->Input);
   ToMesh(this->Input, this->Own, Part(progress, 0.0, 0.4));
   this->Own.ConnectTwins(0, Part(progress, 0.4, 1.0));
+  this->ListShared(byIds);
 }
 
-bool FilledPart::ListShared(bool byIds)
+void FilledPart::ListShared(bool byIds)
 {
   std::vector<char> mayBeShared(static_cast<std::size_t>(this->Input->GetNumberOfPoints()), 1);
   this->AreUsed.assign(mayBeShared.size(), 0);
@@ -62,7 +58,8 @@ bool FilledPart::ListShared(bool byIds)
     }
   }
   this->Shared.Keys = KeysOf(this->Input, byIds, &this->Shared.Places);
-  return this->Shared.Sort(this->AreUsed);
+  this->Shared.TakeMarks(this->Input);
+  this->Shared.Sort(this->AreUsed);
 }
 
 /** One flag a point: 1 if it is another part's. */
@@ -145,8 +142,13 @@ vtkIdType FilledPart::CountOfOthers() const
 
 vtkIdType FilledPart::LargestId() const
 {
-  vtkIdType largest = -1;
   vtkDataArray* const ids = this->Input->GetPointData()->GetGlobalIds();
+  vtkIdType largest = -1;
+  if (auto* const plain = vtkIdTypeArray::FastDownCast(ids))
+  {
+    const vtkIdType* const begin = plain->GetPointer(0);
+    return std::max(largest, *std::max_element(begin, begin + plain->GetNumberOfTuples()));
+  }
   for (vtkIdType i = 0; ids && i < ids->GetNumberOfTuples(); ++i)
   {
     largest = std::max<vtkIdType>(largest, ids->GetVariantValue(i).ToTypeInt64());
@@ -261,17 +263,11 @@ void FilledPart::Write(const SharedHoles& all, bool areMarked, vtkIdType largest
   this->NumberNewPoints(all, largestId, output);
 }
 
-vtkSmartPointer<vtkPolyData> FilledPart::PointsOnBorder(const BorderOfAll& border) const
+vtkSmartPointer<vtkPolyData> FilledPart::PointsOnBorder() const
 {
   std::vector<Index> chosen;
-  for (std::size_t i = 0; i < this->Shared.Places.size(); ++i)
-  {
-    const bool isUsed = this->AreUsed[this->Shared.Places[i]];
-    if (isUsed && border.Find(this->Shared.Keys[i]) != None)
-    {
-      chosen.push_back(this->Shared.Places[i]);
-    }
-  }
+  std::copy_if(this->Shared.Places.begin(), this->Shared.Places.end(), std::back_inserter(chosen),
+    [this](Index place) { return this->AreUsed[place] != 0; });
   return chosen.empty() ? nullptr : ChosenPoints(this->Input, chosen);
 }
 

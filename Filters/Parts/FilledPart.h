@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * A part of a surface whose holes are filled, on a rank or as a piece. Private to the module.
+ * A part of a surface whose holes are filled (FillParts.h): what is read of it, and how it is written.
+ * Private to the module.
  */
 #ifndef FilledPart_h
 #define FilledPart_h
@@ -21,17 +22,17 @@ namespace elevation
 
 struct FilledPart
 {
-  vtkPolyData* Input = nullptr;
-  Mesh Own;                  ///< of the input
-  std::vector<char> AreUsed; ///< points that a triangle has
+  vtkSmartPointer<vtkPolyData> Input; ///< nullptr: it has no points
+  Mesh Own;                           ///< of the input
+  std::vector<char> AreUsed;          ///< points that a triangle has
   SharedPoints Shared;
   SurroundedHoles Filled; ///< holes whose patches this part gets
 
-  bool HasPoints() const;
-  /** Reads the triangles. @throws Error, Aborted */
-  void Read(const Progress& progress);
-  /** Lists the points on the border, and those without a triangle. @return as SharedPoints::Sort() */
-  bool ListShared(bool byIds);
+  /**
+   * Reads the triangles, and lists the points on their border and those without any.
+   * @throws Error, as SharedPoints::Sort(); Aborted
+   */
+  void Read(bool byIds, const Progress& progress);
 
   /** The points that no other part counts. @param[out] kept  holds them */
   PointView OwnPoints(Buffer<double>& kept) const;
@@ -54,10 +55,11 @@ struct FilledPart
   void Write(const SharedHoles& all, bool areMarked, vtkIdType largestId, const Progress& progress,
     vtkPolyData* output) const;
 
-  /** The points that are on the border of all parts, with their data; nullptr: none. */
-  vtkSmartPointer<vtkPolyData> PointsOnBorder(const BorderOfAll& border) const;
+  /** The points on the border of the triangles, with their data; nullptr: none. */
+  vtkSmartPointer<vtkPolyData> PointsOnBorder() const;
 
 private:
+  void ListShared(bool byIds);
   std::vector<char> AreOthers() const;
   vtkSmartPointer<vtkPolyData> WithCorners(bool areMarked, const Progress& progress) const;
   FillResult PlacedPatches(const SharedHoles& all, vtkPolyData* input) const;
@@ -65,7 +67,7 @@ private:
   void NumberNewPoints(const SharedHoles& all, vtkIdType largest, vtkPolyData* output) const;
 };
 
-/** Output 1 of the filter. @param[in] points  PointsOnBorder() of all parts */
+/** Output 1 of the filter. @param[in] points  of the border of all parts; a point may come again */
 void WriteRims(
   const SharedHoles& all, const Parts& points, const Progress& progress, vtkPolyData* output);
 

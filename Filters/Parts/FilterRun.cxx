@@ -41,15 +41,9 @@ const char* RequiredType(vtkAlgorithm* filter)
 /** The messages of all ranks, on the first, each once. */
 std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& ranks)
 {
-  std::vector<std::string> packed;
-  for (const Message& message : messages)
-  {
-    packed.push_back(message.Pack());
-  }
   std::vector<Message> all;
-  for (const std::string& one : ranks.Collect(packed))
+  for (const Message& message : ranks.Collect(messages))
   {
-    const Message message = Message::Unpack(one);
     if (ranks.Own() == 0 && std::find(all.begin(), all.end(), message) == all.end())
     {
       all.push_back(message);

@@ -51,7 +51,7 @@ std::vector<Point2> CollectPoints(const Ranks& ranks, const std::vector<Point2>&
   {
     reals.insert(reals.end(), { p.X, p.Y });
   }
-  reals = ranks.CollectReals(reals);
+  reals = ranks.Collect(reals);
   std::vector<Point2> all;
   for (std::size_t i = 0; i < reals.size(); i += 2)
   {
@@ -136,7 +136,7 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
     });
     reals = ToReals(own);
   });
-  reals = ranks.CollectReals(reals);
+  reals = ranks.Collect(reals);
   for (const double* at = reals.data(); at != reals.data() + reals.size();)
   {
     all.Add(FromReals(at));

@@ -7,8 +7,7 @@
 #ifndef Parts_h
 #define Parts_h
 
-#include "DistributedFill.h"
-#include "FilledPieces.h"
+#include "FillParts.h"
 #include "FilterRun.h"
 #include "Joining.h"
 #include "PointRows.h"

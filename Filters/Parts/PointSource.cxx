@@ -324,7 +324,7 @@ Cuts PointSource::CutPlane(int parts)
   {
     coordinates = this->SampleAtOnce(parts);
   }
-  coordinates = this->All.CollectReals(coordinates);
+  coordinates = this->All.Collect(coordinates);
   std::unique_ptr<Cuts> plane;
   this->All.Agree([&]() {
     std::vector<Point2> sample(coordinates.size() / 2);

@@ -116,61 +116,20 @@ void Ranks::Maximum(std::vector<double>& values) const
   }
 }
 
-namespace
+Bytes Ranks::CollectBytes(const Bytes& bytes) const
 {
-/** The values of all ranks, one after another. */
-template <typename Value>
-std::vector<Value> AllOf(vtkMultiProcessController* ranks, const Value* values, std::size_t count)
-{
-  std::vector<vtkIdType> lengths(ranks->GetNumberOfProcesses());
-  const vtkIdType length = static_cast<vtkIdType>(count);
-  ranks->AllGather(&length, lengths.data(), 1);
+  const vtkIdType length = static_cast<vtkIdType>(bytes.size());
+  std::vector<vtkIdType> lengths(this->Count());
+  this->Controller->AllGather(&length, lengths.data(), 1);
   std::vector<vtkIdType> offsets(lengths.size(), 0);
   std::partial_sum(lengths.begin(), lengths.end() - 1, offsets.begin() + 1);
-  std::vector<Value> all(offsets.back() + lengths.back());
+  Bytes all;
+  all.Resize(static_cast<std::size_t>(offsets.back() + lengths.back()));
   if (!all.empty())
   {
-    ranks->AllGatherV(values, all.data(), length, lengths.data(), offsets.data());
+    this->Controller->AllGatherV(bytes.data(), all.data(), length, lengths.data(), offsets.data());
   }
-  return all;
-}
-} // namespace
-
-std::vector<vtkIdType> Ranks::Collect(const std::vector<vtkIdType>& values) const
-{
-  this->CountCollected(values.size() * sizeof(vtkIdType));
-  return this->Controller ? AllOf(this->Controller, values.data(), values.size()) : values;
-}
-
-std::vector<double> Ranks::CollectReals(const std::vector<double>& values) const
-{
-  this->CountCollected(values.size() * sizeof(double));
-  return this->Controller ? AllOf(this->Controller, values.data(), values.size()) : values;
-}
-
-std::vector<std::string> Ranks::Collect(const std::vector<std::string>& texts) const
-{
-  if (!this->Controller)
-  {
-    return texts;
-  }
-  std::vector<vtkIdType> lengths;
-  std::string joined;
-  for (const std::string& text : texts)
-  {
-    lengths.push_back(static_cast<vtkIdType>(text.size()));
-    joined += text;
-  }
-  lengths = this->Collect(lengths);
-  this->CountCollected(joined.size());
-  const std::vector<char> letters = AllOf(this->Controller, joined.data(), joined.size());
-  std::vector<std::string> all;
-  auto next = letters.begin();
-  for (const vtkIdType length : lengths)
-  {
-    all.emplace_back(next, next + length);
-    next += length;
-  }
+  this->Sent.BytesSent += length * (this->Count() - 1);
   return all;
 }
 
@@ -181,19 +140,18 @@ void Ranks::Agree(const std::function<void()>& step) const
     step();
     return;
   }
-  // A letter that tells of the kind, and the message.
-  std::vector<std::string> failures;
+  std::vector<Message> failures; // of an abort an empty one
   try
   {
     step();
   }
   catch (const Aborted&)
   {
-    failures = { "A" };
+    failures.emplace_back();
   }
   catch (const std::exception& error)
   {
-    failures = { "E" + MessageOf(error).Pack() };
+    failures.push_back(MessageOf(error));
   }
   const bool isStopped = this->IsStopped; // and not by a failure of its own
   this->IsStopped = false;
@@ -211,15 +169,13 @@ void Ranks::Agree(const std::function<void()>& step) const
   {
     this->Notes->Take(static_cast<int>(failures.size()) - own);
   }
-  for (const char kind : { 'A', 'E' })
+  if (std::any_of(failures.begin(), failures.end(), [](const Message& m) { return m.IsEmpty(); }))
   {
-    for (const std::string& failure : failures)
-    {
-      if (failure.front() == kind)
-      {
-        kind == 'A' ? throw Aborted() : throw CodedError(Message::Unpack(failure.substr(1)));
-      }
-    }
+    throw Aborted();
+  }
+  if (!failures.empty())
+  {
+    throw CodedError(failures.front());
   }
 }
 
@@ -320,11 +276,6 @@ std::vector<std::vector<Bytes>> Ranks::ExchangeLists(std::vector<std::vector<Byt
   });
   ++this->Sent.Rounds;
   return fromEach;
-}
-
-void Ranks::CountCollected(std::size_t bytes) const
-{
-  this->Sent.BytesSent += static_cast<vtkIdType>(bytes) * (this->Count() - 1);
 }
 
 void Ranks::Send(const void* bytes, std::size_t size, int rank) const

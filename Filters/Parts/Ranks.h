@@ -45,8 +45,8 @@ public:
    * @param[in] controller  may be nullptr
    * @throws Error if more pieces are asked for than there are ranks
    */
-  Ranks(vtkMultiProcessController* controller, vtkInformation* request,
-    vtkInformationVector* outputs);
+  Ranks(
+    vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs);
 
   int Own() const;
   int Count() const;
@@ -55,10 +55,27 @@ public:
   void Sum(std::vector<vtkIdType>& values) const;
   void Maximum(std::vector<double>& values) const;
 
-  /** The values (texts) of all ranks, one after another. The lengths may differ. */
-  std::vector<vtkIdType> Collect(const std::vector<vtkIdType>& values) const;
-  std::vector<double> CollectReals(const std::vector<double>& values) const;
-  std::vector<std::string> Collect(const std::vector<std::string>& texts) const;
+  /** The values of all ranks, one after another, of any kind (AnyValue). The lengths may differ. */
+  template <typename Value>
+  std::vector<Value> Collect(const std::vector<Value>& values) const
+  {
+    if (this->Count() == 1)
+    {
+      return values;
+    }
+    Bytes bytes;
+    for (const Value& value : values)
+    {
+      AnyValue::Append(bytes, value);
+    }
+    bytes = this->CollectBytes(bytes);
+    std::vector<Value> all;
+    for (const char* from = bytes.data(); from != bytes.end();)
+    {
+      AnyValue::Take(from, all.emplace_back());
+    }
+    return all;
+  }
 
   /**
    * Does a step in which no rank waits for another. Then all of them know how it went; within a
@@ -105,7 +122,7 @@ public:
 
 private:
   void Meet(const std::function<void(int other)>& withOther) const;
-  void CountCollected(std::size_t bytes) const;
+  Bytes CollectBytes(const Bytes& bytes) const;
 
   vtkMultiProcessController* Controller = nullptr; // nullptr: one rank
   std::unique_ptr<FailureNotes> Notes;

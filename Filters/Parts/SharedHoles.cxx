@@ -12,11 +12,24 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
-#include <string>
 #include <utility>
 
 namespace elevation
 {
+
+/** As packed, without the points around the holes; of patches, without holes and reports. */
+template <>
+struct FieldsOf<SurroundedHoles>
+{
+  template <typename Some>
+  static auto In(Some& holes)
+  {
+    auto& patches = holes.Patches;
+    return std::tie(holes.Numbers, holes.Keys, patches.Points, patches.Triangles,
+      patches.PointOffsets, patches.TriangleOffsets, patches.NearestBoundaryPoints,
+      patches.StandardErrors, patches.Attributes);
+  }
+};
 
 bool SharedHoles::Find(const Progress& progress)
 {
@@ -191,22 +204,6 @@ void SurroundedHoles::KeepCorners()
 
 namespace
 {
-/** Calls visit for each list of a result, without holes and reports. */
-template <typename Result, typename Visit>
-void ForEachList(Result& patches, const Visit& visit)
-{
-  visit(patches.Points);
-  visit(patches.Triangles);
-  visit(patches.PointOffsets);
-  visit(patches.TriangleOffsets);
-  visit(patches.NearestBoundaryPoints);
-  visit(patches.StandardErrors);
-  for (auto& values : patches.Attributes)
-  {
-    visit(values);
-  }
-}
-
 /** Appends all lists of a result, whose ids and offsets go on. */
 void AppendLists(const FillResult& from, FillResult& to)
 {
@@ -229,27 +226,17 @@ void AppendLists(const FillResult& from, FillResult& to)
 Bytes SurroundedHoles::Pack() const
 {
   Bytes bytes;
+  AnyValue::Append(bytes, *this);
   const Bytes data = PackData(this->Surrounding);
-  const std::size_t sizes[] = { data.size(), this->Patches.Attributes.size() };
-  AppendTo(bytes, sizes, 2);
   AppendTo(bytes, data.data(), data.size());
-  AppendList(bytes, this->Numbers);
-  AppendList(bytes, this->Keys);
-  ForEachList(this->Patches, [&bytes](const auto& values) { AppendList(bytes, values); });
   return bytes;
 }
 
 SurroundedHoles::SurroundedHoles(const Bytes& bytes)
 {
   const char* from = bytes.data();
-  std::size_t sizes[2];
-  TakeFrom(from, sizes, 2);
-  this->Surrounding = UnpackData(from, sizes[0]);
-  from += sizes[0];
-  this->Patches.Attributes.resize(sizes[1]);
-  TakeList(from, this->Numbers);
-  TakeList(from, this->Keys);
-  ForEachList(this->Patches, [&from](auto& values) { TakeList(from, values); });
+  AnyValue::Take(from, *this);
+  this->Surrounding = UnpackData(from, static_cast<std::size_t>(bytes.end() - from));
 }
 
 SurroundedHoles::SurroundedHoles(std::vector<SurroundedHoles>&& groups)

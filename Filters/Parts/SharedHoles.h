@@ -15,12 +15,25 @@
 
 #include "vtkSmartPointer.h"
 
+#include <tuple>
 #include <vector>
 
 class vtkPolyData;
 
 namespace elevation
 {
+
+/** As it goes to other ranks. */
+template <>
+struct FieldsOf<HoleReport>
+{
+  template <typename Report>
+  static auto In(Report& report)
+  {
+    auto& [status, edges, size, perimeter, area, spacing, inserted, method, more, reason] = report;
+    return std::tie(status, edges, size, perimeter, area, spacing, inserted, method, more, reason);
+  }
+};
 
 /** What is known of all holes, wherever they are filled. */
 struct SharedHoles

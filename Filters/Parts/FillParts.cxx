@@ -1,0 +1,520 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/*
+ * The passes in their order. Modes differ in three things: whether a part stays (WithPart), which part a
+ * hole goes to (PartsOfHoles), and by what a point is known to be another part's: in files it is marked,
+ * in memory ranks find out together (FindCopies).
+ */
+#include "FillParts.h"
+
+#include "Adapt/Adapt.h"
+#include "BoundaryZone.h"
+#include "FilterRun.h"
+#include "PackedData.h"
+#include "PointRows.h"
+
+#include "vtkCellData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+// The boxes of a part, and that of a group; see Engine.h.
+constexpr int Patches = 0, Rims = 1, Surrounding = 0;
+
+constexpr double LeastPointsOfGroup = 1000.0;
+constexpr double GroupsOfPart = 8.0; // so many groups together take the memory of a part
+} // namespace
+
+FillParts::FillParts(
+  const SurfaceParts& surface, const FillOptions& options, bool interpolate, bool byIds)
+  : Make(surface.Make)
+  , Crew(surface.Crew.All(), surface.Crew.EndOwn() - surface.Crew.FirstOwn(), { "patches", "rims" },
+      surface.Crew.Folder())
+  , All(surface.Crew.All())
+{
+  this->Whole.Options = options;
+  this->Whole.Interpolate = interpolate;
+  this->Whole.ByIds = byIds;
+}
+
+/** Visits a part with points. In memory it stays, with what is read of it; in files it is made anew. */
+template <typename Visit>
+void FillParts::WithPart(int part, const Progress& progress, const Visit& visit)
+{
+  FilledPart made;
+  FilledPart& one = this->Crew.IsInFiles() ? made : this->InMemory;
+  if (!one.Input)
+  {
+    one.Input = this->Make(part, Part(progress, 0.0, 0.5));
+  }
+  if (one.Input)
+  {
+    visit(one, Part(progress, 0.5, 1.0));
+  }
+}
+
+void FillParts::FindHoles(int partOfRims)
+{
+  this->PartOfRims = partOfRims;
+  std::vector<KnownPart> own(this->Crew.EndOwn() - this->Crew.FirstOwn());
+  std::vector<EdgeOfPart> edges;
+  Parts borders;
+  this->Crew.ForEach(this->Fraction(0.0, 0.18), [&](int part, const Progress& progress) {
+    this->WithPart(part, progress, [&](FilledPart& one, const Progress& reading) {
+      one.Read(this->Whole.ByIds, reading);
+      AppendBorder(one.Own, one.Shared, part, edges);
+      borders.push_back(one.PointsOnBorder());
+      KnownPart& known = own[part - this->Crew.FirstOwn()];
+      for (const Index corner : one.Own.Triangles)
+      {
+        known.Place.Add(one.Own.PointOf(corner));
+      }
+      known.Triangles = one.Own.NumberOfTriangles();
+      known.Points = one.Input->GetNumberOfPoints();
+      known.OwnPoints = one.CountOfOwn();
+      known.LargestId = one.LargestId();
+    });
+  });
+  if (!this->Crew.IsInFiles())
+  {
+    FindCopies(this->All, this->Whole.ByIds, this->InMemory.Shared);
+    if (this->InMemory.Input)
+    {
+      own[0].OwnPoints = this->InMemory.CountOfOwn();
+    }
+  }
+  this->Known = this->All.Collect(own);
+  for (int part = 0; part < this->Crew.CountOfParts(); ++part)
+  {
+    const double points = static_cast<double>(this->Known[part].OwnPoints);
+    this->Points += points;
+    this->PointsOfRank += this->Crew.IsOwn(part) ? points : 0.0;
+    this->LargestId = std::max(this->LargestId, this->Known[part].LargestId);
+  }
+  this->Whole.Border = CollectBorder(this->All, std::move(edges));
+  this->SendRims(std::move(borders));
+  this->All.Agree([this]() {
+    if (!this->Whole.Find(this->All.Watched(this->Fraction(0.18, 0.2))))
+    {
+      throw Error("Borders of the surface touch, so that it cannot be filled in pieces; fill the "
+                  "surface in memory.");
+    }
+  });
+}
+
+/** The points on the border of the surface, of all that are on that of a part. */
+void FillParts::SendRims(Parts&& borders)
+{
+  this->All.Agree([&]() {
+    for (vtkSmartPointer<vtkPolyData>& points : borders)
+    {
+      const std::vector<PointKey> keys =
+        points ? KeysOf(points, this->Whole.ByIds, nullptr) : std::vector<PointKey>();
+      std::vector<Index> chosen;
+      for (std::size_t i = 0; i < keys.size(); ++i)
+      {
+        if (this->Whole.Border.Find(keys[i]) != None)
+        {
+          chosen.push_back(static_cast<Index>(i));
+        }
+      }
+      points = chosen.empty() ? nullptr : ChosenPoints(points, chosen);
+      if (points && this->Crew.IsOwn(this->PartOfRims))
+      {
+        this->OwnRims.push_back(points);
+      }
+      else if (points)
+      {
+        this->Crew.Send(this->PartOfRims, Rims, PackData(points));
+      }
+      points = nullptr;
+    }
+  });
+  this->Crew.Deliver();
+}
+
+void FillParts::Fill()
+{
+  if (this->Whole.NeedLattice())
+  {
+    this->FindLattice();
+  }
+  this->GroupHoles();
+  this->FillAll();
+  this->ShareOfHoles(this->Whole.OfAll.Reports);
+  this->Whole.NumberNewPoints();
+  // Parts in files have marks anyway; those in memory get them if any has a point of another.
+  std::vector<vtkIdType> sums = { this->NewTriangles, this->Crew.IsInFiles() ? 1 : 0 };
+  if (!this->Crew.IsInFiles())
+  {
+    this->Crew.ForEach(Progress(), [&](int part, const Progress& progress) {
+      this->WithPart(part, progress, [&](FilledPart& one, const Progress&) {
+        this->TakePatches(part, one);
+        sums[1] += one.CountOfOthers();
+      });
+    });
+  }
+  this->All.Sum(sums);
+  this->NewTriangles = sums[0];
+  this->AreMarked = sums[1] > 0;
+}
+
+/** That of all points, each counted once. A part is a slice. */
+void FillParts::FindLattice()
+{
+  const auto forEach = [this](const auto& visit) {
+    const Progress making = this->All.Watched(this->Fraction(0.2, 0.2));
+    for (int part = this->Crew.FirstOwn(); part < this->Crew.EndOwn(); ++part)
+    {
+      this->WithPart(part, making, [&visit](FilledPart& one, const Progress&) {
+        Buffer<double> kept;
+        visit(one.OwnPoints(kept));
+      });
+    }
+  };
+  this->Whole.FindLattice(this->All, { this->PointsOfRank, forEach }, this->Fraction(0.2, 0.5));
+}
+
+/** The part of each hole; in memory, of a rank with points. */
+std::vector<int> FillParts::PartsOfHoles() const
+{
+  std::vector<int> parts;
+  if (!this->Crew.IsInFiles())
+  {
+    std::vector<vtkIdType> have;
+    for (const KnownPart& known : this->Known)
+    {
+      have.push_back(known.Points);
+    }
+    return BalancedRanks(this->Whole.Extents, have);
+  }
+  const BorderOfAll& border = this->Whole.Border;
+  std::vector<int> partOf(border.Keys.size(), 0);
+  for (std::size_t i = 0; i < border.Edges.size(); ++i)
+  {
+    partOf[border.Edges[i].Origin] = border.PartOfEdge[i];
+  }
+  const Holes& found = this->Whole.OfAll.Found;
+  for (Index hole = 0; hole < found.Count(); ++hole)
+  {
+    parts.push_back(partOf[*found.Walks.Begin(found.Rim(hole))]);
+  }
+  return parts;
+}
+
+/** About how many points are in the box around a hole. */
+double FillParts::PointsAround(Index hole, const KnownPart& part) const
+{
+  const HoleExtent& extent = this->Whole.Extents[hole];
+  const Box box = this->Whole.BoxOf(hole);
+  const double area = box.Width() * box.Height();
+  const Box& all = part.Place;
+  return std::max(area / (extent.MeanEdge * extent.MeanEdge),
+    0.5 * part.Triangles * area / (all.Width() * all.Height()));
+}
+
+/** The same groups on all ranks; those of one rank are next to each other, as its parts are. */
+void FillParts::GroupHoles()
+{
+  const std::vector<int> partOf = this->PartsOfHoles();
+  std::vector<std::vector<Index>> holesOf(this->Known.size());
+  for (std::size_t hole = 0; hole < partOf.size(); ++hole)
+  {
+    if (this->Whole.IsToBeFilled(hole))
+    {
+      holesOf[partOf[hole]].push_back(static_cast<Index>(hole));
+    }
+  }
+  const double most = !this->Crew.IsInFiles()
+    ? std::numeric_limits<double>::infinity()
+    : std::max(
+        LeastPointsOfGroup, this->Points / static_cast<double>(this->Known.size()) / GroupsOfPart);
+  int ownCount = 0;
+  for (int part = 0; part < this->Crew.CountOfParts(); ++part)
+  {
+    double points = 0.0; // around the holes of the group
+    for (const Index hole : holesOf[part])
+    {
+      const double around = this->PointsAround(hole, this->Known[part]);
+      if (hole == holesOf[part].front() || points + around > most)
+      {
+        this->Groups.push_back({ part, {} });
+        ownCount += this->Crew.IsOwn(part) ? 1 : 0;
+        points = 0.0;
+      }
+      this->Groups.back().Holes.push_back(hole);
+      points += around;
+    }
+  }
+  this->GroupCrew = std::make_unique<Engine>(
+    this->All, ownCount, std::vector<std::string>{ "surrounding" }, this->Crew.Folder());
+}
+
+/** Sends the groups that wait for them the triangles around their holes. */
+void FillParts::Surround(const std::vector<char>& areWaiting, const Progress& progress)
+{
+  this->Crew.ForEachInTurn(progress, *this->GroupCrew, [&](int part, const Progress& ofPart) {
+    std::map<int, std::vector<Box>> boxes; // that meet the part, of each group
+    for (std::size_t group = 0; group < this->Groups.size(); ++group)
+    {
+      for (std::size_t i = 0; i < this->Groups[group].Holes.size() && areWaiting[group]; ++i)
+      {
+        const Box box = this->Whole.BoxOf(this->Groups[group].Holes[i]);
+        if (box.Intersects(this->Known[part].Place))
+        {
+          boxes[static_cast<int>(group)].push_back(box);
+        }
+      }
+    }
+    if (boxes.empty())
+    {
+      return;
+    }
+    this->WithPart(part, ofPart, [&](FilledPart& one, const Progress& reading) {
+      const bool isInFiles = this->Crew.IsInFiles();
+      if (isInFiles)
+      {
+        ToMesh(one.Input, one.Own, reading);
+      }
+      for (const auto& [group, ofGroup] : boxes)
+      {
+        const std::vector<Index> near = TrianglesIn(ofGroup, one.Own);
+        if (near.empty())
+        {
+          continue;
+        }
+        // Groups of this rank may be many, so what goes to their files is not kept.
+        Bytes packed = PackData(ChosenTriangles(one.Input, one.Own, near));
+        isInFiles&& this->GroupCrew->IsOwn(group)
+          ? this->GroupCrew->At(group, Surrounding).Append(std::move(packed))
+          : this->GroupCrew->Send(group, Surrounding, std::move(packed));
+      }
+    });
+  });
+}
+
+/** The holes of a group, and what surrounds them: in memory read once, in files anew each time. */
+SurroundedHoles& FillParts::HolesOf(int group, const Progress& progress)
+{
+  Inbox& box = this->GroupCrew->At(group, Surrounding);
+  if (!box.IsEmpty())
+  {
+    this->Around = SurroundedHoles();
+    this->Around.Numbers = this->Groups[group].Holes;
+    Parts parts;
+    box.ForEach(
+      [&parts](const Bytes& bytes) { parts.push_back(UnpackData(bytes.data(), bytes.size())); });
+    if (!this->Crew.IsInFiles())
+    {
+      box.Clear();
+    }
+    this->Around.Surround(parts, this->Whole.ByIds, progress);
+  }
+  return this->Around;
+}
+
+/** Hands to all ranks what each knows of the holes of its groups. */
+template <typename Value>
+void FillParts::ShareOfHoles(std::vector<Value>& values) const
+{
+  std::vector<Value> own;
+  for (int group = this->GroupCrew->FirstOwn(); group < this->GroupCrew->EndOwn(); ++group)
+  {
+    for (const Index hole : this->Groups[group].Holes)
+    {
+      own.push_back(values[hole]);
+    }
+  }
+  const std::vector<Value> all = this->All.Collect(own);
+  auto next = all.begin();
+  for (const Group& group : this->Groups)
+  {
+    for (const Index hole : group.Holes)
+    {
+      values[hole] = *next++;
+    }
+  }
+}
+
+/** What each hole may take, and whether all take too much, is known where all needs are. */
+void FillParts::FindQuotas(const Progress& progress)
+{
+  std::vector<HoleNeed> needs(this->Whole.Extents.size());
+  this->GroupCrew->ForEach(progress, [&](int group, const Progress& ofGroup) {
+    SurroundedHoles& holes = this->HolesOf(group, Part(ofGroup, 0.0, 0.5));
+    const std::vector<HoleNeed> found = holes.Needs(this->Whole, Part(ofGroup, 0.5, 1.0));
+    for (std::size_t i = 0; i < found.size(); ++i)
+    {
+      needs[holes.Numbers[i]] = found[i];
+    }
+  });
+  this->ShareOfHoles(needs);
+  this->All.Agree([&]() { CheckEffort(needs, this->Points, this->Whole.Options); });
+  this->Whole.Quotas = QuotasFor(needs, this->Whole.Options.MaximumInsertedPoints);
+}
+
+/** @return false if holes, which are added to those beyond, need more of the surface around them */
+bool FillParts::FillGroup(int group, const Progress& progress, std::vector<vtkIdType>& beyond)
+{
+  SurroundedHoles& holes = this->HolesOf(group, Part(progress, 0.0, 0.1));
+  const std::vector<Index> found = holes.Fill(this->Whole, Part(progress, 0.1, 1.0));
+  beyond.insert(beyond.end(), found.begin(), found.end());
+  for (std::size_t i = 0; i < holes.Numbers.size(); ++i)
+  {
+    this->Whole.OfAll.Reports[holes.Numbers[i]] = holes.Patches.Reports[i];
+  }
+  if (found.empty() && holes.Patches.NumberOfTriangles() > 0)
+  {
+    this->NewTriangles += holes.Patches.NumberOfTriangles();
+    holes.KeepCorners();
+    this->Crew.At(this->Groups[group].Part, Patches).Append(holes.Pack());
+  }
+  this->GroupCrew->At(group, Surrounding).Clear();
+  holes = SurroundedHoles();
+  return found.empty();
+}
+
+void FillParts::FillAll()
+{
+  std::vector<char> areWaiting(this->Groups.size(), 1);
+  while (std::count(areWaiting.begin(), areWaiting.end(), 1) > 0)
+  {
+    // Few holes need more than their first box.
+    const bool isFirst = this->Whole.Quotas.empty();
+    const double begin = isFirst ? 0.5 : 0.9;
+    this->Surround(areWaiting, this->Fraction(begin, isFirst ? 0.58 : 0.9));
+    if (isFirst)
+    {
+      this->FindQuotas(this->Fraction(0.58, 0.6));
+    }
+    std::vector<vtkIdType> beyond, waiting; // holes, and their groups
+    const Progress filling = isFirst ? this->Fraction(0.6, 0.9) : this->Fraction(0.9, 1.0);
+    this->GroupCrew->ForEach(filling, [&](int group, const Progress& progress) {
+      if (areWaiting[group] && !this->FillGroup(group, progress, beyond))
+      {
+        waiting.push_back(group);
+      }
+    });
+    for (const vtkIdType hole : this->All.Collect(beyond))
+    {
+      ++this->Whole.Retries[hole];
+    }
+    std::fill(areWaiting.begin(), areWaiting.end(), char(0));
+    for (const vtkIdType group : this->All.Collect(waiting))
+    {
+      areWaiting[group] = 1;
+    }
+  }
+}
+
+/** Reads the patches of a part. */
+void FillParts::TakePatches(int part, FilledPart& one)
+{
+  std::vector<SurroundedHoles> groups;
+  Inbox& box = this->Crew.At(part, Patches);
+  box.ForEach([&groups](const Bytes& bytes) { groups.emplace_back(bytes); });
+  if (!this->Crew.IsInFiles())
+  {
+    box.Clear();
+  }
+  one.Filled = SurroundedHoles(std::move(groups));
+  one.FindCorners();
+}
+
+void FillParts::Pass(int part, const Progress& progress, vtkPolyData* output)
+{
+  this->WithPart(part, progress, [&](FilledPart& one, const Progress& ofPart) {
+    if (this->Crew.IsInFiles())
+    {
+      one.Read(this->Whole.ByIds, Part(ofPart, 0.0, 0.3));
+      this->TakePatches(part, one);
+    }
+    one.Write(this->Whole, this->AreMarked, this->LargestId, Part(ofPart, 0.3, 1.0), output);
+  });
+}
+
+void FillParts::PassRims(const Progress& progress, vtkPolyData* output)
+{
+  Parts points = this->OwnRims;
+  this->Crew.At(this->PartOfRims, Rims).ForEach([&points](const Bytes& bytes) {
+    points.push_back(UnpackData(bytes.data(), bytes.size()));
+  });
+  WriteRims(this->Whole, points, progress, output);
+}
+
+namespace
+{
+/** Whether a part has nothing but triangles of its own, or polygons at least. */
+bool IsPlain(vtkPolyData* part)
+{
+  return part->GetNumberOfVerts() == 0 && part->GetNumberOfLines() == 0 &&
+    part->GetNumberOfStrips() == 0 && !GhostsOf(part->GetCellData());
+}
+} // namespace
+
+bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolate, Block& block,
+  FillResult& patches)
+{
+  vtkSmartPointer<vtkPolyData> input = vtkPolyData::SafeDownCast(block.Input);
+  const bool hasPoints = input->GetNumberOfPoints() > 0;
+  const int type = hasPoints ? input->GetPoints()->GetDataType() : VTK_VOID;
+  const bool hasIds = input->GetPointData()->GetGlobalIds() != nullptr;
+  std::vector<vtkIdType> sums = { std::max<vtkIdType>(0, input->GetNumberOfPolys()),
+    type == VTK_FLOAT, type == VTK_DOUBLE, hasPoints && !hasIds };
+  ranks.Sum(sums);
+  const bool areFit = CanAll(ranks, [&]() {
+    Report(ranks.Watched(block.Progress), 0.0);
+    CheckArrays(input);
+    return IsPlain(input) && (!hasPoints || type == VTK_FLOAT || type == VTK_DOUBLE);
+  });
+  if (!areFit || sums[0] == 0 || (sums[1] > 0 && sums[2] > 0) || !HaveSameArrays(ranks, input))
+  {
+    return false;
+  }
+  Engine crew(ranks, 1, {}, std::string());
+  const auto make = [&](int, const Progress&) { return hasPoints ? input : nullptr; };
+  FillOptions filling = options;
+  filling.Monitor = Part(block.Progress, 0.0, 0.82);
+  FillParts fill({ crew, make }, filling, interpolate, sums[3] == 0);
+  const std::vector<vtkIdType> have =
+    ranks.Collect(std::vector<vtkIdType>{ block.Outputs.empty() ? 0 : 1 });
+  const int first = static_cast<int>(std::find(have.begin(), have.end(), 1) - have.begin());
+  try
+  {
+    fill.FindHoles(first);
+  }
+  catch (const Error& error) // on all ranks
+  {
+    if (MessageOf(error).GetCode() == sentences::NotEnoughMemory.Code)
+    {
+      throw;
+    }
+    return false;
+  }
+  fill.Fill();
+  ranks.Agree([&]() {
+    const Progress writing = ranks.Watched(block.Progress);
+    if (hasPoints)
+    {
+      fill.Pass(ranks.Own(), Part(writing, 0.82, 0.97), block.Outputs[0]);
+    }
+    if (ranks.Own() == first)
+    {
+      fill.PassRims(Part(writing, 0.97, 1.0), block.Outputs[1]);
+    }
+  });
+  patches = fill.Result();
+  return true;
+}
+
+} // namespace elevation
