@@ -348,9 +348,9 @@ void vtkReconstructPieces::FillAll(const elevation::Progress& progress)
   const auto make = [this](int piece, const elevation::Progress& ofPiece) {
     return this->MakeTrimmed(piece, ofPiece);
   };
-  auto filled = std::make_unique<elevation::FillParts>(
-    elevation::SurfaceParts{ this->Work->Holders(), make }, options,
-    this->Fill->GetInterpolatePointData() != 0);
+  auto filled =
+    std::make_unique<elevation::FillParts>(elevation::SurfaceParts{ this->Work->Holders(), make },
+      options, this->Fill->GetInterpolatePointData() != 0);
   filled->FindHoles(0);
   filled->Fill();
   this->Filled = std::move(filled);

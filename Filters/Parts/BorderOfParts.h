@@ -73,8 +73,8 @@ void AppendBorder(
   const Mesh& mesh, const SharedPoints& points, int part, std::vector<EdgeOfPart>& edges);
 
 /**
- * The border of the parts of all ranks, the same on all of them: without the edges that two parts have
- * in common. Pairs within a rank go before anything is sent.
+ * The border of the parts of all ranks, the same on all of them: without the edges that two parts
+ * have in common. Pairs within a rank go before anything is sent.
  * @param[in] edges  of the parts of this rank
  * @throws Error on all ranks if an edge has more than two triangles, or two on one side
  */

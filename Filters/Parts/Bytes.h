@@ -4,8 +4,8 @@
  * @file
  * Values as bytes, to be sent from rank to rank. Private to the module.
  *
- * Plain values go as they are in memory. A struct with lists or texts goes field by field: its FieldsOf
- * lists them, once for both ways.
+ * Plain values go as they are in memory. A struct with lists or texts goes field by field: its
+ * FieldsOf lists them, once for both ways.
  */
 #ifndef Bytes_h
 #define Bytes_h
@@ -85,8 +85,8 @@ template <typename Struct>
 struct FieldsOf;
 
 /**
- * Packs and unpacks values of any kind: plain ones, texts, messages, structs with FieldsOf, and lists of
- * these. A value tells where it ends.
+ * Packs and unpacks values of any kind: plain ones, texts, messages, structs with FieldsOf, and
+ * lists of these. A value tells where it ends.
  */
 struct AnyValue
 {

@@ -105,8 +105,8 @@ public:
     const std::function<void(int part, const Progress& ofPart)>& step) const;
 
   /**
-   * The same in turns: after one part of each rank, what has been sent to the parts of another engine is
-   * delivered, so that no more of it is in memory.
+   * The same in turns: after one part of each rank, what has been sent to the parts of another
+   * engine is delivered, so that no more of it is in memory.
    */
   void ForEachInTurn(const Progress& progress, Engine& receiving,
     const std::function<void(int part, const Progress& ofPart)>& step) const;

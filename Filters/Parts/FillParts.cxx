@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 /*
- * The passes in their order. Modes differ in three things: whether a part stays (WithPart), which part a
- * hole goes to (PartsOfHoles), and by what a point is known to be another part's: in files it is marked,
- * in memory ranks find out together (FindCopies).
+ * The passes in their order. Modes differ in three things: whether a part stays (WithPart), which
+ * part a hole goes to (PartsOfHoles), and by what a point is known to be another part's: in files
+ * it is marked, in memory ranks find out together (FindCopies).
  */
 #include "FillParts.h"
 
@@ -47,7 +47,10 @@ FillParts::FillParts(
   this->Whole.ByIds = byIds;
 }
 
-/** Visits a part with points. In memory it stays, with what is read of it; in files it is made anew. */
+/**
+ * Visits a part with points. In memory it stays, with what is read of it; in files it is made anew,
+ * and goes.
+ */
 template <typename Visit>
 void FillParts::WithPart(int part, const Progress& progress, const Visit& visit)
 {
@@ -63,6 +66,10 @@ void FillParts::WithPart(int part, const Progress& progress, const Visit& visit)
   }
 }
 
+/*
+ * A part is looked at once. The points on its border are kept meanwhile, as which of them are on
+ * that of the surface is known only when all ranks have told their edges.
+ */
 void FillParts::FindHoles(int partOfRims)
 {
   this->PartOfRims = partOfRims;
@@ -384,6 +391,7 @@ bool FillParts::FillGroup(int group, const Progress& progress, std::vector<vtkId
   return found.empty();
 }
 
+/** Until no hole needs more of the surface around it; of a group, all holes are filled again. */
 void FillParts::FillAll()
 {
   std::vector<char> areWaiting(this->Groups.size(), 1);
@@ -431,6 +439,7 @@ void FillParts::TakePatches(int part, FilledPart& one)
   one.FindCorners();
 }
 
+// A part from files is read again, as it was in pass 1.
 void FillParts::Pass(int part, const Progress& progress, vtkPolyData* output)
 {
   this->WithPart(part, progress, [&](FilledPart& one, const Progress& ofPart) {
@@ -462,6 +471,11 @@ bool IsPlain(vtkPolyData* part)
 }
 } // namespace
 
+/*
+ * What can be wrong with the parts of a user is looked for first; parts in files, which the steps
+ * before have made, are as they should be. Here alone it is decided that an error means gathering:
+ * with the whole surface on one rank it can be filled, or the error is that of one rank.
+ */
 bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolate, Block& block,
   FillResult& patches)
 {

@@ -2,35 +2,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Fills the holes of a surface in parts, as those of the whole surface would be. Private to the module.
+ * Fills the holes of a surface in parts, as those of the whole surface would be. Private to the
+ * module.
  *
  * In: the parts of an engine, in memory or in files (Engine.h), each made when it is worked on
- * (SurfaceParts.h). Out: each part with its patches, and the outlines of all holes with their reports.
+ * (SurfaceParts.h). Out: each part with its patches, and the outlines of all holes with their
+ * reports.
  *
  * The passes, each of which all ranks do at the same time:
- *   1. What is on the borders of parts tells all ranks the border of the surface, and they find the same
- *      holes (Holes.h).
+ *   1. What is on the borders of parts tells all ranks the border of the surface, and they find the
+ *      same holes (Holes.h).
  *   2. The lattice of all points is looked for, each counted once.
- *   3. Each hole goes to a group of holes that are filled together. In memory a rank has one group: the
- *      largest hole goes first, to the rank with least work so far. In files a part has some: of those
- *      holes of which it has the first point of the rim.
- *   4. The parts send each group the triangles in a box around each of its holes, with their points.
- *   5. When it is known what each hole may take of MaximumInsertedPoints, the groups are filled, and
- *      their patches go to their parts. Where a hole turns out to need triangles outside of its box, 4
- *      and 5 are done again for its group with a larger one, in the end with all triangles.
- *   6. A part is written: its triangles, and the patches of its groups. Their corners that are other
- *      parts' points become its ghosts.
- * Groups are the parts of an engine of their own, as what surrounds them lies in memory or in files, too.
+ *   3. Each hole goes to a group of holes that are filled together. In memory a rank has one group:
+ *      the largest hole goes first, to the rank with least work so far. In files a part has some:
+ *      of those holes of which it has the first point of the rim.
+ *   4. The parts send each group the triangles in a box around each of its holes, with their
+ *      points.
+ *   5. When it is known what each hole may take of MaximumInsertedPoints, the groups are filled,
+ *      and their patches go to their parts. Where a hole turns out to need triangles outside of its
+ *      box, 4 and 5 are done again for its group with a larger one, in the end with all triangles.
+ *   6. A part is written: its triangles, and the patches of its groups. Their corners that are
+ *      other parts' points become its ghosts.
+ * Groups are the parts of an engine of their own, as what surrounds them lies in memory or in
+ * files, too.
  *
- * Patches are those of one run, to the last bit: their lattice is that of all points, and besides they
- * depend only on what is in the box.
+ * Patches are those of one run, to the last bit: their lattice is that of all points, and besides
+ * they depend only on what is in the box.
  *
- * Cost: a rank sends the edges on the border of its parts once, and the triangles around holes. Parts in
- * files are made in pass 1, three times in pass 2, in pass 4 if they are near a hole, and in pass 6.
- * Memory for files: what a part takes, and the border of all parts; then what surrounds a group, far
- * less than a part, unless that of a single hole is larger: a box that reaches 1.5 times its size beyond
- * it, or further if its kernel asks for it. What surrounds the groups of other ranks is in memory for
- * one part at a time.
+ * Cost: a rank sends the edges on the border of its parts once, and the triangles around holes.
+ * Parts in files are made in pass 1, twice in pass 2, in pass 4 if they are near a hole, and
+ * in pass 6. Memory for files: what a part takes, and the border of all parts; then what surrounds
+ * a group, far less than a part, unless that of a single hole is larger: a box that reaches 1.5
+ * times its size beyond it, or further if its kernel asks for it. What surrounds the groups of
+ * other ranks is in memory for one part at a time.
  */
 #ifndef FillParts_h
 #define FillParts_h
@@ -62,8 +66,8 @@ public:
   /**
    * Pass 1.
    * @param[in] partOfRims  its rank gets the outlines
-   * @throws Error on all ranks, if the surface cannot be filled in parts: borders touch, or a point or an
-   *         edge is there too often; Aborted
+   * @throws Error on all ranks, if the surface cannot be filled in parts: borders touch, or a point
+   *         or an edge is there too often; Aborted
    */
   void FindHoles(int partOfRims);
 

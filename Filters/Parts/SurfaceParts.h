@@ -26,8 +26,8 @@ struct SurfaceParts
 
   Engine& Crew; ///< whose boxes stay those of the step before
   /**
-   * For parts in memory it returns the same each time. For those in files the part is made anew, with
-   * global ids of its points, and those that another part counts are marked as ghosts.
+   * For parts in memory it returns the same each time. For those in files the part is made anew,
+   * with global ids of its points, and those that another part counts are marked as ghosts.
    */
   MakePart Make;
 };
