@@ -58,6 +58,16 @@ std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& 
   return all;
 }
 
+/** Where a block has been gathered, that is told, if there are cells or else a reason to tell. */
+void WarnOfGathering(Place* home, const Message& why)
+{
+  if (home && (!why.IsEmpty() || home->Input->GetNumberOfElements(vtkDataObject::CELL) > 0))
+  {
+    home->Warning = MakeMessage<sentences::OnOneRank>(
+      why.IsEmpty() ? MakeMessage<sentences::PartsDoNotFit>() : why);
+  }
+}
+
 void EmptyOutputs(const Place& place)
 {
   for (vtkPolyData* output : place.Outputs)
@@ -172,11 +182,13 @@ double FilterRun::GatherSpreadBlocks(
     }
     try
     {
-      if (!this->RunSpread(own, ranks, second, ofBlock))
+      Message why;
+      if (!this->RunSpread(own, ranks, second, ofBlock, why))
       {
         std::vector<Message> warnings;
         GatherBlock(own, block.second, this->KindOfParts(), ranks, ofBlock, warnings);
         this->AddMessages(own, warnings, this->Warnings);
+        WarnOfGathering(FirstWithPoints(own), why);
       }
     }
     catch (const Aborted&) // on all ranks
@@ -208,7 +220,7 @@ void FilterRun::AddMessages(const std::vector<Place*>& places, const std::vector
 }
 
 bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
-  vtkPolyData* second, const Progress& progress)
+  vtkPolyData* second, const Progress& progress, Message& whyGathered)
 {
   if (!this->Spread)
   {
@@ -227,6 +239,7 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
   }
   if (!this->Spread(block, ranks))
   {
+    whyGathered = block.WhyGathered;
     return false;
   }
   this->AddMessages(places, block.Warnings, this->Warnings);
@@ -284,6 +297,10 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
     if (!isReported)
     {
       continue;
+    }
+    if (!place.Warning.IsEmpty())
+    {
+      block.Warnings.insert(block.Warnings.begin(), place.Warning);
     }
     if (!error.IsEmpty())
     {
