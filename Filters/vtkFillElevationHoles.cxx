@@ -106,6 +106,10 @@ int vtkFillElevationHoles::RequestData(
     this, this->Controller, request, inputVector, outputVector, this->Messages);
   call.Sums = { &this->NumberOfHoles, &this->NumberOfFilledHoles };
   call.Spread = [this](elevation::Block& block, const elevation::Ranks& ranks) {
+    if (this->MaximumEdgeLength != 0.0)
+    {
+      block.WhyGathered = elevation::MakeMessage<elevation::sentences::OpeningNeedsAll>();
+    }
     FillResult patches;
     if (this->MaximumEdgeLength != 0.0 ||
       !elevation::FillOnRanks(

@@ -117,9 +117,9 @@
  * With a MaximumEdgeLength, vertices, lines or cells marked as another rank's, where borders touch
  * without sharing a point, where not all ranks have the same arrays and type of points, and for
  * messages of what is wrong, the triangles are gathered on the rank with most of them, which gets
- * the result; the others have empty output with the same arrays. Points are in the order of their
- * global ids then. Cells marked as another rank's are left out, and arrays that not all ranks have,
- * with a warning.
+ * the result, with a warning unless there is an error; the others have empty output with the same
+ * arrays. Points are in the order of their global ids then. Cells marked as another rank's are left
+ * out, and arrays that not all ranks have, with a warning.
  *
  * Partitions of one vtkPartitionedDataSet are one block in this. Getters tell the counts of all
  * ranks; rank 0 reports errors and warnings of all. An error or abort in a block ends it on all
@@ -378,7 +378,7 @@ public:
    * NothingToFill, HoleNotFilled and RegionNotFilled (with a reason: BordersTouch, SizeOutOfRange,
    * MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall, PointsCoincide), MoreHolesNotFilled,
    * BordersMeet, TooManyPointsToFill, TooManyPointsByDefault, InvalidEdgeLength, ArraysLeftOut,
-   * NotEnoughMemory, Stopped.
+   * OnOneRank (with a reason: OpeningNeedsAll, PartsDoNotFit), NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 

@@ -289,8 +289,11 @@ int vtkGridDelaunay2D::RequestData(
   call.Maxima = { &this->LargestElevationError };
   const elevation::DelaunayOptions options = elevation::OptionsOf(this);
   call.Spread = [this, options](elevation::Block& block, const elevation::Ranks& ranks) {
-    if (options.MaximumElevationError != 0.0 || this->DrapeConstraints)
+    const bool isDraped = this->DrapeConstraints && block.Second;
+    if (options.MaximumElevationError != 0.0 || isDraped)
     {
+      block.WhyGathered = isDraped ? elevation::MakeMessage<elevation::sentences::DrapingNeedsAll>()
+                                   : elevation::MakeMessage<elevation::sentences::ErrorNeedsAll>();
       return false;
     }
     const elevation::ConstrainedTriangulation part = TriangulateSpread(ranks, options, block);

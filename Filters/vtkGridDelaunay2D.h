@@ -71,12 +71,13 @@
  * is measured once more, and what rounding may have taken from its distance is added; so the error is
  * certain. Points that are duplicates are not measured.
  *
- * The triangles are those of the chosen points alone, unless DataDependentEdges is on. On a lattice,
- * where a point at the border may lie beside its node and so beside the surface, it is measured from
- * the triangle there; and where a long triangle of few nodes would be flat, also of a given lattice,
- * the coordinates are triangulated. The choice does not depend on the order of points, nor on the
- * number of threads. Several ranks gather the block on one of them. Where coordinates or elevations are
- * beyond some 1e-150 or 1e38, more points are kept, and the time may grow with their square.
+ * The triangles are those of the chosen points alone, unless DataDependentEdges is on. On a
+ * lattice, where a point at the border may lie beside its node and so beside the surface, it is
+ * measured from the triangle there; and where a long triangle of few nodes would be flat, also of a
+ * given lattice, the coordinates are triangulated. The choice does not depend on the order of
+ * points, nor on the number of threads. Several ranks gather the block on one of them, with a
+ * warning. Where coordinates or elevations are beyond some 1e-150 or 1e38, more points are kept,
+ * and the time may grow with their square.
  *
  * @par Composite input:
  * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives output
@@ -261,7 +262,8 @@ public:
    * point of its own, with the z and point data of the surface there. So the lines are edges,
    * and the surface is as it was; its triangles are no longer Delaunay where they are split. Lines may
    * cross; parts outside of the surface are left out, and so are lines of one point. Several ranks
-   * gather the block on one of them. Off (default): the points of lines have their own z.
+   * gather the block on one of them, with a warning. Off (default): the points of lines have their
+   * own z.
    */
   vtkSetMacro(DrapeConstraints, bool);
   vtkGetMacro(DrapeConstraints, bool);
@@ -390,7 +392,8 @@ public:
    * NoTriangle, FewTriangles, FewTrianglesAdvice, InvalidEdgeLength, InvalidElevationError,
    * TwoLimits, NoLines, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
    * NonFinitePointOfLine, LinesElsewhere, LinesFarOutside, LinesNotDraped, LinesNotSettled,
-   * ArraysLeftOut, EmptyBlocks, NotEnoughMemory, Stopped.
+   * ArraysLeftOut, OnOneRank (with a reason: ErrorNeedsAll, DrapingNeedsAll), EmptyBlocks,
+   * NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 

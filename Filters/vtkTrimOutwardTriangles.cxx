@@ -211,6 +211,10 @@ int vtkTrimOutwardTriangles::RequestData(
     this->NumberOfInsertedPoints += counts.InsertedPoints;
   };
   call.Spread = [options, addCounts](elevation::Block& block, const elevation::Ranks& ranks) {
+    if (options.Test != elevation::OutwardTest::Exact)
+    {
+      block.WhyGathered = elevation::MakeMessage<elevation::sentences::NormalsNeedAll>();
+    }
     elevation::TrimCounts counts;
     const bool isDone = TrimSpread(ranks, options, block, counts);
     addCounts(counts);

@@ -104,11 +104,12 @@
  * where not all ranks have global ids, those with the same x,y,z. Field data are those of the
  * rank. Output 2 is on one rank. Cells marked as another rank's are left out.
  *
- * With INWARD_NORMAL, where not all ranks have the same arrays, where triangles are not
- * counter-clockwise, for messages of what is wrong, and mostly where lines of points give a tolerance
- * above 4.5, the triangles are gathered on the rank with most of them, which gets the result; the
- * others have empty output with the same arrays. Points are in the order of their global ids then, else rank after rank, as cells are;
- * messages name both by these numbers. Arrays that not all ranks have are left out, with a warning.
+ * With INWARD_NORMAL, where not all ranks have the same arrays, where triangles are not counter-
+ * clockwise, for messages of what is wrong, and mostly where lines of points give a tolerance above
+ * 4.5, the triangles are gathered on the rank with most of them, which gets the result, with a
+ * warning unless there is an error; the others have empty output with the same arrays. Points are
+ * in the order of their global ids then, else rank after rank, as cells are; messages name both by
+ * these numbers. Arrays that not all ranks have are left out, with a warning.
  *
  * Partitions of one vtkPartitionedDataSet are one block in this. A boundary may be on other ranks
  * than the triangles, or in pieces on several: each rank gets all of it; one that is the same on
@@ -360,7 +361,7 @@ public:
    * NothingToTrim, InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut,
    * BoundaryLeavesOutAll, BoundaryEnclosesNothing (reasons: NothingInRing, NothingBetweenRings,
    * BoundaryElsewhere), StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, ArraysLeftOut,
-   * NotEnoughMemory, Stopped.
+   * OnOneRank (with a reason: NormalsNeedAll, PartsDoNotFit), NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 

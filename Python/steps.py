@@ -80,7 +80,9 @@ class Step:
 
     def report(self, name, messages):
         """Raises the errors of a step, or makes notes of its warnings."""
-        problems = messages.errors or (messages.warnings if self.strict else [])
+        # The first rank has all points and the surface anyway, and says so in the documents.
+        warnings = [warning for warning in messages.warnings if warning.code != "OnOneRank"]
+        problems = messages.errors or (warnings if self.strict else [])
         if problems:
             about = "points"
             if name == "trim" and self.result.boundary_name:
@@ -89,7 +91,7 @@ class Step:
                 about = "faults"
             words = " ".join(in_our_names(one, name) for one in problems)
             raise ElevationSurfaceError(words, about, STEPS[name])
-        for warning in messages.warnings:
+        for warning in warnings:
             note = f"{STEPS[name]}: {in_our_names(warning, name)}"
             self.result.warnings.append(warning)
             self.result.notes += [note] if note not in self.result.notes else []

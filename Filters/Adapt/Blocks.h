@@ -7,6 +7,8 @@
 #ifndef Blocks_h
 #define Blocks_h
 
+#include "Kernel/Messages/Messages.h"
+
 #include "vtkDataObject.h"
 #include "vtkSmartPointer.h"
 
@@ -34,6 +36,7 @@ struct Place
   std::string NameOfBlock; ///< without the partition; empty for the whole input
   vtkSmartPointer<vtkDataObject> Own = nullptr; ///< what Input points to, if it was made here
   bool IsDone = false;                          ///< has its outputs
+  Message Warning = Message();                  ///< on how its input has come here, if any
 };
 
 /** For FillInputPortInformation: a type, or a composite. Input 1 is an optional vtkPolyData. */

@@ -52,6 +52,16 @@ std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& 
   return all;
 }
 
+/** Where a block has been gathered, that is told, if there are cells or else a reason to tell. */
+void WarnOfGathering(Place* home, const Message& why)
+{
+  if (home && (!why.IsEmpty() || home->Input->GetNumberOfElements(vtkDataObject::CELL) > 0))
+  {
+    home->Warning = MakeMessage<sentences::OnOneRank>(
+      why.IsEmpty() ? MakeMessage<sentences::PartsDoNotFit>() : why);
+  }
+}
+
 void EmptyOutputs(const Place& place)
 {
   for (vtkPolyData* output : place.Outputs)
@@ -166,11 +176,13 @@ double FilterRun::GatherSpreadBlocks(
     }
     try
     {
-      if (!this->RunSpread(own, ranks, second, ofBlock))
+      Message why;
+      if (!this->RunSpread(own, ranks, second, ofBlock, why))
       {
         std::vector<Message> warnings;
         GatherBlock(own, block.second, this->KindOfParts(), ranks, ofBlock, warnings);
         this->AddMessages(own, warnings, this->Warnings);
+        WarnOfGathering(FirstWithPoints(own), why);
       }
     }
     catch (const Aborted&) // on all ranks
@@ -202,7 +214,7 @@ void FilterRun::AddMessages(const std::vector<Place*>& places, const std::vector
 }
 
 bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
-  vtkPolyData* second, const Progress& progress)
+  vtkPolyData* second, const Progress& progress, Message& whyGathered)
 {
   if (!this->Spread)
   {
@@ -221,6 +233,7 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
   }
   if (!this->Spread(block, ranks))
   {
+    whyGathered = block.WhyGathered;
     return false;
   }
   this->AddMessages(places, block.Warnings, this->Warnings);
@@ -278,6 +291,10 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
     if (!isReported)
     {
       continue;
+    }
+    if (!place.Warning.IsEmpty())
+    {
+      block.Warnings.insert(block.Warnings.begin(), place.Warning);
     }
     if (!error.IsEmpty())
     {

@@ -42,6 +42,8 @@ struct Block
   std::vector<vtkPolyData*> Outputs; ///< of each port
   elevation::Progress Progress;
   std::vector<Message> Warnings; ///< to be reported
+  /** Why FilterRun::Spread wants it to be gathered, a {reason} of OnOneRank; none: it cannot say. */
+  Message WhyGathered = Message();
 };
 
 /**
@@ -80,7 +82,7 @@ public:
    * on this rank.
    * It throws on all ranks or on none, with the same message (Ranks::Agree), and adds its results
    * to Sums and Maxima last.
-   * @return on all ranks, false to have the block gathered
+   * @return on all ranks, false to have the block gathered, with a warning
    */
   std::function<bool(Block&, const Ranks&)> Spread;
 
@@ -99,7 +101,7 @@ private:
   double GatherSpreadBlocks(
     std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress);
   bool RunSpread(const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second,
-    const Progress& progress);
+    const Progress& progress, Message& whyGathered);
   void AddMessages(const std::vector<Place*>& places, const std::vector<Message>& messages,
     std::vector<Message>& all) const;
   PartKind KindOfParts() const;

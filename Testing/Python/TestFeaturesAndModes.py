@@ -50,15 +50,14 @@ def word_for(row, case, parts, expected):
         is_named = len(errors) == 1 and any(word in text for text in errors for word in words_of(row, case))
         is_empty = not any(len(block["points"]) for port in found["ports"] for block in port)
         return "refused" if is_named and is_empty else "differs", str(errors)
-    told = [message for message in found["messages"] if "one rank" in message[1]]
-    found["messages"] = [message for message in found["messages"] if message not in told]
+    told = outcomes.take_gathering(found["messages"])
     why = outcomes.difference(found, expected)
     if why:
         remark = [str(number) for number, begin in REMARKS.items() if why.startswith(begin)]
         return " ".join(["differs", *(remark[-1:])]), why
     shares = found["shares"]
     if len(shares) > 1 and sum(shares) > FEW and max(shares) == sum(shares):
-        return "gathers" if told else "gathers silently", ""
+        return ("gathers", "") if len(told) == 1 else ("differs", "%d warnings of gathering" % len(told))
     return "same", ""
 
 
@@ -78,7 +77,7 @@ def in_one_process(row):
         if modes.has_pieces(row, case):
             parts = modes.in_pieces(row, case, [(i, 3) for i in range(3)], range(count), count)
             found[mode] = word_for(row, case, parts, expected)
-            if found[mode][0].startswith("gathers"):
+            if found[mode][0] == "gathers":
                 found[mode] = "differs", "all triangles are in one piece"
     note_effects(row, case, expected)
     return found

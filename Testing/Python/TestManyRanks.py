@@ -108,7 +108,7 @@ def check_given_lattice(random):
 
 
 def check_elevation_error(random):
-    """With an elevation error, the points are gathered on one rank; all tell the counts."""
+    """With an elevation error, the points are gathered on one rank, which is told; all tell the counts."""
     points = random.random((2000, 3))
     owners = owners_in_places(random, points)
     for error in (0.2, -1.0):
@@ -117,6 +117,10 @@ def check_elevation_error(random):
         alone, expected = triangulate(
             cloud(numpy.concatenate([points[owners == rank] for rank in range(COUNT)])), True,
             MaximumElevationError=error)
+        told = outcomes.take_gathering(parts[0]["messages"])
+        is_told = error > 0.0 and len(set(owners)) > 1
+        check(len(told) == is_told, "elevation error %s: one warning if it is right, not %s" % (error, told))
+        check(all("MaximumElevationError chooses" in text for _, text in told), "why: %s" % told)
         check_union(parts, outcomes.made_by([alone], expected), "elevation error %s" % error)
         shares = outcomes.joined(parts)["shares"]
         check(max(shares) == sum(shares), "elevation error: %s triangles are on one rank" % shares)

@@ -58,11 +58,13 @@ def compare(case, are_global=False, are_marked=False, boundary_on=None, **proper
     mine = boundary if boundary_on in (None, RANK) or not boundary else vtkPolyData()
     part = part_of(case, RANK, are_global, are_marked)
     trimming, messages = trim(part, mine, False, **properties)
+    is_gathered = any(gather(len(outcomes.take_gathering(messages))))
     kept, outward = (trimming.GetOutput(side) for side in (0, 1))
     if not gather(messages)[0]:
         stays = bool(kept.GetNumberOfPolys() + outward.GetNumberOfPolys()) == (part.GetNumberOfCells() > 0)
         if not case.rings:  # or is gathered
             SPREAD.append(all(gather(stays)))
+            check(is_gathered or SPREAD[-1], case.claim + ": it is told where triangles do not stay")
         else:
             check(stays, case.claim + ": a rank that has triangles keeps its own")
         used = numpy.append(triangles_of(kept), triangles_of(outward))

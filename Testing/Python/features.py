@@ -12,7 +12,7 @@ import types
 
 MODES = ("1 thread", "2 threads", "2 ranks", "4 ranks", "1 piece", "4 pieces", "2 ranks, 2 pieces each")
 WORDS = {
-    "s": "same", "g": "gathers", "G": "gathers silently", "r": "refused", "a": "apart",
+    "s": "same", "g": "gathers", "r": "refused", "a": "apart",
     "d": "differs", "-": "none",
 }
 CLASSES = {
@@ -34,14 +34,14 @@ lattice off                       | LatticeMode=1              | lattice        
 lattice within a tolerance        | LatticeTolerance=0.1       | loose lattice                | s  s  s  s  s  s  a
 edge limit                        | MaximumEdgeLength=2.0      | points                       | s  s  s  s  s  s  a
 edge limit that leaves most out   | MaximumEdgeLength=0.3      | points                       | s  s  s  s  d1 d1 a
-elevation error                   | MaximumElevationError=0.03  | points                       | s  s  G  G  r  r  r
-the same, edges by their data     | MaximumElevationError=0.03, DataDependentEdges=True | points                       | s  s  G  G  r  r  r
-the same, with constraints        | MaximumElevationError=0.03  | straight line                | s  s  G  G  r  r  r
-the same, constraints simplified  | MaximumElevationError=0.03, SimplifyConstraints=True | straight line                | s  s  G  G  r  r  r
+elevation error                   | MaximumElevationError=0.03  | points                       | s  s  g  g  r  r  r
+the same, edges by their data     | MaximumElevationError=0.03, DataDependentEdges=True | points                       | s  s  g  g  r  r  r
+the same, with constraints        | MaximumElevationError=0.03  | straight line                | s  s  g  g  r  r  r
+the same, constraints simplified  | MaximumElevationError=0.03, SimplifyConstraints=True | straight line                | s  s  g  g  r  r  r
 constraints                       |                            | breaklines                   | s  s  s  s  s  s  a
 constraints that one rank has     |                            | breaklines + on one          | s  s  s  s  s  s  a
 constraints, values of points     |                            | breaklines + strings + integers | s  s  s  s  s  s  a
-constraints draped                | DrapeConstraints=True      | breaklines                   | s  s  G  G  r  r  r
+constraints draped                | DrapeConstraints=True      | breaklines                   | s  s  g  g  r  r  r
 duplicates, keep the first        | DuplicatePolicy=0          | duplicates                   | s  s  s  s  s  s  a
 duplicates, keep the last         | DuplicatePolicy=1          | duplicates                   | s  s  s  s  s  s  a
 duplicates, keep the lowest       | DuplicatePolicy=2          | duplicates                   | s  s  s  s  s  s  a
@@ -68,7 +68,7 @@ boundary given                    |                            | coast          
 boundary that one rank has        |                            | coast + on one               | s  s  s  s  s  s  a
 boundary with lakes and an island |                            | coast and lakes              | s  s  s  s  s  s  a
 test exact                        | OutwardTest=0              | coast                        | s  s  s  s  s  s  a
-test by inward normals            | OutwardTest=1              | coast                        | s  s  G  G  r  r  r
+test by inward normals            | OutwardTest=1              | coast                        | s  s  g  g  r  r  r
 edges not recovered, they are there     | RecoverBoundary=False      | coast along edges            | s  s  s  s  s  s  a
 edges not recovered, they are missing   | RecoverBoundary=False      | coast                        | s  s  s  s  s  s  a
 edges follow the surface, also of a lattice | BoundaryEdges=0        | lattice and lakes            | s  s  s  s  s  s  a
@@ -76,7 +76,7 @@ edges straight                    | BoundaryEdges=1            | coast          
 edges straight, own elevations    | BoundaryEdges=2            | coast                        | s  s  s  s  s  s  a
 boundary found                    |                            | gaps                         | s  s  s  s  -  -  -
 boundary found along tracks       |                            | tracks                       | s  s  s  s  -  -  -
-boundary found by inward normals  | OutwardTest=1              | gaps                         | s  s  G  G  -  -  -
+boundary found by inward normals  | OutwardTest=1              | gaps                         | s  s  g  g  -  -  -
 gap tolerance                     | GapTolerance=2.5           | gaps                         | s  s  s  s  -  -  -
 steps of a grid                   | GridSteps=(2.0, 1.5, -0.9, 1.2) | lattice                      | s  s  s  s  -  -  -
 points of floats                  |                            | coast + float                | s  s  s  s  s  s  a
@@ -88,7 +88,7 @@ point data: pedigree ids          |                            | coast + pedigre
 point data: global ids            |                            | coast + global ids           | s  s  s  s  r  r  r
 composite: multiblock             |                            | coast + multiblock           | s  s  s  s  -  -  -
 triangles from elsewhere, cell data|                            | surface and coast            | s  s  s  s  -  -  -
-the same, clockwise               |                            | surface and coast + clockwise | s  s  G  G  -  -  -
+the same, clockwise               |                            | surface and coast + clockwise | s  s  g  g  -  -  -
 the same, with vertices           |                            | surface and coast + vertices | s  s  s  s  -  -  -
 the same, with marked copies      |                            | surface and coast + copies   | s  s  s  s  -  -  -
 the same, boundary found          |                            | surface                      | s  s  s  s  -  -  -
@@ -100,7 +100,7 @@ interpolation: thin plate         | Interpolation=2            | coast and lakes
 interpolation: adaptive           | Interpolation=3            | coast and lakes              | s  s  s  s  s  s  a
 interpolation: cubic spline       | Interpolation=4            | coast and lakes              | s  s  s  s  s  s  a
 on the nodes of a lattice         |                            | lattice and lakes            | s  s  s  s  s  s  a
-long triangles opened             | MaximumEdgeLength=2.5      | coast and lakes              | s  s  G  G  r  r  r
+long triangles opened             | MaximumEdgeLength=2.5      | coast and lakes              | s  s  g  g  r  r  r
 largest hole                      | MaximumHoleSize=4.0        | coast and lakes              | s  s  s  s  s  s  a
 most edges of a hole              | MaximumHoleEdges=13        | coast and lakes              | s  s  s  s  s  s  a
 what the boundary cut out, open   |                            | coast and lakes              | s  s  s  s  s  s  a
@@ -120,8 +120,8 @@ point data: global ids            |                            | coast and lakes
 composite: multiblock             |                            | coast and lakes + multiblock | s  s  s  s  -  -  -
 triangles from elsewhere, cell data|                            | surface                      | s  s  s  s  -  -  -
 the same, clockwise               |                            | surface + clockwise          | s  s  s  s  -  -  -
-the same, with vertices           |                            | surface + vertices           | s  s  G  G  -  -  -
-the same, with marked copies      |                            | surface + copies             | s  s  G  G  -  -  -
+the same, with vertices           |                            | surface + vertices           | s  s  g  g  -  -  -
+the same, with marked copies      |                            | surface + copies             | s  s  g  g  -  -  -
 the same, global ids              |                            | surface + global ids         | s  s  s  s  -  -  -
 """
 

@@ -143,6 +143,13 @@ def made_by(algorithms, messages, ids=None, without=()):
     return {"ports": ports, "counts": counts_of(*algorithms), "messages": messages}
 
 
+def take_gathering(messages):
+    """Takes those away that tell of a surface on one rank, and returns them."""
+    told = [message for message in messages if "is made on one rank" in message[1]]
+    messages[:] = [message for message in messages if message not in told]
+    return told
+
+
 def joined(parts, are_in_order=False, have_holes_numbers=False, digits=None):
     """What parts of one surface have together. All tell the same counts.
 

@@ -36,6 +36,29 @@ ELEVATION_SENTENCE(InvalidEdgeLength,
   "{property:MaximumEdgeLength} is {value}; it must be 0 (off) or a length in x,y.");
 /** @} */
 
+/** @name Of a filter on several ranks that brings their data together @{ */
+ELEVATION_SENTENCE(OnOneRank,
+  "The surface is made on one rank (process), which needs memory for all of it. {reason}");
+/** @} */
+
+/** @name Why: {reason} of OnOneRank @{ */
+ELEVATION_SENTENCE(ErrorNeedsAll,
+  "{property:MaximumElevationError} chooses few points out of all; 0 leaves the surface spread.");
+ELEVATION_SENTENCE(DrapingNeedsAll,
+  "{property:DrapeConstraints} lays constraints on the whole surface; constraints with elevations "
+  "of their own leave it spread.");
+ELEVATION_SENTENCE(NormalsNeedAll,
+  "{property:OutwardTest} InwardNormal goes along the whole boundary; Exact leaves the surface "
+  "spread.");
+ELEVATION_SENTENCE(OpeningNeedsAll,
+  "{property:MaximumEdgeLength} opens regions that may reach over any part; 0 leaves the surface "
+  "spread.");
+ELEVATION_SENTENCE(PartsDoNotFit,
+  "The parts of the ranks cannot be worked on one by one: they have triangles that turn clockwise, "
+  "cells that are no polygons, marked copies of triangles or different arrays, or what is near a "
+  "boundary or hole reaches too far.");
+/** @} */
+
 /** @name Of lines that are given: constraints or a boundary @{ */
 ELEVATION_SENTENCE(NoLines, "The {input} have no line and no polygon.");
 ELEVATION_SENTENCE(
