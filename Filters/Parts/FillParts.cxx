@@ -14,6 +14,7 @@
 #include "PointRows.h"
 
 #include "vtkCellData.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
