@@ -145,7 +145,7 @@ for ids in (True, False):
         messages, outputs = update(fill)
         expected = alone(simple.FillElevationHoles(Input=given(BARE), MaximumEdgeLength=long,
                                                    Interpolation="Membrane"))
-        check_told(messages, "", "fill, " + claim)
+        check_told(messages, "MaximumEdgeLength opens regions", "fill, " + claim)
         for port in range(2):
             check_same(outputs[port], expected[port], "fill, output %d, %s" % (port, claim))
         check_equal((information(fill, "NumberOfHoles"), information(fill, "NumberOfFilledHoles")),
