@@ -70,15 +70,13 @@
 
 namespace elevation
 {
-class FillParts;
 class Message;
-class Ranks;
-class TriangulateParts;
-class TrimParts;
+class ReconstructParts;
 using Progress = std::function<bool(double)>;
 } // namespace elevation
 class vtkFillElevationHoles;
 class vtkGridDelaunay2D;
+class vtkMultiProcessController;
 class vtkPointSet;
 class vtkStringArray;
 class vtkTrimOutwardTriangles;
@@ -105,12 +103,31 @@ public:
 
   ///@{
   /**
+   * The processes that work together, each with points and pieces of its own. By default the global
+   * controller; with nullptr this process works alone. It is taken with the first points.
+   */
+  virtual void SetController(vtkMultiProcessController* controller);
+  virtual vtkMultiProcessController* GetController();
+  ///@}
+
+  ///@{
+  /**
    * The filters whose properties tell how to triangulate, trim and fill, and the boundary. Their
    * input 0 is not used.
    */
   vtkGridDelaunay2D* GetDelaunay();
   vtkTrimOutwardTriangles* GetTrim();
   vtkFillElevationHoles* GetFill();
+  ///@}
+
+  ///@{
+  /**
+   * Whether the surface is trimmed along its outline where no boundary is given. Off by default; along
+   * a given boundary it is always trimmed.
+   */
+  virtual void SetTrimOutward(bool trim);
+  virtual bool GetTrimOutward() { return this->TrimOutward; }
+  vtkBooleanMacro(TrimOutward, bool);
   ///@}
 
   ///@{
@@ -151,11 +168,13 @@ public:
   ///@}
 
   ///@{
-  /** As those of vtkTrimOutwardTriangles, of all pieces; 0 without a boundary. */
+  /** As those of vtkTrimOutwardTriangles, of all pieces; 0 where the surface is not trimmed. */
   vtkIdType GetNumberOfTrimmedTriangles(); ///< what is left
   vtkIdType GetNumberOfOutwardTriangles();
   vtkIdType GetNumberOfRecoveredEdges();
+  vtkIdType GetNumberOfPointsLeftOut();
   vtkIdType GetNumberOfInsertedPoints();
+  double GetEffectiveGapTolerance();
   vtkIdType GetNumberOfBoundaryRings();
   ///@}
 
@@ -184,29 +203,21 @@ protected:
 private:
   vtkReconstructPieces(const vtkReconstructPieces&) = delete;
   void operator=(const vtkReconstructPieces&) = delete;
-  bool Try(const std::function<void()>& work);
   void ReportError(const std::exception& error);
-  void CheckProperties();
+  void ReportWarnings(const std::vector<elevation::Message>& warnings);
   vtkMTimeType TimeOfProperties();
   void WorkOnAll(int count, const elevation::Progress& progress);
-  void WarnOfMissing(std::vector<elevation::Message>& warnings);
-  void TrimAll(const elevation::Progress& progress);
-  void FillAll(const elevation::Progress& progress);
-  vtkSmartPointer<vtkPolyData> MakePiece(int piece, const elevation::Progress& progress);
-  vtkSmartPointer<vtkPolyData> MakeTrimmed(int piece, const elevation::Progress& progress);
 
   std::string Folder;
+  vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkNew<vtkGridDelaunay2D> Delaunay;
   vtkNew<vtkTrimOutwardTriangles> Trim;
   vtkNew<vtkFillElevationHoles> Fill;
+  bool TrimOutward = false;
   bool FillHoles = false;
   double MemoryOfHole = 0.0;
-  std::unique_ptr<elevation::Ranks> Alone;
-  std::unique_ptr<elevation::TriangulateParts> Work;
-  std::unique_ptr<elevation::TrimParts> Trimmed;
-  std::unique_ptr<elevation::FillParts> Filled;
+  std::unique_ptr<elevation::ReconstructParts> Parts;
   vtkMTimeType TimeOfWork = 0;
-  bool HasFailed = false;
   vtkNew<vtkStringArray> Messages;
 };
 

@@ -150,15 +150,15 @@ def compare(number, seed):
     case.dealt.setdefault(slices, numpy.sort(random.integers(slices, size=len(case.xyz))))
     made = {("2 ranks", "%d ranks" % COUNT): gather(modes.on_rank(row, case, RANK, COUNT))}
     own = {}
-    if modes.has_pieces(row, case) and is_same(row, case, WITH_PIECES):
+    if modes.has_pieces(case) and is_same(row, case, WITH_PIECES):
         of_each = int(random.integers(1, 4))
         asked = range(RANK * of_each, (RANK + 1) * of_each)
         made[WITH_PIECES, "%d ranks, %d pieces each" % (COUNT, of_each)] = sum(
             gather(modes.in_pieces(row, case, [(RANK, COUNT)], asked, COUNT * of_each)), [])
-    if RANK == LAST and modes.has_pieces(row, case) and is_same(row, case, "4 pieces"):
+    if RANK == LAST and modes.has_pieces(case) and is_same(row, case, "4 pieces"):
         of_slices = [(i, slices) for i in range(slices)]
         own["4 pieces", "%d slices, %d pieces" % (slices, pieces)] = modes.in_pieces(
-            row, case, of_slices, range(pieces), pieces)
+            row, case, of_slices, range(pieces), pieces, True)
     if RANK == 0:
         own["memory"] = [modes.in_memory(row, case)]
     for one in gather(own):
