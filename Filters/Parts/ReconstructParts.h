@@ -141,8 +141,8 @@ private:
   std::unique_ptr<TriangulateParts> Work;
   std::unique_ptr<TrimParts> Trimmed;
   std::unique_ptr<FillParts> Filled;
-  bool IsLost = false;  // whether points are
-  bool IsOfAll = false; // whether all ranks have thrown what was thrown last
+  bool IsLost = false;                 // whether points are
+  bool IsOfAll = false;                // whether all ranks have thrown what was thrown last
   std::unique_ptr<CodedError> Refusal; // to begin
   vtkMTimeType TimeOfRefusal = 0;
   int RefusedParts = 0;
