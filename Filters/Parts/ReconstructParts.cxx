@@ -214,9 +214,9 @@ std::vector<Message> ReconstructParts::Trim(const Progress& progress)
     this->Trimmed = std::make_unique<TrimParts>(SurfaceParts{ this->Work->Holders(), make },
       this->Work->All().Triangles, this->Boundary, this->Set.Trim);
     this->Trimmed->Trim();
-    if (!this->Trimmed->Loss().IsEmpty())
+    if (!this->Trimmed->Warning().IsEmpty())
     {
-      warnings.push_back(this->Trimmed->Loss());
+      warnings.push_back(this->Trimmed->Warning());
     }
     warnings = OnFirst(warnings, *this->Everybody);
   });
