@@ -363,6 +363,10 @@ int vtkReconstructPieces::RequestData(
       this->WorkOnAll(count, elevation::Part(progress, 0.0, 0.9));
     }
     parts.Pass(piece, elevation::Part(progress, 0.9, 1.0), output, rims);
+    if (!this->KeepFiles)
+    {
+      parts.Forget(piece);
+    }
   }
   catch (const std::exception& error)
   {
@@ -381,6 +385,7 @@ void vtkReconstructPieces::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Folder: " << this->Folder << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
+  os << indent << "KeepFiles: " << (this->KeepFiles ? "On" : "Off") << "\n";
   os << indent << "TrimOutward: " << (this->TrimOutward ? "On" : "Off") << "\n";
   os << indent << "NumberOfPoints: " << this->GetNumberOfPoints() << "\n";
   os << indent << "NumberOfTriangles: " << this->GetNumberOfTriangles() << "\n";

@@ -47,8 +47,8 @@
  *
  * @par Files, memory and time:
  * What is not worked on is in files in Folder. They take 32 bytes a point and the values of its
- * point arrays, twice while the points go to their cells, and later 24 bytes more. Pieces can be
- * asked for again until the files are removed: by Reset(), and with this object. The first piece
+ * point arrays, and from the triangulation on 24 bytes more. Pieces can be asked for again until the
+ * files are removed: by Reset(), with this object and, with KeepFiles off, piece by piece. The first piece
  * that is asked for decides on the number of pieces; it takes the time of the whole triangulation,
  * which is linear in the points. Memory is what a piece takes, some 250 bytes a point of it; the
  * seams of pieces, which it holds too, have some multiple of the square root of so many points. To
@@ -110,6 +110,16 @@ public:
    */
   virtual void SetFolder(const std::string& folder);
   virtual std::string GetFolder() { return this->Folder; }
+  ///@}
+
+  ///@{
+  /**
+   * Whether the files of a piece stay when it has been made, so that it can be asked for again. On by
+   * default. Off, the space on disk does not grow while pieces are written.
+   */
+  vtkSetMacro(KeepFiles, bool);
+  vtkGetMacro(KeepFiles, bool);
+  vtkBooleanMacro(KeepFiles, bool);
   ///@}
 
   ///@{
@@ -224,6 +234,7 @@ private:
   vtkNew<vtkGridDelaunay2D> Delaunay;
   vtkNew<vtkTrimOutwardTriangles> Trim;
   vtkNew<vtkFillElevationHoles> Fill;
+  bool KeepFiles = true;
   bool TrimOutward = false;
   bool FillHoles = false;
   double MemoryOfHole = 0.0;

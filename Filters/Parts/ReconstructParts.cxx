@@ -34,6 +34,7 @@ void ReconstructParts::Close()
   this->Everybody.reset();
   this->Refusal.reset();
   this->NumberOfParts = 0;
+  this->Gone.clear();
   this->IsLost = this->IsOfAll = false;
 }
 
@@ -90,6 +91,11 @@ void ReconstructParts::CheckPart(int part, int count) const
           ? "piece " + std::to_string(first)
           : "pieces " + std::to_string(first) + " to " + std::to_string(first + ofEach - 1)) +
       ".");
+  }
+  if (this->Gone.count(part) > 0)
+  {
+    throw Error("Piece " + std::to_string(part) +
+      " has been made and its files removed; to make pieces again needs KeepFiles and Reset().");
   }
 }
 
@@ -289,6 +295,12 @@ void ReconstructParts::Pass(
       AddHoleCounts(this->Filled->Result(), { rims });
     }
   });
+}
+
+void ReconstructParts::Forget(int part)
+{
+  this->Work->Forget(part);
+  this->Gone.insert(part);
 }
 
 ReconstructParts::Counts ReconstructParts::All() const

@@ -38,6 +38,7 @@
 
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -97,7 +98,7 @@ public:
   bool HasPoints() const { return this->Work || this->IsLost; } ///< or has lost some
 
   int CountOfParts() const { return this->NumberOfParts; } ///< 0: before step 2
-  /** @throws Error if this rank has no such part */
+  /** @throws Error if this rank has no such part, or it has gone */
   void CheckPart(int part, int count) const;
 
   /**
@@ -120,6 +121,7 @@ public:
    * @param[out] rims  of part 0, the outlines of holes with their reports
    */
   void Pass(int part, const Progress& progress, vtkPolyData* output, vtkPolyData* rims);
+  void Forget(int part); ///< removes its files; it cannot be passed on again
 
   /** Whether this rank has to report what was thrown last. */
   bool IsReporting() const { return !this->IsOfAll || this->Everybody->Own() == 0; }
@@ -137,6 +139,7 @@ private:
 
   std::unique_ptr<Ranks> Everybody;
   int NumberOfParts = 0;
+  std::set<int> Gone; // parts
   Settings Set;
   vtkSmartPointer<vtkPolyData> Constraints, Boundary; // of all ranks
   std::unique_ptr<TriangulateParts> Work;
