@@ -26,7 +26,7 @@ from .options import (
 )
 from .names import PROGRAM, written_for
 from .pieces import Pieces
-from .ranks import by_first, together, total
+from .ranks import agreed, by_first, together, total
 from .reconstruction import check_spacing, least_reach, run_chain
 from .report import picture_subtitle, print_report
 from .results import Failure, NoPicture, Progress, Results, WrongOption, write_report
@@ -316,7 +316,7 @@ def attempt(options, ranks, work):
     results = Results()
     run = Run(options, results, ranks)
     try:
-        work(run)
+        agreed(ranks, lambda: work(run))
         return 0
     except ElevationSurfaceError as error:
         reason, code = str(error), error.code
