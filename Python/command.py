@@ -263,7 +263,7 @@ class Run:
         """All of a run. Returns the report, on the first rank."""
         by_first(self.ranks, self.check)
         if self.options.in_pieces:
-            return by_first(self.ranks, Pieces(self))
+            return Pieces(self)()
         given = by_first(self.ranks, self.read) or self.nothing()
         result = self.reconstruct(*given)
         report = by_first(self.ranks, lambda: self.write_all(result))

@@ -78,6 +78,13 @@ def controller_of(outputs):
     return controller if controller and controller.GetNumberOfProcesses() > 1 else None
 
 
+def rank_and_count(controller):
+    """The number of this rank, and how many there are."""
+    if controller is None:
+        return 0, 1
+    return controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
+
+
 def collected(controller, values, kind="i8"):
     """The numbers of all ranks, a numpy array for each. kind: i8, f8 or u1, the same on all ranks.
 

@@ -33,25 +33,14 @@ def make_report(result):
     """Everything the user may want to know of a Reconstruction, as plain numbers and words."""
     cloud, delaunay, trim = result.cloud, result.delaunay, result.trim
     coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData())
-    surface = result.surface
     reasons = reasons_unused(result)
-    counts, listed = list_unused(reasons, cloud.lines)
-    report = {
-        "notes": cloud.notes + result.decided + result.notes,
-        "left_out": cloud.left_out,
-        "bounds": bounds_of(surface),
-        "crs": result.crs,
-        "points": len(coordinates),
-        "points_unused": sum(counts.values()),
-        "unused_reasons": counts,
-        "unused": listed,
-        "unused_listed": len(listed),
-        "lattice": result.lattice,
-        "lattice_mode": LATTICE_MODES[delaunay.GetLatticeMode()],
-        "triangles": result.triangles,
-    }
-    if result.several:
-        report["several_heights"] = result.several
+    report = facts_of(
+        result,
+        len(coordinates),
+        result.decided + result.notes,
+        bounds_of(result.surface),
+        list_unused(reasons, cloud.lines),
+    )
     if delaunay.GetMaximumElevationError():
         report["simplified"] = {
             "maximum_elevation_error": delaunay.GetMaximumElevationError(),
@@ -61,30 +50,73 @@ def make_report(result):
         }
     if result.faults_name:
         with_faults = result.outlined[0] if result.outlined else delaunay
-        report["faults"] = {
-            "file": result.faults_name,
-            "added_points": with_faults.GetNumberOfAddedPoints(),
-            "crossings": with_faults.GetNumberOfConstraintCrossings(),
-        }
+        report["faults"] = report_of_faults(result.faults_name, with_faults)
     if trim:
-        report["trim"] = trimming_of(result)
+        report["trim"] = report_of_trimming(
+            trim.GetNumberOfOutwardTriangles(),
+            result.outlined[1] if result.outlined else trim,
+            result.boundary_name,
+            result.boundary.GetNumberOfLines(),
+        )
     if result.fill:
         report["holes"] = holes_of(result)
     report["distance"] = distance_of(result, coordinates, reasons)
     return report
 
 
-def trimming_of(result):
-    """The part of the report on trimming."""
-    trim = result.outlined[1] if result.outlined else result.trim
+def facts_of(result, points, notes, bounds, unused):
+    """The part of the report that all surfaces have.
+
+    result  with cloud, delaunay, lattice, triangles and several, as those of a Reconstruction
+    points  how many there are
+    notes   beside those of the cloud
+    unused  what list_unused() gives
+    """
+    cloud, (counts, listed) = result.cloud, unused
     report = {
-        "outward_triangles": result.trim.GetNumberOfOutwardTriangles(),
+        "notes": cloud.notes + notes,
+        "left_out": cloud.left_out,
+        "bounds": bounds,
+        "crs": cloud.crs,
+        "points": points,
+        "points_unused": sum(counts.values()),
+        "unused_reasons": counts,
+        "unused": listed,
+        "unused_listed": len(listed),
+        "lattice": result.lattice,
+        "lattice_mode": LATTICE_MODES[result.delaunay.GetLatticeMode()],
+        "triangles": result.triangles,
+    }
+    if result.several:
+        report["several_heights"] = result.several
+    return report
+
+
+def report_of_faults(name, delaunay):
+    """The part of the report on faults."""
+    return {
+        "file": name,
+        "added_points": delaunay.GetNumberOfAddedPoints(),
+        "crossings": delaunay.GetNumberOfConstraintCrossings(),
+    }
+
+
+def report_of_trimming(outward, trim, boundary_name, rings):
+    """The part of the report on trimming.
+
+    outward        how many triangles were outside
+    trim           the filter that has found or been given the boundary
+    boundary_name  where a given one is from
+    rings          how many it has
+    """
+    report = {
+        "outward_triangles": outward,
         "recovered_edges": trim.GetNumberOfRecoveredEdges(),
         "inserted_points": trim.GetNumberOfInsertedPoints(),
-        "boundary": result.boundary_name or FOUND,
-        "boundary_rings": result.boundary.GetNumberOfLines(),
+        "boundary": boundary_name or FOUND,
+        "boundary_rings": rings,
     }
-    if not result.boundary_name:
+    if not boundary_name:
         report["effective_gap_tolerance"] = trim.GetEffectiveGapTolerance()
         report["points_left_out"] = trim.GetNumberOfPointsLeftOut()
     return report

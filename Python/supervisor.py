@@ -129,10 +129,20 @@ def keep_whole_files(folder):
     return bool(waiting)
 
 
+def remove_folder(path):
+    """Removes a folder in which other processes may still make files: they do not find it any more."""
+    gone = path + ".gone"
+    try:
+        os.rename(path, gone)
+    except OSError:
+        gone = path
+    shutil.rmtree(gone, ignore_errors=True)
+
+
 def remove_leftovers(folder):
     for path in noted(folder, PARTIAL_FILES):
         if os.path.isdir(path):
-            shutil.rmtree(path, ignore_errors=True)
+            remove_folder(path)
         elif os.path.isfile(path):
             os.remove(path)
     shutil.rmtree(folder, ignore_errors=True)
