@@ -22,7 +22,9 @@
  * All properties of the triangulation are those of GetDelaunay(), and so are constraints. As those of
  * the other filters, they are brought up to date. MaximumElevationError and DrapeConstraints are for
  * points in memory, and are errors. Where GetTrim() has a boundary, all pieces are trimmed along it, as
- * that filter would trim the whole surface. Points that constraints add get ids after the largest, and
+ * that filter would trim the whole surface; with TrimOutward on and no boundary, along the outline that
+ * it would find. Where only the whole surface would tell the outline, as of some surveys along lines,
+ * there is an error. Points that constraints add get ids after the largest, and
  * points that trimming inserts after those. OutwardTest InwardNormal is an error. Beside points that
  * trimming inserts, diagonals may differ from those of that filter, as they do with that filter for
  * triangles in another order.
@@ -33,6 +35,15 @@
  * other one.
  * MaximumEdgeLength of that filter is for a surface in memory, and is an error. Output 1, of piece 0,
  * has the outline and the report of each hole, as output 1 of that filter.
+ *
+ * @par Ranks:
+ * Where the controller has several processes, each of them adds its own points, maybe none, and makes
+ * its own pieces: of n pieces, which have to be a multiple of p processes, process r makes
+ * [r n / p, (r + 1) n / p). Ids count the points of process 0 first, then those of process 1 and so on;
+ * counts are those of all. Boundary and constraints may be on any of them. They wait for each other
+ * when each asks for its first piece, and only then: what one of them has wrong, or an abort, is then
+ * that of all, and process 0 reports it. After such an error, properties have to be changed, or
+ * Modified() be called, on all processes. Each needs a Folder of its own.
  *
  * @par Files, memory and time:
  * What is not worked on is in files in Folder. They take 32 bytes a point and the values of its
