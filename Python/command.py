@@ -40,8 +40,8 @@ from .writing.outputs import beside, write_output
 class Run:
     """One reconstruction of the command line, with its progress and its times.
 
-    ranks  the controller of the processes that mpirun has started, or None. The first of them reads
-           and writes; all run the filters
+    ranks  the controller of the processes that mpirun has started, or None. All run the filters; but
+           for runs in pieces, the first of them reads and writes
     """
 
     def __init__(self, options, results, ranks):

@@ -268,7 +268,7 @@ class Pieces:
         """Raises what the filter has reported as error, or with --strict as warning."""
         problems = self.messages.errors or (self.messages.warnings if self.options.strict else [])
         if problems:
-            file = self.options.boundary if problems[0].step == "trim" else self.options.file
+            file = problems[0].step == "trim" and self.options.boundary or self.options.file
             file = self.options.faults if is_of_constraints(problems[0]) else file
             more = (in_our_names(one, one.step) for one in problems[1:])
             raise Failure(" ".join([f"{file}: {with_step(problems[0])}", *more]))

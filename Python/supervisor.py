@@ -161,8 +161,8 @@ def supervised(work):
     """Calls work() in a child process. Returns the exit code: work's, 130 if stopped, 1 after a
     crash, 3 where only the picture was missing then.
 
-    Of several processes that mpirun has started, the first alone writes files and is stopped so. The
-    others have to outlive it: when one is gone, mpirun ends all by force.
+    Of several processes that mpirun has started, the first alone is stopped so; others write files in
+    a folder of its own alone. They have to outlive it: when one is gone, mpirun ends all by force.
     """
     rank, size = rank_and_size()
     if rank > 0:
