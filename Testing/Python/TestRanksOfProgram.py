@@ -251,12 +251,13 @@ class OnRanks(Program):
         self.file("few.txt", "1 2 3\n4 5 6\n")
         numpy.save(self.path("a.npy"), numpy.random.default_rng(5).random((9000, 3)) * 100.0)
         self.file("failing.py", FAILING)
+        self.file("a.txt", cloud(1500))
         self.file("flat.txt", "1 1\n2 2\n3 1\n4 4\n")
         given = set(os.listdir(self.folder))
         for failing, arguments, code, words in (
             ((1, 5_000), ["a.npy"], 1, "triangulating: The temporary file .*/1/points cannot be written: File too"),
             ((0, 5_000), ["a.npy"], 1, "triangulating: The temporary file .*/0/points cannot be written: File too"),
-            ((2, 100_000), ["a.npy"], 1, "cannot be written: File too large"),
+            ((1, 9_000), ["a.txt", "--keep-nulls"], 1, "s/s_2.vtp: cannot be written: File too large"),
             ((2, "write_vtp"), ["a.npy"], 1, "s/s_4.vtp: cannot be written: No space left"),
             ((0, "write_vtpd"), ["a.npy"], 1, "s.vtpd: cannot be written: No space left"),
             ((1, "mkdir"), ["a.npy"], 1, "/1: process 1 cannot make this folder: No space left"),
