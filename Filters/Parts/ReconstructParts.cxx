@@ -56,8 +56,7 @@ void ReconstructParts::Do(bool withAll, const Step& step)
   this->IsLost = false;
 }
 
-void ReconstructParts::Add(
-  vtkPointSet* points, const std::string& folder, const Progress& progress)
+void ReconstructParts::Add(vtkPointSet* points, const std::string& folder, const Progress& progress)
 {
   this->Do(false, [&]() {
     if (!this->Work)
@@ -87,9 +86,9 @@ void ReconstructParts::CheckPart(int part, int count) const
   {
     throw Error("Piece " + std::to_string(part) + " of " + std::to_string(count) +
       " is made by another process; this one makes " +
-      (ofEach == 1 ? "piece " + std::to_string(first)
-                   : "pieces " + std::to_string(first) + " to " +
-            std::to_string(first + ofEach - 1)) +
+      (ofEach == 1
+          ? "piece " + std::to_string(first)
+          : "pieces " + std::to_string(first) + " to " + std::to_string(first + ofEach - 1)) +
       ".");
   }
 }
@@ -108,8 +107,8 @@ void ReconstructParts::Begin(int count, const std::string& folder,
     const std::vector<vtkIdType> counts = this->Everybody->Collect(std::vector<vtkIdType>{ count });
     if (std::count(counts.begin(), counts.end(), count) != this->Everybody->Count())
     {
-      throw Error("Processes ask for different numbers of pieces, " + std::to_string(counts.front()) +
-        " and others: all have to ask for the same number.");
+      throw Error("Processes ask for different numbers of pieces, " +
+        std::to_string(counts.front()) + " and others: all have to ask for the same number.");
     }
     this->Constraints = ShareLines(this->Set.Constraints, "constraints", *this->Everybody);
     this->Boundary = ShareLines(this->Set.Boundary, "boundary", *this->Everybody);
@@ -126,8 +125,7 @@ void ReconstructParts::Begin(int count, const std::string& folder,
 }
 
 /** What this rank has for all of them. One without points needs a folder, too. */
-void ReconstructParts::Prepare(
-  const std::string& folder, const std::function<Settings()>& settings)
+void ReconstructParts::Prepare(const std::string& folder, const std::function<Settings()>& settings)
 {
   try
   {
@@ -186,8 +184,8 @@ std::vector<Message> ReconstructParts::Triangulate(const Progress& progress)
   this->Do(true, [&]() {
     DelaunayOptions& options = this->Set.Delaunay;
     options.Monitor = progress;
-    this->Work->Triangulate(this->NumberOfParts / this->Everybody->Count(), this->Constraints,
-      options, warnings);
+    this->Work->Triangulate(
+      this->NumberOfParts / this->Everybody->Count(), this->Constraints, options, warnings);
     const TriangulateParts::Totals& all = this->Work->All();
     if (all.Settled == 0)
     {
@@ -211,15 +209,14 @@ std::vector<Message> ReconstructParts::Trim(const Progress& progress)
   }
   this->Do(true, [&]() {
     this->Set.Trim.Monitor = progress;
-    const auto make = [this](int part, const Progress& ofPart) {
-      return this->MakePart(part, ofPart);
-    };
+    const auto make = [this](
+                        int part, const Progress& ofPart) { return this->MakePart(part, ofPart); };
     this->Trimmed = std::make_unique<TrimParts>(SurfaceParts{ this->Work->Holders(), make },
       this->Work->All().Triangles, this->Boundary, this->Set.Trim);
     this->Trimmed->Trim();
-    if (!this->Trimmed->Loss().IsEmpty())
+    if (!this->Trimmed->Warning().IsEmpty())
     {
-      warnings.push_back(this->Trimmed->Loss());
+      warnings.push_back(this->Trimmed->Warning());
     }
     warnings = OnFirst(warnings, *this->Everybody);
   });
@@ -234,8 +231,8 @@ std::vector<Message> ReconstructParts::Fill(const Progress& progress)
     const auto make = [this](int part, const Progress& ofPart) {
       return this->MakeTrimmed(part, ofPart);
     };
-    auto filled = std::make_unique<FillParts>(SurfaceParts{ this->Work->Holders(), make },
-      this->Set.Fill, this->Set.InterpolatePointData);
+    auto filled = std::make_unique<FillParts>(
+      SurfaceParts{ this->Work->Holders(), make }, this->Set.Fill, this->Set.InterpolatePointData);
     filled->FindHoles(0);
     filled->Fill();
     this->Filled = std::move(filled);

@@ -34,6 +34,7 @@
 
 #include "vtkElevationSurfaceModule.h"
 #include "vtkSmartPointer.h"
+#include "vtkType.h"
 
 #include <functional>
 #include <memory>
@@ -93,7 +94,7 @@ public:
    * @param[in] folder  an empty one, for the files of this rank
    */
   void Add(vtkPointSet* points, const std::string& folder, const Progress& progress);
-  bool HasPoints() const { return this->Work || this->IsLost; } ///< whether it was tried
+  bool HasPoints() const { return this->Work || this->IsLost; } ///< or has lost some
 
   int CountOfParts() const { return this->NumberOfParts; } ///< 0: before step 2
   /** @throws Error if this rank has no such part */
@@ -141,8 +142,8 @@ private:
   std::unique_ptr<TriangulateParts> Work;
   std::unique_ptr<TrimParts> Trimmed;
   std::unique_ptr<FillParts> Filled;
-  bool IsLost = false;  // whether points are
-  bool IsOfAll = false; // whether all ranks have thrown what was thrown last
+  bool IsLost = false;                 // whether points are
+  bool IsOfAll = false;                // whether all ranks have thrown what was thrown last
   std::unique_ptr<CodedError> Refusal; // to begin
   vtkMTimeType TimeOfRefusal = 0;
   int RefusedParts = 0;
