@@ -119,10 +119,7 @@ class Run:
     def read(self):
         options = self.options
         cloud = self.timed("read", "reading", self.read_clouds)
-        try:
-            check_spacing(least_reach(cloud.points), options.given.get("spacing", 0.0))
-        except ValueError as error:
-            raise WrongOption(f"{options.file}: {error}") from None
+        self.check_spacing(least_reach(cloud.points))
         self.set_crs(cloud)
         lines = {}
         if options.boundary:
@@ -133,6 +130,12 @@ class Run:
         lines, notes = fitted(cloud, lines, names, options.given, options.strict)
         cloud.notes += notes + notes_on(cloud, lines)
         return cloud, lines.get("boundary"), lines.get("faults")
+
+    def check_spacing(self, reach):
+        try:
+            check_spacing(reach, self.options.given.get("spacing", 0.0))
+        except ValueError as error:
+            raise WrongOption(f"{self.options.file}: {error}") from None
 
     def read_faults(self, cloud):
         options = self.options

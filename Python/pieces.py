@@ -33,15 +33,8 @@ from .ranks import agreed, by_first, collected, rank_and_count, together, total
 from .reading.formats import recognise
 from .reading.slicing import check_sliced, read_files
 from .reading.unpacking import is_plain
-from .reconstruction import AS_GIVEN, check_spacing, least_reach
-from .report import (
-    MOST_LISTED,
-    OUTSIDE,
-    REASONS,
-    facts_of,
-    report_of_faults,
-    report_of_trimming,
-)
+from .reconstruction import AS_GIVEN, least_reach
+from .report import MOST_LISTED, OUTSIDE, REASONS, facts_of, report_of_faults, report_of_trimming
 from .results import Failure, WrongOption, write_report
 from .spreading import IN_NO_TRIANGLE
 from .steps import STEPS, in_our_names, is_of_constraints
@@ -255,7 +248,7 @@ class Pieces:
     def finish(self):
         """Lets the results of all ranks appear. Returns the report."""
         options, results, final = self.options, self.run.results, folder_of(self.options.output)
-        names = [f"{os.path.basename(final)}/{os.path.basename(path)}" for _, path in results.pending]
+        names = [os.path.relpath(path, os.path.dirname(final)) for _, path in results.pending]
         results.add(options.output, lambda path: write_vtpd(names, path))
         report = self.report(len(names))
         if options.report:
@@ -291,11 +284,7 @@ class Pieces:
         read_files(options.files, self.cloud, take, self.ranks, **self.run.read_options())
         for pair in together(self.ranks, lambda: [self.range]):
             self.see_heights(pair)
-        try:
-            reach = min(collected(self.ranks, [reach], "f8"))[0]
-            check_spacing(reach, options.given.get("spacing", 0.0))
-        except ValueError as error:
-            raise WrongOption(f"{options.file}: {error}") from None
+        self.run.check_spacing(min(collected(self.ranks, [reach], "f8"))[0])
         self.heights.take_sample()
         self.run.set_crs(self.cloud)
         by_first(self.ranks, lambda: self.give_lines(*lines))
@@ -333,10 +322,7 @@ class Pieces:
 
     def check_faults(self, faults):
         """Refuses faults without z, also before points are read."""
-        try:
-            check_given_z(faults, self.options.faults, self.options.given, self.range)
-        except ElevationSurfaceError as error:
-            raise Failure(str(error)) from None
+        check_given_z(faults, self.options.faults, self.options.given, self.range)
 
     def update(self, piece, count):
         """The output for a piece of this rank."""
@@ -385,7 +371,7 @@ class Pieces:
         for number, known in self.unused.items():
             known = numpy.concatenate(collected(ranks, known))
             self.unused[number] = numpy.sort(known)[:MOST_LISTED]
-        self.others, self.unused[4] = self.told_of.others(MOST_LISTED, ranks)
+        self.others = self.told_of.others(MOST_LISTED, ranks)
         unused = source.GetNumberOfDuplicatePoints() + source.GetNumberOfNonFinitePoints()
         places, policy = source.GetNumberOfPoints() - unused, self.options.given.get("duplicates")
         try:
@@ -417,8 +403,7 @@ class Pieces:
     def holes_of(self, outlines):
         """What became of the holes. No triangles of pieces bridge any."""
         bridged = numpy.zeros(outlines.GetNumberOfLines(), dtype=bool)
-        is_given = self.options.open_edge_length is not None
-        why = AS_GIVEN if is_given else None
+        why = None if self.options.open_edge_length is None else AS_GIVEN
         return report_of_holes(outlines, bridged, self.source.GetFill(), why)
 
     def why_in_no_triangle(self):
@@ -431,30 +416,18 @@ class Pieces:
     def report(self, pieces):
         """As that of a surface in memory, without what needs all of it at once."""
         source, options = self.source, self.options
-        counts = {
-            1: source.GetNumberOfDuplicatePoints(),
-            2: source.GetNumberOfNonFinitePoints(),
-            4: self.others,
+        unused = {
+            REASONS[1]: (source.GetNumberOfDuplicatePoints(), self.unused[1]),
+            REASONS[2]: (source.GetNumberOfNonFinitePoints(), self.unused[2]),
+            self.why_in_no_triangle(): self.others,
         }
-        reasons = {**REASONS, 4: self.why_in_no_triangle()}
-        listed = [
-            {"point": point, "reason": reasons[number]}
-            for number, points in self.unused.items()
-            for point in points.tolist()
-        ]
-        counts = {reasons[number]: n for number, n in counts.items() if n}
-        limits = zip("xyz", self.low.tolist(), self.high.tolist())
+        notes = [with_step(warning) for warning in self.messages.warnings]
+        limits = self.low.tolist(), self.high.tolist()
         self.triangles = {"delaunay": source.GetNumberOfTriangles()}
         report = {
             "file": options.file,
             **self.run.about(),
-            **facts_of(
-                self,
-                source.GetNumberOfPoints(),
-                [with_step(warning) for warning in self.messages.warnings],
-                {axis: pair for axis, *pair in limits},
-                (counts, sorted(listed, key=lambda one: one["point"])),
-            ),
+            **facts_of(self, source.GetNumberOfPoints(), notes, limits, unused),
             "pieces": pieces,
             "times": self.run.times,
             "written": [path for path in (options.output, options.report) if path],

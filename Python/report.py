@@ -34,13 +34,10 @@ def make_report(result):
     cloud, delaunay, trim = result.cloud, result.delaunay, result.trim
     coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData())
     reasons = reasons_unused(result)
-    report = facts_of(
-        result,
-        len(coordinates),
-        result.decided + result.notes,
-        bounds_of(result.surface),
-        list_unused(reasons, cloud.lines),
-    )
+    unused = {number: numpy.flatnonzero(reasons == number) for number in REASONS}
+    unused = {REASONS[number]: (len(ids), ids[:MOST_LISTED]) for number, ids in unused.items()}
+    notes, limits = result.decided + result.notes, limits_of(result.surface)
+    report = facts_of(result, len(coordinates), notes, limits, unused)
     if delaunay.GetMaximumElevationError():
         report["simplified"] = {
             "maximum_elevation_error": delaunay.GetMaximumElevationError(),
@@ -64,19 +61,25 @@ def make_report(result):
     return report
 
 
-def facts_of(result, points, notes, bounds, unused):
+def facts_of(result, points, notes, limits, unused):
     """The part of the report that all surfaces have.
 
-    result  with cloud, delaunay, lattice, triangles and several, as those of a Reconstruction
+    result  with cloud, delaunay, lattice, triangles and several, as a Reconstruction
     points  how many there are
     notes   beside those of the cloud
-    unused  what list_unused() gives
+    limits  the lowest x, y and z of the surface, and the highest
+    unused  {reason: (how many points are not used, the first MOST_LISTED of them)}
     """
-    cloud, (counts, listed) = result.cloud, unused
+    cloud = result.cloud
+    counts = {reason: count for reason, (count, _) in unused.items() if count}
+    listed = [(i, reason) for reason, (_, ids) in unused.items() for i in ids.tolist()]
+    listed = [{"point": point, "reason": reason} for point, reason in sorted(listed)]
+    for one in listed if cloud.lines is not None else ():
+        one["line"] = int(cloud.lines[one["point"]])
     report = {
         "notes": cloud.notes + notes,
         "left_out": cloud.left_out,
-        "bounds": bounds,
+        "bounds": {axis: list(pair) for axis, *pair in zip("xyz", *limits)},
         "crs": cloud.crs,
         "points": points,
         "points_unused": sum(counts.values()),
@@ -140,29 +143,12 @@ def reasons_unused(result):
     return numpy.where((result.reasons == 0) & ~used, OUT_OF_OUTLINE, result.reasons)
 
 
-def list_unused(reasons, lines):
-    """({reason: count}, the first MOST_LISTED unused points for each reason as dictionaries)."""
-    counts, some = {}, []
-    for number, words in REASONS.items():
-        ids = numpy.flatnonzero(reasons == number)
-        if len(ids):
-            counts[words] = len(ids)
-            some.append(ids[:MOST_LISTED])
-    listed = []
-    for point in numpy.sort(numpy.concatenate(some)).tolist() if some else []:
-        listed.append({"point": point, "reason": REASONS[int(reasons[point])]})
-        if lines is not None:
-            listed[-1]["line"] = int(lines[point])
-    return counts, listed
-
-
-def bounds_of(surface):
-    """{"x": [lowest, highest], ...} of the points in triangles."""
+def limits_of(surface):
+    """The lowest x, y and z of the points in triangles, and the highest."""
     points = vtk_to_numpy(surface.GetPoints().GetData())
     corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
-    used = corner_flags(corners, len(points))
-    columns = {axis: points[used, i] for i, axis in enumerate("xyz")}
-    return {axis: [float(c.min()), float(c.max())] for axis, c in columns.items()}
+    used = points[corner_flags(corners, len(points))]
+    return used.min(axis=0).tolist(), used.max(axis=0).tolist()
 
 
 def crs_name(crs):
