@@ -11,6 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from .messages import Aborted, ElevationSurfaceError
 from .names import PANEL, written_for
+from .ranks import is_of_all_ranks
 
 ELEVATION = "Elevation"
 STOPPED = (
@@ -68,6 +69,15 @@ def words_of(data, name):
     return [words.GetValue(i) for i in range(words.GetNumberOfValues())]
 
 
+def words_of_error(error):
+    """What the user is to read of an exception."""
+    if isinstance(error, MemoryError):
+        return "there is not enough memory"
+    if isinstance(error, (ElevationSurfaceError, ValueError, TypeError)):
+        return str(error)
+    return f"this should not happen, please report it: {error!r}"
+
+
 class ReportingAlgorithm(VTKPythonAlgorithmBase):
     """An algorithm that reports to its user what it has done and why it cannot, each once."""
 
@@ -97,12 +107,8 @@ class ReportingAlgorithm(VTKPythonAlgorithmBase):
             self.check_abort()
         except Aborted:
             return self.stop(outInfo)
-        except MemoryError:
-            return self.fail("there is not enough memory")
-        except (ElevationSurfaceError, ValueError, TypeError) as error:
-            return self.fail(str(error))
         except Exception as error:  # pylint: disable=broad-except
-            return self.fail(f"this should not happen, please report it: {error!r}")
+            return self.fail(error)
         text = "\n".join(lines)
         if text not in ("", self._shown):
             vtkOutputWindow.GetInstance().DisplayText(text + "\n")
@@ -122,13 +128,14 @@ class ReportingAlgorithm(VTKPythonAlgorithmBase):
             vtkOutputWindow.GetInstance().DisplayText(f"{self.TITLE}: {STOPPED}\n")
         return 1
 
-    def fail(self, words):
-        """Reports an error as vtkErrorMacro() does. Returns what RequestData() is to return.
+    def fail(self, error):
+        """Reports an exception as vtkErrorMacro() does. Returns what RequestData() is to return.
 
         That is success, with empty output. After a failure the executive would add lines that say
         nothing, and ParaView would never update a picture of this output again.
         """
-        self.error(words)
+        if not is_of_all_ranks(error) or error.is_reported_here:
+            self.error(words_of_error(error))
         self._shown = ""
         return 1
 

@@ -50,7 +50,7 @@ from .messages import ElevationSurfaceError, ElevationSurfaceWarning, Reason, co
 from .names import argument, option
 from .progress import share
 from .properties import PROPERTIES, checked
-from .ranks import controller_of, is_to_speak, shared, together
+from .ranks import agreed, controller_of, is_to_speak, shared, together
 from .reading import read, read_boundary, read_faults
 from .reconstruction import reconstruct
 from .report import crs_name
@@ -232,8 +232,11 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         return 1
 
     def work(self, inputs, outputs):
-        data = vtkDataObject.GetData(inputs[0])
         controller = controller_of(outputs)
+        return agreed(controller, lambda: self.work_on(controller, inputs, outputs))
+
+    def work_on(self, controller, inputs, outputs):
+        data = vtkDataObject.GetData(inputs[0])
         parts, is_here = parts_of(data), True
         if controller:
             parts = gathered(controller, parts, self.warn)

@@ -26,7 +26,7 @@ from .options import (
 )
 from .names import PROGRAM, written_for
 from .pieces import Pieces
-from .ranks import by_first, together, total
+from .ranks import agreed, by_first, together, total
 from .reconstruction import check_spacing, least_reach, run_chain
 from .report import picture_subtitle, print_report
 from .results import Failure, NoPicture, Progress, Results, WrongOption, write_report
@@ -40,8 +40,8 @@ from .writing.outputs import beside, write_output
 class Run:
     """One reconstruction of the command line, with its progress and its times.
 
-    ranks  the controller of the processes that mpirun has started, or None. The first of them reads
-           and writes; all run the filters
+    ranks  the controller of the processes that mpirun has started, or None. All run the filters; but
+           for runs in pieces, the first of them reads and writes
     """
 
     def __init__(self, options, results, ranks):
@@ -119,10 +119,7 @@ class Run:
     def read(self):
         options = self.options
         cloud = self.timed("read", "reading", self.read_clouds)
-        try:
-            check_spacing(least_reach(cloud.points), options.given.get("spacing", 0.0))
-        except ValueError as error:
-            raise WrongOption(f"{options.file}: {error}") from None
+        self.check_spacing(least_reach(cloud.points))
         self.set_crs(cloud)
         lines = {}
         if options.boundary:
@@ -133,6 +130,12 @@ class Run:
         lines, notes = fitted(cloud, lines, names, options.given, options.strict)
         cloud.notes += notes + notes_on(cloud, lines)
         return cloud, lines.get("boundary"), lines.get("faults")
+
+    def check_spacing(self, reach):
+        try:
+            check_spacing(reach, self.options.given.get("spacing", 0.0))
+        except ValueError as error:
+            raise WrongOption(f"{self.options.file}: {error}") from None
 
     def read_faults(self, cloud):
         options = self.options
@@ -263,7 +266,7 @@ class Run:
         """All of a run. Returns the report, on the first rank."""
         by_first(self.ranks, self.check)
         if self.options.in_pieces:
-            return by_first(self.ranks, Pieces(self))
+            return Pieces(self)()
         given = by_first(self.ranks, self.read) or self.nothing()
         result = self.reconstruct(*given)
         report = by_first(self.ranks, lambda: self.write_all(result))
@@ -316,7 +319,7 @@ def attempt(options, ranks, work):
     results = Results()
     run = Run(options, results, ranks)
     try:
-        work(run)
+        agreed(ranks, lambda: work(run))
         return 0
     except ElevationSurfaceError as error:
         reason, code = str(error), error.code

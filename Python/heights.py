@@ -28,6 +28,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from .messages import ElevationSurfaceError, counted
 from .names import option
 from .properties import DUPLICATES
+from .ranks import collected, together
 from .reading.nulls import body
 from .selecting import MOST_VALUES, Words, as_option, coded, columns_in, shown_values
 
@@ -284,15 +285,24 @@ def way_out(told):
 
 class HeightsOfPieces:
     """Places with several heights of a surface that is made piece by piece, without columns. A
-    place is in one piece, with all its points."""
+    place is in one piece, with all its points.
 
-    def __init__(self):
+    ranks  the controller of those that have points and pieces, or None
+    """
+
+    def __init__(self, ranks):
+        self.ranks = ranks
         self.count = self.clear = 0
-        self.largest, self.sample = 0.0, [numpy.empty(0)]
+        self.largest, self.sample, self.body = 0.0, [numpy.empty(0)], 0.0
 
     def see(self, xyz):
         """Takes some z of points that are read, before there are pieces."""
         self.sample.append(xyz[:: 1 + len(xyz) // 1000, 2].astype("f8"))
+
+    def take_sample(self):
+        """All ranks have to call it once the points are read."""
+        sample = collected(self.ranks, numpy.concatenate(self.sample), "f8")
+        self.body = body(numpy.concatenate(sample))
 
     def add(self, xyz):
         """Takes the points of a piece, used or not."""
@@ -301,14 +311,17 @@ class HeightsOfPieces:
             return
         self.count += several.count()
         self.largest = max(self.largest, several.largest())
-        clear = several.spans > CLEAR_OF_RANGE * body(numpy.concatenate(self.sample))
+        clear = several.spans > CLEAR_OF_RANGE * self.body
         if clear.any():
             clear &= several.spans > least_span(xyz, several)
         self.clear += int(numpy.count_nonzero(clear))
 
     def check(self, places, policy):
-        """As check_heights(), once all pieces are known; places: how many distinct ones there are.
-        """
+        """As check_heights(), once all pieces of all ranks are known; places: how many distinct ones
+        there are. All ranks have to call it."""
+        found = together(self.ranks, lambda: [[self.count, self.clear, self.largest]])
+        counts, clear, largest = zip(*found)
+        self.count, self.clear, self.largest = sum(counts), sum(clear), max(largest)
         if not self.count:
             return None, None
         if policy is None and are_many(self.clear, places):

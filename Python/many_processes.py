@@ -9,7 +9,7 @@ import os
 import sys
 
 from .messages import ElevationSurfaceError
-from .ranks import start_ranks, together
+from .ranks import is_of_all_ranks, start_ranks, together
 from .supervisor import held_back, hold_stops, rank_and_size
 
 
@@ -25,8 +25,9 @@ def run_together(main):
         return 1
     except SystemExit as end:
         code = end.code or 0
-    except Exception:
-        sys.stderr = sys.__stderr__  # nobody else can tell
+    except Exception as error:
+        if not is_of_all_ranks(error):
+            sys.stderr = sys.__stderr__  # nobody else can report it
         raise
     # mpirun stops the others when one ends with an error. They have come to the same end.
     hold_stops()

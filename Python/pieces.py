@@ -1,7 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Surfaces larger than memory: points are read slice by slice, and the surface is made and written
-piece by piece. Together the pieces have the triangles of a surface that is made at once."""
+piece by piece. Together the pieces have the triangles of a surface that is made at once.
+
+Several processes each read a share of the points, and make and write pieces of their own. The first
+reads lines, and lets all results appear.
+"""
 
 import contextlib
 import math
@@ -24,12 +28,13 @@ from .holes import report_of_holes
 from .mending import mended
 from .messages import ElevationSurfaceError, FileError, Messages
 from .opening import lattice_of
-from .properties import LATTICE_MODES, option_of, set_properties
+from .properties import option_of, set_properties
+from .ranks import agreed, by_first, collected, rank_and_count, together, total
 from .reading.formats import recognise
 from .reading.slicing import check_sliced, read_files
 from .reading.unpacking import is_plain
-from .reconstruction import AS_GIVEN, check_spacing, least_reach
-from .report import MOST_LISTED, OUTSIDE, REASONS
+from .reconstruction import AS_GIVEN, least_reach
+from .report import MOST_LISTED, OUTSIDE, REASONS, facts_of, report_of_faults, report_of_trimming
 from .results import Failure, WrongOption, write_report
 from .spreading import IN_NO_TRIANGLE
 from .steps import STEPS, in_our_names, is_of_constraints
@@ -57,10 +62,10 @@ def memory_size(text):
 MEMORY = f"a size of at least {1.5 * BYTES_BESIDES / 1e6:g}M, such as 2G"
 
 
-def pieces_within(memory, points, fill=False):
-    """How many pieces take no more memory than that."""
+def pieces_within(memory, points, fill=False, processes=1):
+    """How many pieces take no more memory than that of each process, all of which have as many."""
     needed = (BYTES_TO_FILL if fill else BYTES_A_POINT) * points
-    return max(1, math.ceil(needed / (memory - BYTES_BESIDES)))
+    return processes * max(1, math.ceil(needed / (memory - BYTES_BESIDES) / processes))
 
 
 def check_given(options, error):
@@ -72,8 +77,6 @@ def check_given(options, error):
             if words == "no":
                 words = f"needs the whole surface in memory; it cannot be used with {name}"
             error(f"{option_of(other)} {words}")
-    if options.trim and not options.boundary:
-        error(f"{name} can only trim along a boundary that is given: add --boundary or --no-trim")
     if options.fill and not options.boundary and options.open_edge_length is None:
         error(
             f"{name} cannot tell which triangles bridge what is missing: add --open-edge-length 0 "
@@ -106,18 +109,39 @@ def remove_older(folder, names):
 
 
 @contextlib.contextmanager
-def temporary_folder(output):
-    """A folder beside a result, which goes away, also where this process cannot see to it."""
+def temporary_folder(output, ranks):
+    """A folder beside a result, the same for all ranks. It goes away, also where no process is left
+    to see to it; until then it has all temporary files. Ranks have to leave it together.
+    """
     place, name = os.path.split(os.path.abspath(output))
-    try:
-        folder = tempfile.mkdtemp(".partial", f".{os.path.splitext(name)[0]}.", place)
-    except OSError as error:
-        raise Failure(f"{output}: cannot be written: {error.strerror}") from None
-    note_partial_file(folder)
+
+    def make():
+        try:
+            folder = tempfile.mkdtemp(".partial", f".{os.path.splitext(name)[0]}.", place)
+        except OSError as error:
+            raise Failure(f"{output}: cannot be written: {error.strerror}") from None
+        note_partial_file(folder)
+        return [folder]
+
+    made = by_first(ranks, make, [])
+    (folder,), before = together(ranks, lambda: made), tempfile.tempdir
+    tempfile.tempdir = folder
     try:
         yield folder
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        tempfile.tempdir = before
+        if made:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def folder_of_rank(folder, rank):
+    """A folder in the temporary one, for the files of this rank. Raises Failure."""
+    own = os.path.join(folder, str(rank))
+    try:
+        os.mkdir(own)
+    except OSError as error:
+        raise Failure(f"{own}: process {rank} cannot make this folder: {error.strerror}") from None
+    return own
 
 
 class Points:
@@ -135,11 +159,12 @@ class Points:
             first = numpy.flatnonzero(numpy.diff(byte, prepend=-1))
             self.bits[byte[first]] |= numpy.bitwise_or.reduceat(bit, first)
 
-    def others(self, most):
-        """(how many are not in it, the first of these)"""
+    def others(self, most, ranks):
+        """(how many are in that of no rank, the first of these)"""
         count, listed = 0, [numpy.empty(0, "i8")]
         for part in slices(len(self.bits)):
-            there = numpy.unpackbits(self.bits[part], bitorder="little")
+            bits = numpy.bitwise_or.reduce(collected(ranks, self.bits[part], "u1"))
+            there = numpy.unpackbits(bits, bitorder="little")
             there = there[: self.count - 8 * part.start]
             listed.append(8 * part.start + numpy.flatnonzero(there == 0)[: max(0, most - count)])
             count += len(there) - numpy.count_nonzero(there)
@@ -164,71 +189,87 @@ def with_step(message):
 
 
 class Pieces:
-    """A run in pieces: reads, triangulates, trims, fills and writes. Call it to get the report.
+    """A run in pieces: reads, triangulates, trims, fills and writes. All ranks call it; the first gets
+    the report.
 
-    run  the Run of the command line, with its options, results, progress and times
+    run  the Run of the command line, with its options, results, progress, times and ranks
     """
 
     def __init__(self, run):
-        self.run, self.options = run, run.options
+        self.run, self.options, self.ranks = run, run.options, run.ranks
         self.cloud = Cloud(None)
         self.source = vtkReconstructPieces()
-        self.source.SetController(None)
+        self.source.SetController(self.ranks)
+        self.delaunay = self.source.GetDelaunay()
         self.unused = {number: numpy.empty(0, "i8") for number in (1, 2)}  # of REASONS
         self.low, self.high = numpy.full(3, numpy.inf), numpy.full(3, -numpy.inf)
         self.range = None  # of z of the points
         self.lattice = self.told_of = self.holes = None
-        self.heights, self.several = HeightsOfPieces(), None
+        self.heights, self.several = HeightsOfPieces(self.ranks), None
 
     def __call__(self):
+        with temporary_folder(self.options.output, self.ranks) as folder:
+            return agreed(self.ranks, lambda: self.work(folder))
+
+    def work(self, folder):
         options, source, run = self.options, self.source, self.run
+        rank, ranks = rank_and_count(self.ranks)
+        if options.pieces and options.pieces % ranks:
+            raise WrongOption(
+                f"--pieces: {options.pieces} cannot be made by {ranks} processes, each as many: take a "
+                f"multiple of {ranks}, such as {options.pieces + -options.pieces % ranks}"
+            )
+        source.SetFolder(folder_of_rank(folder, rank))
+        source.SetTrimOutward(options.trim)
         source.SetFillHoles(options.fill)
         for step, algorithm in (
-            ("delaunay", source.GetDelaunay()),
+            ("delaunay", self.delaunay),
             ("trim", source.GetTrim()),
             ("fill", source.GetFill()),
         ):
             set_properties(algorithm, step, options.given)
+        if not options.boundary:
+            source.GetFill().FillCutOutsOn()  # as in memory
         source.AddObserver(
             "ProgressEvent", lambda caller, _: run.progress(STEPS[step_of(caller)], caller.GetProgress())
         )
-        with temporary_folder(options.output) as folder:
-            source.SetFolder(folder)
-            with MessagesOfSteps(source, source.GetExecutive()) as self.messages:
-                run.timed("read", "reading", self.read)
-                count = options.pieces or pieces_within(
-                    options.memory, source.GetNumberOfPoints(), options.fill
-                )
-                if options.memory is not None:
-                    source.SetMemoryOfHole(options.memory - BYTES_BESIDES)
-                run.timed("triangulate", STEPS["delaunay"], lambda: self.update(0, count))
-                names = run.timed("write", "writing", lambda: self.write(folder, count))
-            run.results.add(options.output, lambda path: write_vtpd(names, path))
-            report = self.report(len(names))
-            if options.report:
-                run.results.add(options.report, lambda path: write_report(path, report))
-            run.results.publish()
-            remove_older(folder_of(options.output), names)
+        with MessagesOfSteps(source, source.GetExecutive()) as self.messages:
+            run.timed("read", "reading", self.read)
+            points = total(self.ranks, source.GetNumberOfPoints())
+            count = options.pieces or pieces_within(options.memory, points, options.fill, ranks)
+            if options.memory is not None:
+                source.SetMemoryOfHole(options.memory - BYTES_BESIDES)
+            own = range(rank * count // ranks, (rank + 1) * count // ranks)
+            run.timed("triangulate", STEPS["delaunay"], lambda: self.begin(own[0], count))
+            run.timed("write", "writing", lambda: self.write(own, count))
+        self.gather()
+        return by_first(self.ranks, self.finish)
+
+    def finish(self):
+        """Lets the results of all ranks appear. Returns the report."""
+        options, results, final = self.options, self.run.results, folder_of(self.options.output)
+        names = [os.path.relpath(path, os.path.dirname(final)) for _, path in results.pending]
+        results.add(options.output, lambda path: write_vtpd(names, path))
+        report = self.report(len(names))
+        if options.report:
+            results.add(options.report, lambda path: write_report(path, report))
+        results.publish()
+        remove_older(final, names)
         return report
 
     def check(self):
         """Raises what the filter has reported as error, or with --strict as warning."""
         problems = self.messages.errors or (self.messages.warnings if self.options.strict else [])
         if problems:
-            file = self.options.boundary if problems[0].step == "trim" else self.options.file
+            file = problems[0].step == "trim" and self.options.boundary or self.options.file
             file = self.options.faults if is_of_constraints(problems[0]) else file
             more = (in_our_names(one, one.step) for one in problems[1:])
             raise Failure(" ".join([f"{file}: {with_step(problems[0])}", *more]))
 
     def read(self):
-        """Gives all points to the filter, slice by slice."""
+        """Gives the points of this rank to the filter, slice by slice, and lines on the first."""
         options, reach = self.options, numpy.inf
-        path = options.boundary
-        if path:
-            boundary, notes = mended(reading.read_boundary(path), path, options.strict)
-        if options.faults:
-            faults = self.run.read_faults(self.cloud)
-            self.check_faults(faults)
+        lines = by_first(self.ranks, self.read_lines)
 
         def take(points):
             nonlocal reach
@@ -237,55 +278,74 @@ class Pieces:
                 reach = min(reach, least_reach(given))
                 self.source.AddPoints(given)
                 self.heights.see(points[part])
-                self.see_heights(given)
+                self.see_heights(heights_of(given))
                 self.check()
 
-        read_files(options.files, self.cloud, take, **self.run.read_options())
-        try:
-            check_spacing(reach, options.given.get("spacing", 0.0))
-        except ValueError as error:
-            raise WrongOption(f"{options.file}: {error}") from None
+        read_files(options.files, self.cloud, take, self.ranks, **self.run.read_options())
+        for pair in together(self.ranks, lambda: [self.range]):
+            self.see_heights(pair)
+        self.run.check_spacing(min(collected(self.ranks, [reach], "f8"))[0])
+        self.heights.take_sample()
         self.run.set_crs(self.cloud)
-        if path:
-            boundary, told = in_system(
-                boundary, path, self.cloud, options.files[0], options.strict
-            )
-            self.cloud.notes += notes + told
-            self.source.GetTrim().SetBoundaryData(boundary)
-        if options.faults:
-            self.check_faults(faults)
-            faults, told = in_system(
-                faults, options.faults, self.cloud, options.files[0], options.strict
-            )
-            note = faults_note(self.range, faults)
-            self.cloud.notes += told + [note] * bool(note)
-            self.source.GetDelaunay().SetSourceData(faults)
+        by_first(self.ranks, lambda: self.give_lines(*lines))
 
-    def see_heights(self, points):
-        found = [pair for pair in (self.range, heights_of(points)) if pair]
+    def read_lines(self):
+        """(boundary, notes on it, faults), before points are read."""
+        options, boundary, notes, faults = self.options, None, [], None
+        if options.boundary:
+            boundary = reading.read_boundary(options.boundary)
+            boundary, notes = mended(boundary, options.boundary, options.strict)
+        if options.faults:
+            faults = self.run.read_faults(self.cloud)
+            self.check_faults(faults)
+        return boundary, notes, faults
+
+    def give_lines(self, boundary, notes, faults):
+        """Gives lines to the filter, in the system of the points."""
+        options, cloud = self.options, self.cloud
+        if boundary is not None:
+            boundary, told = in_system(
+                boundary, options.boundary, cloud, options.files[0], options.strict
+            )
+            cloud.notes += notes + told
+            self.source.GetTrim().SetBoundaryData(boundary)
+        if faults is not None:
+            self.check_faults(faults)
+            faults, told = in_system(faults, options.faults, cloud, options.files[0], options.strict)
+            note = faults_note(self.range, faults)
+            cloud.notes += told + [note] * bool(note)
+            self.delaunay.SetSourceData(faults)
+
+    def see_heights(self, heights):
+        found = [pair for pair in (self.range, heights) if pair]
         self.range = (min(low for low, _ in found), max(high for _, high in found)) if found else None
 
     def check_faults(self, faults):
         """Refuses faults without z, also before points are read."""
-        try:
-            check_given_z(faults, self.options.faults, self.options.given, self.range)
-        except ElevationSurfaceError as error:
-            raise Failure(str(error)) from None
+        check_given_z(faults, self.options.faults, self.options.given, self.range)
 
     def update(self, piece, count):
-        """The output for a piece. The first one takes the time of the triangulation."""
+        """The output for a piece of this rank."""
         self.source.UpdatePiece(piece, count, 0)
         self.check()
-        if self.source.GetNumberOfTriangles() == 0:
-            why = self.messages.warnings[0]
-            raise Failure(f"{self.options.file}: no surface: {in_our_names(why, why.step)}")
         return self.source.GetOutput()
 
-    def write(self, folder, count):
-        """Writes all pieces with points. Returns their names beside the output."""
-        names, final = [], folder_of(self.options.output)
+    def begin(self, piece, count):
+        """Makes the whole surface, which takes until all ranks have asked for their first piece."""
+
+        def first():
+            self.update(piece, count)
+            if self.source.GetNumberOfTriangles() == 0 and self.run.is_first:
+                why = self.messages.warnings[0]
+                raise Failure(f"{self.options.file}: no surface: {in_our_names(why, why.step)}")
+
+        agreed(self.ranks, first)
+
+    def write(self, own, count):
+        """Writes all pieces of this rank with points."""
+        final = folder_of(self.options.output)
         self.told_of = Points(self.source.GetNumberOfPoints())
-        for piece in range(count):
+        for piece in own:
             data = self.update(piece, count)
             if piece == 0 and self.options.fill:
                 self.holes = self.holes_of(self.source.GetOutput(1))
@@ -297,21 +357,27 @@ class Pieces:
                 self.run.results.add(
                     os.path.join(final, name),
                     lambda path: write_vtp(data, path),  # pylint: disable=cell-var-from-loop
-                    os.path.join(folder, name),
+                    os.path.join(self.source.GetFolder(), name),
                 )
-                names.append(f"{os.path.basename(final)}/{name}")
-            self.run.progress("writing", (piece + 1) / count)
-        self.check_heights()
-        return names
+            self.run.progress("writing", (piece + 1 - own[0]) / len(own))
 
-    def check_heights(self):
-        source, options = self.source, self.options
+    def gather(self):
+        """What has been found in the pieces of all ranks, and the files that are written."""
+        ranks, source = self.ranks, self.source
+        self.run.results.pending = together(ranks, lambda: self.run.results.pending)
+        self.low = numpy.min(collected(ranks, self.low, "f8"), axis=0)
+        self.high = numpy.max(collected(ranks, self.high, "f8"), axis=0)
+        self.lattice = next(iter(together(ranks, lambda: [self.lattice] if self.lattice else [])), None)
+        for number, known in self.unused.items():
+            known = numpy.concatenate(collected(ranks, known))
+            self.unused[number] = numpy.sort(known)[:MOST_LISTED]
+        self.others = self.told_of.others(MOST_LISTED, ranks)
         unused = source.GetNumberOfDuplicatePoints() + source.GetNumberOfNonFinitePoints()
-        places, policy = source.GetNumberOfPoints() - unused, options.given.get("duplicates")
+        places, policy = source.GetNumberOfPoints() - unused, self.options.given.get("duplicates")
         try:
             note, self.several = self.heights.check(places, policy)
         except ElevationSurfaceError as error:
-            raise Failure(f"{options.file}: {error}") from None
+            raise Failure(f"{self.options.file}: {error}") from None
         self.cloud.notes += [note] if note else []
 
     def look_at(self, data):
@@ -337,17 +403,12 @@ class Pieces:
     def holes_of(self, outlines):
         """What became of the holes. No triangles of pieces bridge any."""
         bridged = numpy.zeros(outlines.GetNumberOfLines(), dtype=bool)
-        is_given = self.options.open_edge_length is not None
-        why = AS_GIVEN if is_given else None
+        why = None if self.options.open_edge_length is None else AS_GIVEN
         return report_of_holes(outlines, bridged, self.source.GetFill(), why)
-
-    def notes(self):
-        """What the filter warns of."""
-        return [with_step(warning) for warning in self.messages.warnings]
 
     def why_in_no_triangle(self):
         """The reason of points that have been left out by trimming, or by the limit of edges."""
-        is_limited = self.source.GetDelaunay().GetMaximumEdgeLength() > 0.0
+        is_limited = self.delaunay.GetMaximumEdgeLength() > 0.0
         if is_limited and self.options.trim:
             return f"{OUTSIDE}, or {REASONS[IN_NO_TRIANGLE]}"
         return REASONS[IN_NO_TRIANGLE] if is_limited else OUTSIDE
@@ -355,53 +416,30 @@ class Pieces:
     def report(self, pieces):
         """As that of a surface in memory, without what needs all of it at once."""
         source, options = self.source, self.options
-        counts = {1: source.GetNumberOfDuplicatePoints(), 2: source.GetNumberOfNonFinitePoints()}
-        counts[4], self.unused[4] = self.told_of.others(MOST_LISTED)
-        reasons = {**REASONS, 4: self.why_in_no_triangle()}
-        listed = [
-            {"point": point, "reason": reasons[number]}
-            for number, points in self.unused.items()
-            for point in points.tolist()
-        ]
-        limits = zip("xyz", self.low.tolist(), self.high.tolist())
+        unused = {
+            REASONS[1]: (source.GetNumberOfDuplicatePoints(), self.unused[1]),
+            REASONS[2]: (source.GetNumberOfNonFinitePoints(), self.unused[2]),
+            self.why_in_no_triangle(): self.others,
+        }
+        notes = [with_step(warning) for warning in self.messages.warnings]
+        limits = self.low.tolist(), self.high.tolist()
+        self.triangles = {"delaunay": source.GetNumberOfTriangles()}
         report = {
             "file": options.file,
             **self.run.about(),
-            "notes": self.cloud.notes + self.notes(),
-            "left_out": self.cloud.left_out,
-            "bounds": {axis: pair for axis, *pair in limits},
-            "crs": self.cloud.crs,
-            "points": source.GetNumberOfPoints(),
-            "points_unused": sum(counts.values()),
-            "unused_reasons": {reasons[number]: n for number, n in counts.items() if n},
-            "unused": sorted(listed, key=lambda one: one["point"]),
-            "unused_listed": len(listed),
-            "lattice": self.lattice,
-            "lattice_mode": LATTICE_MODES[source.GetDelaunay().GetLatticeMode()],
-            "triangles": {"delaunay": source.GetNumberOfTriangles()},
+            **facts_of(self, source.GetNumberOfPoints(), notes, limits, unused),
             "pieces": pieces,
             "times": self.run.times,
             "written": [path for path in (options.output, options.report) if path],
         }
         if options.trim:
-            report["trim"] = {
-                "outward_triangles": source.GetNumberOfOutwardTriangles(),
-                "recovered_edges": source.GetNumberOfRecoveredEdges(),
-                "inserted_points": source.GetNumberOfInsertedPoints(),
-                "boundary": options.boundary,
-                "boundary_rings": source.GetNumberOfBoundaryRings(),
-            }
-            report["triangles"]["trimmed"] = source.GetNumberOfTrimmedTriangles()
+            rings, outward = source.GetNumberOfBoundaryRings(), source.GetNumberOfOutwardTriangles()
+            report["trim"] = report_of_trimming(outward, source, options.boundary, rings)
+            self.triangles["trimmed"] = source.GetNumberOfTrimmedTriangles()
         if options.faults:
-            report["faults"] = {
-                "file": options.faults,
-                "added_points": source.GetNumberOfAddedPoints(),
-                "crossings": source.GetNumberOfConstraintCrossings(),
-            }
-        if self.several:
-            report["several_heights"] = self.several
+            report["faults"] = report_of_faults(options.faults, source)
         if options.fill:
-            report["triangles"]["filled"] = source.GetNumberOfFilledTriangles()
+            self.triangles["filled"] = source.GetNumberOfFilledTriangles()
             report["holes"] = self.holes
         return report
 

@@ -2,13 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The ranks (processes) on which an algorithm runs at the same time.
 
-They are several where the global controller has several processes and several pieces are asked for.
-All of them have to call the same functions in the same order.
+They are several where the global controller has several processes and several pieces are asked for;
+where the controller is None, there is one. All of them have to call the same functions in the same
+order. Each of these begins with an exchange. Where work raises on a rank, it takes part in the
+exchange that the others come to next, with its error, and all ranks raise that.
 """
 
 import ctypes
 import hashlib
 import json
+import pickle
 import time
 
 import numpy
@@ -31,7 +34,6 @@ MPI_OTHER = (
 WORK_IS_DONE = 21  # tag of a message
 ID_ARRAYS = "ArraysOfIds"  # field data of packed()
 IN_FIELD_DATA = 2  # place in fields_of()
-ELSEWHERE = "the message of another rank tells why"
 
 
 def start_ranks():
@@ -76,76 +78,94 @@ def controller_of(outputs):
     return controller if controller and controller.GetNumberOfProcesses() > 1 else None
 
 
+def rank_and_count(controller):
+    """The number of this rank, and how many there are."""
+    if controller is None:
+        return 0, 1
+    return controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
+
+
 def collected(controller, values, kind="i8"):
-    """The numbers of all ranks, a numpy array for each. kind: i8 or f8, the same on all ranks."""
+    """The numbers of all ranks, a numpy array for each. kind: i8, f8 or u1, the same on all ranks.
+
+    Where a rank has failed() meanwhile, all ranks raise its error: that of the first of these, and
+    Aborted if there is no other.
+    """
     values = numpy.asarray(values, dtype=kind)
     if controller is None:
         return [values]
+    lengths = all_of(controller, numpy.array([len(values)]))
+    if lengths.min() < 0:
+        raise first_error(controller, lengths, b"")
+    return rows_of(controller, lengths, values)
 
-    def all_of(numbers):
-        own = numpy_to_vtk(numbers, deep=True)
-        everywhere = own.NewInstance()
-        everywhere.SetNumberOfValues(len(numbers) * controller.GetNumberOfProcesses())
-        controller.AllGather(own, everywhere)
-        return vtk_to_numpy(everywhere).copy()
 
-    lengths = all_of(numpy.array([len(values)]))
-    padded = numpy.zeros(max(lengths.max(), 1), dtype=kind)
+def failed(controller, error):
+    """The error that all ranks raise because of this one, which meets the others in the exchange that
+    they come to next."""
+    try:
+        words = pickle.dumps(error)
+        pickle.loads(words)
+    except Exception:  # pylint: disable=broad-except
+        words = pickle.dumps(ElevationSurfaceError(str(error)))
+    return first_error(controller, all_of(controller, numpy.array([-len(words)])), words)
+
+
+def first_error(controller, lengths, words):
+    """The error that all ranks raise; words: that of this rank. Lengths of errors are below 0."""
+    rows = rows_of(controller, numpy.maximum(-lengths, 0), numpy.frombuffer(words, "u1"))
+    errors = [pickle.loads(row.tobytes()) for row in rows if len(row)]
+    error = next((one for one in errors if not isinstance(one, Aborted)), errors[0])
+    error.is_reported_here = controller.GetLocalProcessId() == 0
+    return error
+
+
+def is_of_all_ranks(error):
+    """Whether all ranks raise this error. Its is_reported_here is True on the first."""
+    return hasattr(error, "is_reported_here")
+
+
+def all_of(controller, numbers):
+    """The numbers of all ranks, as many of each, one rank after the other."""
+    own = numpy_to_vtk(numbers, deep=True)
+    everywhere = own.NewInstance()
+    everywhere.SetNumberOfValues(len(numbers) * controller.GetNumberOfProcesses())
+    controller.AllGather(own, everywhere)
+    return vtk_to_numpy(everywhere).copy()
+
+
+def rows_of(controller, lengths, values):
+    """The values of each rank, so many as lengths says."""
+    padded = numpy.zeros(max(lengths.max(), 1), dtype=values.dtype)
     padded[: len(values)] = values
-    rows = all_of(padded).reshape(len(lengths), -1)
+    rows = all_of(controller, padded).reshape(len(lengths), -1)
     return [row[:length] for row, length in zip(rows, lengths)]
 
 
-def together(controller, work):
-    """The lists that work() gives on each rank, as one list on all ranks. They hold plain values.
-
-    Where work() raises on a rank, all ranks raise. Without a controller there is one rank.
-    """
-    if controller is None:
-        return work()
-    failure = None
+def tried(controller, work):
+    """What work() gives on this rank; its error goes to all ranks."""
     try:
-        words = json.dumps(["done", work()])
+        return work()
     except Exception as error:  # pylint: disable=broad-except
-        failure = error
-        words = json.dumps(["stopped" if isinstance(error, Aborted) else "failed", []])
-    found = collected(controller, list(words.encode()))
-    found = [json.loads(bytes(row.astype("u1"))) for row in found]
-    states = [state for state, _ in found]
-    if failure:
-        raise failure
-    if "failed" in states:
-        raise ElevationSurfaceError(ELSEWHERE)
-    if "stopped" in states:
-        raise Aborted
-    return [value for _, values in found for value in values]
+        if controller is None or is_of_all_ranks(error):
+            raise
+        raise failed(controller, error) from error
 
 
 def agreed(controller, work):
-    """What work() gives on this rank. Where it raises an ElevationSurfaceError or a MemoryError on a
-    rank, all ranks raise that of the first of these."""
-    made = []
+    """What work() gives on this rank, once it is done on all."""
+    made = tried(controller, work)
+    collected(controller, ())
+    return made
 
-    def attempt():
-        try:
-            made.append(work())
-            return []
-        except ElevationSurfaceError as error:
-            return [[error.message, error.about, error.step, error.code]]
-        except MemoryError:
-            return [[]]
 
+def together(controller, work):
+    """The lists that work() gives on each rank, as one list on all ranks. They hold plain values."""
     if controller is None:
         return work()
-    failures = together(controller, attempt)
-    if failures and not failures[0]:
-        raise MemoryError
-    if failures:
-        *words, code = failures[0]
-        error = ElevationSurfaceError(*words)
-        error.code = code
-        raise error
-    return made[0]
+    words = tried(controller, lambda: json.dumps(work()).encode())
+    rows = collected(controller, numpy.frombuffer(words, "u1"), "u1")
+    return [value for row in rows for value in json.loads(row.tobytes())]
 
 
 def by_first(controller, work, other=None):
@@ -153,6 +173,7 @@ def by_first(controller, work, other=None):
     if controller is None:
         return work()
     ranks = range(1, controller.GetNumberOfProcesses())
+    collected(controller, ())  # nobody waits for a first rank that does not come here
 
     def of_first():
         try:
@@ -194,8 +215,7 @@ def is_to_speak(controller, parts):
 def shared(controller, work):
     """The vtkPolyData parts of all ranks, on all of them; work() gives the one of this rank.
 
-    What several ranks have as a whole, the same points and cells, counts once. Where work() raises
-    on a rank, all ranks raise.
+    What several ranks have as a whole, the same points and cells, counts once.
     """
     if controller is None:
         return [work()]

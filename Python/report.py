@@ -33,25 +33,11 @@ def make_report(result):
     """Everything the user may want to know of a Reconstruction, as plain numbers and words."""
     cloud, delaunay, trim = result.cloud, result.delaunay, result.trim
     coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData())
-    surface = result.surface
     reasons = reasons_unused(result)
-    counts, listed = list_unused(reasons, cloud.lines)
-    report = {
-        "notes": cloud.notes + result.decided + result.notes,
-        "left_out": cloud.left_out,
-        "bounds": bounds_of(surface),
-        "crs": result.crs,
-        "points": len(coordinates),
-        "points_unused": sum(counts.values()),
-        "unused_reasons": counts,
-        "unused": listed,
-        "unused_listed": len(listed),
-        "lattice": result.lattice,
-        "lattice_mode": LATTICE_MODES[delaunay.GetLatticeMode()],
-        "triangles": result.triangles,
-    }
-    if result.several:
-        report["several_heights"] = result.several
+    unused = {number: numpy.flatnonzero(reasons == number) for number in REASONS}
+    unused = {REASONS[number]: (len(ids), ids[:MOST_LISTED]) for number, ids in unused.items()}
+    notes, limits = result.decided + result.notes, limits_of(result.surface)
+    report = facts_of(result, len(coordinates), notes, limits, unused)
     if delaunay.GetMaximumElevationError():
         report["simplified"] = {
             "maximum_elevation_error": delaunay.GetMaximumElevationError(),
@@ -61,30 +47,79 @@ def make_report(result):
         }
     if result.faults_name:
         with_faults = result.outlined[0] if result.outlined else delaunay
-        report["faults"] = {
-            "file": result.faults_name,
-            "added_points": with_faults.GetNumberOfAddedPoints(),
-            "crossings": with_faults.GetNumberOfConstraintCrossings(),
-        }
+        report["faults"] = report_of_faults(result.faults_name, with_faults)
     if trim:
-        report["trim"] = trimming_of(result)
+        report["trim"] = report_of_trimming(
+            trim.GetNumberOfOutwardTriangles(),
+            result.outlined[1] if result.outlined else trim,
+            result.boundary_name,
+            result.boundary.GetNumberOfLines(),
+        )
     if result.fill:
         report["holes"] = holes_of(result)
     report["distance"] = distance_of(result, coordinates, reasons)
     return report
 
 
-def trimming_of(result):
-    """The part of the report on trimming."""
-    trim = result.outlined[1] if result.outlined else result.trim
+def facts_of(result, points, notes, limits, unused):
+    """The part of the report that all surfaces have.
+
+    result  with cloud, delaunay, lattice, triangles and several, as a Reconstruction
+    points  how many there are
+    notes   beside those of the cloud
+    limits  the lowest x, y and z of the surface, and the highest
+    unused  {reason: (how many points are not used, the first MOST_LISTED of them)}
+    """
+    cloud = result.cloud
+    counts = {reason: count for reason, (count, _) in unused.items() if count}
+    listed = [(i, reason) for reason, (_, ids) in unused.items() for i in ids.tolist()]
+    listed = [{"point": point, "reason": reason} for point, reason in sorted(listed)]
+    for one in listed if cloud.lines is not None else ():
+        one["line"] = int(cloud.lines[one["point"]])
     report = {
-        "outward_triangles": result.trim.GetNumberOfOutwardTriangles(),
+        "notes": cloud.notes + notes,
+        "left_out": cloud.left_out,
+        "bounds": {axis: list(pair) for axis, *pair in zip("xyz", *limits)},
+        "crs": cloud.crs,
+        "points": points,
+        "points_unused": sum(counts.values()),
+        "unused_reasons": counts,
+        "unused": listed,
+        "unused_listed": len(listed),
+        "lattice": result.lattice,
+        "lattice_mode": LATTICE_MODES[result.delaunay.GetLatticeMode()],
+        "triangles": result.triangles,
+    }
+    if result.several:
+        report["several_heights"] = result.several
+    return report
+
+
+def report_of_faults(name, delaunay):
+    """The part of the report on faults."""
+    return {
+        "file": name,
+        "added_points": delaunay.GetNumberOfAddedPoints(),
+        "crossings": delaunay.GetNumberOfConstraintCrossings(),
+    }
+
+
+def report_of_trimming(outward, trim, boundary_name, rings):
+    """The part of the report on trimming.
+
+    outward        how many triangles were outside
+    trim           the filter that has found or been given the boundary
+    boundary_name  where a given one is from
+    rings          how many it has
+    """
+    report = {
+        "outward_triangles": outward,
         "recovered_edges": trim.GetNumberOfRecoveredEdges(),
         "inserted_points": trim.GetNumberOfInsertedPoints(),
-        "boundary": result.boundary_name or FOUND,
-        "boundary_rings": result.boundary.GetNumberOfLines(),
+        "boundary": boundary_name or FOUND,
+        "boundary_rings": rings,
     }
-    if not result.boundary_name:
+    if not boundary_name:
         report["effective_gap_tolerance"] = trim.GetEffectiveGapTolerance()
         report["points_left_out"] = trim.GetNumberOfPointsLeftOut()
     return report
@@ -108,29 +143,12 @@ def reasons_unused(result):
     return numpy.where((result.reasons == 0) & ~used, OUT_OF_OUTLINE, result.reasons)
 
 
-def list_unused(reasons, lines):
-    """({reason: count}, the first MOST_LISTED unused points for each reason as dictionaries)."""
-    counts, some = {}, []
-    for number, words in REASONS.items():
-        ids = numpy.flatnonzero(reasons == number)
-        if len(ids):
-            counts[words] = len(ids)
-            some.append(ids[:MOST_LISTED])
-    listed = []
-    for point in numpy.sort(numpy.concatenate(some)).tolist() if some else []:
-        listed.append({"point": point, "reason": REASONS[int(reasons[point])]})
-        if lines is not None:
-            listed[-1]["line"] = int(lines[point])
-    return counts, listed
-
-
-def bounds_of(surface):
-    """{"x": [lowest, highest], ...} of the points in triangles."""
+def limits_of(surface):
+    """The lowest x, y and z of the points in triangles, and the highest."""
     points = vtk_to_numpy(surface.GetPoints().GetData())
     corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
-    used = corner_flags(corners, len(points))
-    columns = {axis: points[used, i] for i, axis in enumerate("xyz")}
-    return {axis: [float(c.min()), float(c.max())] for axis, c in columns.items()}
+    used = points[corner_flags(corners, len(points))]
+    return used.min(axis=0).tolist(), used.max(axis=0).tolist()
 
 
 def crs_name(crs):

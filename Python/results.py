@@ -62,8 +62,8 @@ class Results:
         """Lets write(partial) write a result, whose folder may have to be made when it appears."""
         partial = partial or partial_path(path)
         self.pending.append((partial, path))
-        note_partial_file(partial)
         try:
+            note_partial_file(partial)
             return write(partial)
         except PictureError as error:
             self.take_back()

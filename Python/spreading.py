@@ -32,6 +32,7 @@ def update(algorithm, ranks):
     if ranks is None:
         algorithm.Update()
     else:
+        collected(ranks, ())  # where one has failed, none waits for it in the filter
         algorithm.UpdatePiece(ranks.GetLocalProcessId(), ranks.GetNumberOfProcesses(), 0)
 
 

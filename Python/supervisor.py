@@ -129,10 +129,20 @@ def keep_whole_files(folder):
     return bool(waiting)
 
 
+def remove_folder(path):
+    """Removes a folder in which other processes may still make files: they do not find it any more."""
+    gone = path + ".gone"
+    try:
+        os.rename(path, gone)
+    except OSError:
+        gone = path
+    shutil.rmtree(gone, ignore_errors=True)
+
+
 def remove_leftovers(folder):
     for path in noted(folder, PARTIAL_FILES):
         if os.path.isdir(path):
-            shutil.rmtree(path, ignore_errors=True)
+            remove_folder(path)
         elif os.path.isfile(path):
             os.remove(path)
     shutil.rmtree(folder, ignore_errors=True)
@@ -151,8 +161,8 @@ def supervised(work):
     """Calls work() in a child process. Returns the exit code: work's, 130 if stopped, 1 after a
     crash, 3 where only the picture was missing then.
 
-    Of several processes that mpirun has started, the first alone writes files and is stopped so. The
-    others have to outlive it: when one is gone, mpirun ends all by force.
+    Of several processes that mpirun has started, the first alone is stopped so; others write files in
+    a folder of its own alone. They have to outlive it: when one is gone, mpirun ends all by force.
     """
     rank, size = rank_and_size()
     if rank > 0:

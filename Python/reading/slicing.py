@@ -18,7 +18,7 @@ from ..clouds import WHOLE, Cloud, Part, ReadOptions, system_of
 from ..messages import FileError, Reason
 from ..paths import check_readable
 from ..progress import share
-from ..ranks import agreed, together, total
+from ..ranks import agreed, rank_and_count, together, total
 from ..selecting import NothingChosen, Selection, as_option, none_chosen
 from . import NAMES_IN_COLUMNS, check_use
 from .formats import FORMATS, recognise
@@ -163,17 +163,17 @@ def parts_of(paths, rank, ranks):
     for path in paths:
         if path != "-":
             check_readable(path)
-    sizes = [os.path.getsize(path) if path != "-" else 1 for path in paths]
+    if ranks > 1 and "-" in paths[1:]:
+        raise FileError(f"{STANDARD_INPUT} is of the first process alone: name - before other files")
+    sizes = [os.path.getsize(path) if path != "-" else 0 for path in paths]
     begin, end = (sum(sizes) * number // ranks for number in (rank, rank + 1))
     parts, at = {}, 0
     for number, (path, size) in enumerate(zip(paths, sizes)):
-        if not is_plain(path) and begin <= at < end:
+        if path == "-" and rank == 0 or not is_plain(path) and begin <= at < end:
             parts[number] = WHOLE
         elif is_plain(path) and max(begin, at) < min(end, at + size):
             parts[number] = Part(max(begin - at, 0), min(end - at, size), size)
         at += size
-        if path == "-" and number in parts and rank > 0:
-            raise FileError(f"{STANDARD_INPUT} is of the first process alone: name - before other files")
     return parts
 
 
@@ -195,7 +195,7 @@ def read_files(paths, cloud, take, ranks=None, **options):
     at them again among points that others have seen. Raises FileError, also where coordinate
     reference systems differ.
     """
-    rank, count = (ranks.GetLocalProcessId(), ranks.GetNumberOfProcesses()) if ranks else (0, 1)
+    rank, count = rank_and_count(ranks)
     parts = agreed(ranks, lambda: parts_of(paths, rank, count))
     options, files = ReadOptions(**options), {}
     for i, (number, part) in enumerate(parts.items()):

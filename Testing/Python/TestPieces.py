@@ -1021,6 +1021,30 @@ class Command(Program):
         done = self.call(name, "--pieces", "4", "--boundary", "far.txt", "--no-fill")
         self.assertIn("far.txt: trimming: The boundary", done.stderr)
 
+    def test_the_outline_that_is_found_is_that_of_one_run(self):
+        points = clouds()["random"]
+        places = points[:, :2] - (400600.0, 400500.0)
+        name = self.npy("a.npy", points[~(numpy.hypot(*places.T) < 150.0)])
+        for ways in (("--no-fill",), ("--open-edge-length", "0"), ("--no-fill", "--gap-tolerance", "3")):
+            told = []
+            for way in (("--no-picture",), ("--pieces", "4")):
+                done = self.call(name, *ways, *way, "--report")
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                report = self.json("a_surface.json")
+                told.append([line for line in done.stdout.splitlines()
+                             if not re.match("  (time|distance|written)|  +in 4 pieces", line)])
+                told.append({key: report[key] for key in ("unused_reasons", "unused", "triangles", "trim", "bounds")})
+            self.assertEqual(told[:2], told[2:])
+            self.assertEqual(told[1]["trim"]["boundary"], "found from the points")
+            self.assertGreater(told[1]["trim"]["outward_triangles"], 20)
+            reader = vtkXMLPolyDataReader()
+            reader.SetFileName(self.path("a_surface.vtp"))
+            reader.Update()
+            numpy.testing.assert_array_equal(
+                sorted_rows(numpy.concatenate([by_places(part) for part in self.parts("a_surface.vtpd")])),
+                by_places(reader.GetOutput()),
+            )
+
     def test_faults_are_edges_and_told_as_by_one_run(self):
         points = clouds()["random"]
         points[:, 2] += 100.0
@@ -1178,6 +1202,8 @@ class Command(Program):
         self.assertEqual(pieces.pieces_within(2e9, 1000), 1)
         self.assertEqual(pieces.pieces_within(2e9, 200_000_000), 30)
         self.assertEqual(pieces.pieces_within(2e9, 200_000_000, fill=True), 42)
+        self.assertEqual(pieces.pieces_within(2e9, 1000, processes=4), 4)
+        self.assertEqual(pieces.pieces_within(2e9, 200_000_000, processes=4), 32)
         for wrong in ("", "2X", "10", "-2G", "100M", "nan", "1e9"):
             done = self.call("a.npy", f"--memory={wrong}", *TRIANGULATION_ONLY)
             words = f"--memory takes a size of at least 450M, such as 2G, not '{wrong}'"
@@ -1191,7 +1217,6 @@ class Command(Program):
         for options, words in (
             (("--pieces", "2", "--no-trim"), "add --open-edge-length 0"),
             (("--pieces", "2", "--no-trim", "--open-edge-length", "9"), "--open-edge-length needs"),
-            (("--pieces", "2", "--no-fill"), "add --boundary or --no-trim"),
             (("--pieces", "0"), "--pieces takes a whole number from 1, not '0'"),
             (("--pieces", "2", "--memory", "2G", *TRIANGULATION_ONLY), "leave one out"),
             (("--pieces", "2", "--grid", "5", *TRIANGULATION_ONLY), "--grid needs the whole"),

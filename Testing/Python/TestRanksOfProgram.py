@@ -10,6 +10,7 @@ import os
 import random
 import re
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -17,7 +18,7 @@ import unittest
 
 import numpy
 from in_folder import Program, draws
-from meshes import by_places as triangles
+from meshes import by_places as triangles, sorted_rows, sorted_triangles, triangles_of
 from vtkelevationsurface.reading import vtk_files
 from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
@@ -25,6 +26,27 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 HERE = sys.argv.index("--mpirun")
 MPIRUN = sys.argv[HERE + 1 :]
 DATA = sys.argv[sys.argv.index("-D") + 1]
+# The program, with a rank on which a disk is full (of files above a size), or a function fails with an error
+# of a disk. MPI has its own files by then.
+FAILING = """
+import os, resource, runpy, sys
+from vtkelevationsurface import many_processes, pieces
+rank, what, start = int(sys.argv.pop(1)), sys.argv.pop(1), many_processes.start_ranks
+
+def fail(*_):
+    raise OSError(28, "No space left on device")
+
+def started():
+    controller = start()
+    if controller.GetLocalProcessId() == rank and what.isdigit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (int(what), int(what)))
+    elif controller.GetLocalProcessId() == rank:
+        setattr(os if what == "mkdir" else pieces, what, fail)
+    return controller
+
+many_processes.start_ranks = started
+runpy.run_module("vtkelevationsurface", run_name="__main__")
+"""
 VARY = ("times", "written", "command", "options")  # what two runs differ in
 
 
@@ -68,9 +90,9 @@ class OnRanks(Program):
             return self.call(*arguments)
         return self.execute(*MPIRUN, str(ranks), *self.PROGRAM, *arguments)
 
-    def results(self, ranks, arguments):
-        """(the report's lines, the JSON, the surface)"""
-        done = self.on(ranks, *arguments, "--no-picture", "-o", "s.vtp", "--report", "s.json")
+    def told(self, ranks, arguments):
+        """(the report's lines, the JSON)"""
+        done = self.on(ranks, *arguments, "--report", "s.json")
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = [line for line in plain(done.stdout) if not line.startswith("  time")]
         with open(self.path("s.json"), encoding="utf-8") as stream:
@@ -80,10 +102,37 @@ class OnRanks(Program):
             del hole["hole"]  # numbers depend on the order of triangles
         if "holes" in report:
             report["holes"]["list"].sort(key=json.dumps)
+        os.remove(self.path("s.json"))
+        return lines, report
+
+    def results(self, ranks, arguments):
+        """(the report's lines, the JSON, the surface)"""
+        told = self.told(ranks, [*arguments, "--no-picture", "-o", "s.vtp"])
         surface = vtk_files.run_vtk_reader(self.path("s.vtp"))
-        for name in ("s.vtp", "s.json"):
+        os.remove(self.path("s.vtp"))
+        return (*told, surface)
+
+    def in_pieces(self, ranks, arguments):
+        """(the report's lines, the JSON, the names of pieces, their triangles by places and by ids)"""
+        told = self.told(ranks, [*arguments, "--pieces", "6", "-o", "s.vtpd"])
+        with open(self.path("s.vtpd"), encoding="utf-8") as stream:
+            names = re.findall('file="(.*?)"', stream.read())
+        parts = [vtk_files.run_vtk_reader(self.path(name)) for name in names]
+        self.assertEqual(sorted(names), sorted(f"s/{name}" for name in os.listdir(self.path("s"))))
+        for name in (*names, "s.vtpd"):
             os.remove(self.path(name))
-        return lines, report, surface
+        by_ids = [vtk_to_numpy(part.GetPointData().GetGlobalIds())[triangles_of(part)] for part in parts]
+        by_place = sorted_rows(numpy.concatenate([triangles(part) for part in parts]))
+        return (*told, names, by_place, sorted_triangles(numpy.concatenate(by_ids)))
+
+    def check_pieces(self, *arguments):
+        """Returns the report."""
+        *words, places, ids = self.in_pieces(0, arguments)
+        *words_of_ranks, places_of_ranks, ids_of_ranks = self.in_pieces(3, arguments)
+        self.assertEqual(words_of_ranks, words)
+        numpy.testing.assert_array_equal(places_of_ranks, places)
+        numpy.testing.assert_array_equal(ids_of_ranks, ids)
+        return words[1]
 
     def check_same(self, ranks, *arguments):
         lines, report, surface = self.results(0, arguments)
@@ -167,6 +216,64 @@ class OnRanks(Program):
     def test_faults_that_follow_the_surface(self):
         horizon, faults = (os.path.join(DATA, f"horizon_synthetic{part}.vtp") for part in ("", "_faults"))
         self.check_same(3, horizon, "--faults", faults, "--faults-z", "drape", "--depth")
+
+    def test_pieces_of_shares_of_an_array(self):
+        rows = numpy.genfromtxt(cloud(3000).replace("-9999", "9").splitlines()[1:], comments="#")[:, :3]
+        numpy.save(self.path("a.npy"), rows)
+        report = self.check_pieces("a.npy", "--open-edge-length", "0")
+        self.assertEqual(report["unused_reasons"], {"same x,y as another point": 50, "not finite": 1})
+        self.assertEqual((report["several_heights"]["places"], report["holes"]["filled"]), (50, 1))
+        self.assertEqual(report["trim"]["boundary"], "found from the points")
+        self.check_pieces("a.npy", "--no-trim", "--no-fill", "--maximum-edge-length", "3")
+
+    def test_pieces_of_a_text_that_one_rank_reads_along_a_boundary_and_faults(self):
+        self.file("a.txt", cloud(1500))
+        self.file("f.txt", "20 30 3\n35 60 3\n")
+        self.file("b.txt", "5 5\n90 8\n80 70\n10 60\n5 5\n")
+        report = self.check_pieces("a.txt", "--boundary", "b.txt", "--faults", "f.txt", "--depth",
+                                   "--no-data", "-9999")
+        self.assertGreater(report["faults"]["added_points"], 0)
+        self.assertGreater(report["unused_reasons"]["outside the boundary"], 10)
+
+    def test_pieces_of_a_lattice_in_several_files(self):
+        rows = numpy.array([[float(word) for word in line.split()] for line in grid().splitlines()])
+        head = b"LASF" + bytes(20) + bytes((1, 2)) + bytes(68)
+        head += struct.pack("<HIIBH", 227, 227, 0, 0, 20) + struct.pack("<I5I", len(rows), *[0] * 5)
+        head += struct.pack("<6d", 1e-4, 1e-4, 1e-4, 5e5, 6e6, 0.0) + bytes(48)
+        whole = numpy.rint(1e4 * rows).astype("i4").tolist()
+        self.file("a.las", head + b"".join(struct.pack("<iiiHBBbBH", *row, 7, 1, 2, 0, 0, 0) for row in whole))
+        numpy.save(self.path("b.npy"), rows + (5e5 + 900.0, 6e6, 0.0))
+        report = self.check_pieces("a.las", "b.npy", "--no-fill", "--crs", "EPSG:32632")
+        self.assertTrue(report["lattice"])
+        self.assertIn("in 3 pieces", self.on(3, "a.las", "--no-fill", "--memory", "2G").stdout)
+
+    def test_what_one_rank_cannot_do_ends_pieces_of_all(self):
+        self.file("few.txt", "1 2 3\n4 5 6\n")
+        numpy.save(self.path("a.npy"), numpy.random.default_rng(5).random((9000, 3)) * 100.0)
+        self.file("failing.py", FAILING)
+        self.file("a.txt", cloud(1500))
+        self.file("flat.txt", "1 1\n2 2\n3 1\n4 4\n")
+        given = set(os.listdir(self.folder))
+        for failing, arguments, code, words in (
+            ((1, 5_000), ["a.npy"], 1, "triangulating: The temporary file .*/1/.* cannot be written: File too"),
+            ((0, 5_000), ["a.npy"], 1, "triangulating: The temporary file .*/0/.* cannot be written: File too"),
+            ((1, 9_000), ["a.txt", "--keep-nulls"], 1, "s/s_2.vtp: cannot be written: File too large"),
+            ((2, "write_vtp"), ["a.npy"], 1, "s/s_4.vtp: cannot be written: No space left"),
+            ((0, "write_vtpd"), ["a.npy"], 1, "s.vtpd: cannot be written: No space left"),
+            ((1, "mkdir"), ["a.npy"], 1, "/1: process 1 cannot make this folder: No space left"),
+            ((), ["a.npy", "-o", "none/s.vtpd"], 1, "there is no folder .*/none"),
+            ((), ["a.npy", "--pieces", "4"], 2, "--pieces: 4 cannot be made by 3 .*, such as 6"),
+            ((), ["few.txt"], 1, "few.txt: no surface"),
+            ((), ["a.npy", "--boundary", "flat.txt"], 1, "flat.txt: the part from line 1 to 4 is not closed"),
+        ):
+            with self.subTest(failing=failing, arguments=arguments):
+                program = [sys.executable, "failing.py", *map(str, failing)] if failing else self.PROGRAM
+                done = self.execute(*MPIRUN, "3", *program, "--pieces=6", "-o", "s.vtpd", "--open-edge-length=0",
+                                    "--report", "s.json", *arguments)
+                said = [line for line in done.stderr.splitlines() if "reconstruct:" in line]
+                self.assertEqual((done.returncode, len(said), plain(done.stdout)), (code, 1, []), done.stderr)
+                self.assertRegex(said[0], words)
+                self.assertEqual(set(os.listdir(self.folder)), given)
 
     @draws
     def test_a_surface_for_each_file_with_its_picture(self):

@@ -3,6 +3,7 @@
 """Ranks that read a share each have the points of one process, in their order, and its words."""
 
 import gzip
+import io
 import random
 import struct
 import threading
@@ -240,6 +241,16 @@ class Shares(InFolder):
             self.assertIn("b.xyz.gz, line 901: 'high'", self.assert_alike(paths))
         with self.assertRaisesRegex(AssertionError, "name - before other files"):
             raise AssertionError(read([paths[0], "-"], 2))
+
+    def test_standard_input_is_of_the_first_rank(self):
+        rows = numpy.random.default_rng(2).random((40, 3))
+        numpy.save(self.path("a.npy"), rows)
+        text_of_rows = "".join("%r %r %r\n" % tuple(row) for row in rows.tolist()).encode()
+        for others in ([], [self.path("a.npy")]):
+            for ranks in SHARES:
+                with mock.patch("sys.stdin", mock.Mock(buffer=io.BytesIO(text_of_rows))):
+                    points = read(["-", *others], ranks)[0]
+                numpy.testing.assert_array_equal(points, numpy.tile(rows, (1 + len(others), 1)))
 
     def test_a_missing_file_is_an_error_of_all_ranks(self):
         self.assertIn("no such file", self.assert_alike([self.path("a.npy")]))
