@@ -118,7 +118,6 @@ set(es_Parts
   CommonPoints
   ConstrainParts
   Engine
-  FailureNotes
   FilledPart
   FillParts
   FilterRun
@@ -131,6 +130,7 @@ set(es_Parts
   PointKeys
   PointRows
   PointSource
+  RankNotes
   Ranks
   SettleParts
   SharedHoles

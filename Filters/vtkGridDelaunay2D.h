@@ -370,7 +370,8 @@ public:
   /**
    * The processes that make one surface together where each asks for its piece of as many pieces as
    * there are processes. More pieces are an error. All of them have to update, so where the input or
-   * a property changes on one, call Modified() on all: else this one waits for ever.
+   * a property changes on one, call Modified() on all: else this one waits for ever
+   * (and reports RankWaits once, after a minute).
    * Default: the global controller when the filter is made. nullptr: this process alone.
    */
   void SetController(vtkMultiProcessController* controller);
@@ -392,7 +393,7 @@ public:
    * NoTriangle, FewTriangles, FewTrianglesAdvice, InvalidEdgeLength, InvalidElevationError,
    * TwoLimits, NoLines, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
    * NonFinitePointOfLine, LinesElsewhere, LinesFarOutside, LinesNotDraped, LinesNotSettled,
-   * ArraysLeftOut, OnOneRank (with a reason: ErrorNeedsAll, DrapingNeedsAll), EmptyBlocks,
+   * ArraysLeftOut, OnOneRank (with a reason: ErrorNeedsAll, DrapingNeedsAll), RankWaits, EmptyBlocks,
    * NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }

@@ -8,12 +8,14 @@
 #define Ranks_h
 
 #include "Bytes.h"
-#include "FailureNotes.h"
 #include "Kernel/Base/Base.h"
+#include "Kernel/Messages/Messages.h"
+#include "RankNotes.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <chrono>
 #include <cstddef>
 #include <exception>
 #include <functional>
@@ -43,10 +45,15 @@ public:
   Ranks() = default;
   /**
    * @param[in] controller  may be nullptr
+   * @param[in] waiting  gets one message for each time that this rank waits longer than Patience
    * @throws Error if more pieces are asked for than there are ranks
    */
   Ranks(
-    vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs);
+    vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs,
+    const std::function<void(const Message&)>& waiting = [](const Message&) {});
+
+  /** A minute, but in tests. */
+  static std::chrono::milliseconds Patience;
 
   int Own() const;
   int Count() const;
@@ -121,11 +128,14 @@ public:
   vtkSmartPointer<vtkPolyData> Gather(vtkPolyData* local) const;
 
 private:
+  /** Where ranks wait: no rank goes on before all have come. */
+  void WaitForAll() const;
   void Meet(const std::function<void(int other)>& withOther) const;
   Bytes CollectBytes(const Bytes& bytes) const;
 
   vtkMultiProcessController* Controller = nullptr; // nullptr: one rank
-  std::unique_ptr<FailureNotes> Notes;
+  std::function<void(const Message&)> Waiting;
+  std::unique_ptr<RankNotes> Notes;
   mutable bool IsStopped = false; // this step, as another rank has failed
   mutable Traffic Sent;
 };

@@ -14,6 +14,7 @@
 #include "vtkGridDelaunay2D.h"
 
 #include "vtkCellArray.h"
+#include "vtkCommand.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
@@ -25,6 +26,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 #if VTK_MODULE_ENABLE_VTK_ParallelMPI
 #include "vtkMPIController.h"
@@ -32,8 +34,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -48,6 +52,13 @@ namespace
 using namespace elevation;
 
 using Place = std::array<double, 3>;
+
+struct Observer : public vtkCommand
+{
+  static Observer* New() { return new Observer; }
+  void Execute(vtkObject*, unsigned long, void*) override { this->Call(); }
+  std::function<void()> Call;
+};
 /** The places of the corners of a triangle, the lowest first. */
 using Corners = std::array<double, 6>;
 
@@ -775,6 +786,99 @@ void CheckOrder(const Ranks& ranks)
     });
   }
 }
+
+/** Word from rank to rank, so that each comes when the one before waits for it. */
+class Chain
+{
+public:
+  explicit Chain(const Ranks& ranks)
+    : All(ranks)
+    , IsLast(ranks.Own() + 1 == ranks.Count())
+  {
+  }
+  void Await() const
+  {
+    int word = 0;
+    if (this->All.Own() > 0)
+    {
+      this->All.Receive(&word, sizeof(word), this->All.Own() - 1);
+    }
+  }
+  void CallNext() const
+  {
+    const int word = 1;
+    if (!this->IsLast)
+    {
+      this->All.Send(&word, sizeof(word), this->All.Own() + 1);
+    }
+  }
+
+private:
+  const Ranks& All;
+  const bool IsLast;
+};
+
+/** "1, 2": the ranks after this one. */
+std::string RanksAfter(const Ranks& ranks)
+{
+  std::string names;
+  for (int rank = ranks.Own() + 1; rank < ranks.Count(); ++rank)
+  {
+    names += (names.empty() ? "" : ", ") + std::to_string(rank);
+  }
+  return names;
+}
+
+// No rank comes before the ones below have reported that they wait for it, however long that takes.
+void CheckWaiting(const Ranks& ranks, vtkInformationVector* outputs)
+{
+  const Chain chain(ranks);
+  const auto minute = std::exchange(Ranks::Patience, std::chrono::milliseconds(20));
+  std::vector<Message> messages;
+  const Ranks waiting(vtkMultiProcessController::GetGlobalController(), nullptr, outputs,
+    [&](const Message& message) {
+      messages.push_back(message);
+      chain.CallNext();
+    });
+  const bool isLast = ranks.Own() + 1 == ranks.Count();
+  for (int wait = 1; wait <= 2; ++wait)
+  {
+    chain.Await();
+    std::vector<vtkIdType> sum = { 1 };
+    waiting.Sum(sum);
+    Check(messages.size() == (isLast ? 0u : wait), "a rank reports once for each time it waits");
+  }
+  for (const Message& message : messages)
+  {
+    const std::vector<Message::Value>& values = message.GetValues();
+    Check(message.GetCode() == "RankWaits" && values.size() == 3 &&
+        values[0] == Message::Value("rank", std::to_string(ranks.Own())) &&
+        values[2] == Message::Value("others", RanksAfter(ranks)),
+      "the message names who waits for whom");
+  }
+
+  // A filter reports it as all its warnings, while it waits.
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(PointsOf(Cloud(false), 0, 100));
+  bool isReported = false;
+  const auto report = [&]() {
+    vtkStringArray* const rows = delaunay->GetMessages();
+    if (!isReported)
+    {
+      isReported = true;
+      Check(rows->GetNumberOfTuples() >= 4 && rows->GetValue(1) == "RankWaits",
+        "the filter's messages have it");
+      chain.CallNext();
+    }
+  };
+  vtkNew<Observer> observer;
+  observer->Call = report;
+  delaunay->AddObserver(vtkCommand::WarningEvent, observer);
+  chain.Await();
+  delaunay->UpdatePiece(ranks.Own(), ranks.Count(), 0);
+  Check(isReported || isLast, "a filter that waits reports it");
+  Ranks::Patience = minute;
+}
 } // namespace
 
 int main(int argc, char** argv)
@@ -806,6 +910,7 @@ int main(int argc, char** argv)
     CheckFailures(ranks);
     CheckTrimming(ranks);
     CheckFailuresOfTrimming(ranks);
+    CheckWaiting(ranks, outputs);
   }
   vtkMultiProcessController::SetGlobalController(nullptr);
 #if VTK_MODULE_ENABLE_VTK_ParallelMPI

@@ -36,6 +36,14 @@ ELEVATION_SENTENCE(InvalidEdgeLength,
   "{property:MaximumEdgeLength} is {value}; it must be 0 (off) or a length in x,y.");
 /** @} */
 
+/** @name Of a filter on several ranks; each rank reports it for itself, while it waits @{ */
+ELEVATION_SENTENCE(RankWaits,
+  "Rank (process) {rank} has waited for a minute for {noun} {others}, which may still be at work. "
+  "If "
+  "not, an input or a property has changed on some ranks only: all have to call Modified() and to "
+  "update together.");
+/** @} */
+
 /** @name Of a filter on several ranks that brings their data together @{ */
 ELEVATION_SENTENCE(OnOneRank,
   "The surface is made on one rank (process), which needs memory for all of it. {reason}");
