@@ -265,9 +265,9 @@ void vtkReconstructPieces::CheckProperties()
   {
     throw elevation::MakeError<elevation::sentences::InwardNormalNotInPieces>();
   }
-  if (this->FillHoles && this->Fill->GetMaximumEdgeLength() != 0.0)
+  if (this->FillHoles)
   {
-    throw elevation::MakeError<elevation::sentences::EdgeLengthNotInPieces>();
+    elevation::CheckMaximumEdgeLength(this->Fill->GetMaximumEdgeLength());
   }
 }
 
@@ -350,7 +350,7 @@ void vtkReconstructPieces::FillAll(const elevation::Progress& progress)
   };
   auto filled =
     std::make_unique<elevation::FillParts>(elevation::SurfaceParts{ this->Work->Holders(), make },
-      options, this->Fill->GetInterpolatePointData() != 0);
+      options, this->Fill->GetInterpolatePointData() != 0, this->Fill->GetMaximumEdgeLength());
   filled->FindHoles(0);
   filled->Fill();
   this->Filled = std::move(filled);

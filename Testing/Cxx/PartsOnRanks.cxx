@@ -329,16 +329,18 @@ std::vector<Corners3> TrianglesOf(vtkPolyData* surface)
   return triangles;
 }
 
-/** What is known of holes in words, in an order that no part decides. */
+/** What is known of holes in words, in an order that no part decides; no spacing of one that is refused. */
 std::vector<std::string> InWords(const std::vector<HoleReport>& reports)
 {
   std::vector<std::string> words;
   for (const HoleReport& report : reports)
   {
+    const bool isRefused = report.Status == FillStatus::TooLarge;
     words.push_back(std::to_string(static_cast<int>(report.Status)) + " of " +
       std::to_string(report.NumberOfEdges) + " edges, " + ToText(report.Area, 15) + " " +
       ToText(report.Perimeter, 15) + " " + ToText(report.Size, 15) + " " +
-      ToText(report.Spacing, 15) + " " + std::to_string(report.NumberOfInsertedPoints) + " " +
+      ToText(isRefused ? 0.0 : report.Spacing, 15) + " " +
+      std::to_string(report.NumberOfInsertedPoints) + " " +
       std::to_string(static_cast<int>(report.Method)) + report.Reason.Words());
   }
   std::sort(words.begin(), words.end());
@@ -362,7 +364,7 @@ struct FilledSurface
 
 /** By the filters, on one rank. */
 FilledSurface FilledAtOnce(
-  const std::vector<Place>& cloud, double limit, const FillOptions& options)
+  const std::vector<Place>& cloud, double limit, double longest, const FillOptions& options)
 {
   vtkNew<vtkGridDelaunay2D> whole;
   whole->SetController(nullptr);
@@ -371,6 +373,8 @@ FilledSurface FilledAtOnce(
   vtkNew<vtkFillElevationHoles> fill;
   fill->SetController(nullptr);
   fill->SetInputConnection(whole->GetOutputPort());
+  fill->SetMaximumEdgeLength(longest);
+  fill->SetMaximumHoleSize(options.MaximumHoleSize);
   fill->SetMaximumNumberOfInsertedPoints(options.MaximumInsertedPoints);
   fill->Update();
   vtkPolyData* const made = whole->GetOutput();
@@ -378,8 +382,11 @@ FilledSurface FilledAtOnce(
   Mesh mesh;
   ToMesh(made, mesh, Progress());
   mesh.ConnectTwins(0, Progress());
+  Holes found = FindHoles(mesh, 0, Progress());
+  Mesh rest;
+  const bool isOpened = longest > 0.0 && OpenLongTriangles(mesh, longest, found, rest);
   const FillResult patches =
-    FillHoles(mesh, ViewPoints(made).View, FindHoles(mesh, 0, Progress()), options);
+    FillHoles(isOpened ? rest : mesh, ViewPoints(made).View, std::move(found), options);
   FilledSurface filled{ TrianglesOf(fill->GetOutput()), InWords(patches.Reports),
     fill->GetOutput(1)->GetNumberOfPoints(), fill->GetOutput()->GetNumberOfPoints() };
   std::sort(filled.Triangles.begin(), filled.Triangles.end());
@@ -407,7 +414,7 @@ SurfaceParts PartsOf(TriangulateParts& parts)
 }
 
 FilledSurface FilledInParts(const Ranks& ranks, int partsOfRank, const std::vector<Place>& cloud,
-  double limit, const FillOptions& options)
+  double limit, double longest, const FillOptions& options)
 {
   std::vector<vtkSmartPointer<vtkPolyData>> kept;
   TriangulateParts parts(ranks, FolderOf(ranks, partsOfRank));
@@ -416,7 +423,7 @@ FilledSurface FilledInParts(const Ranks& ranks, int partsOfRank, const std::vect
   DelaunayOptions triangulating;
   triangulating.MaximumEdgeLength = limit;
   parts.Triangulate(std::max(1, partsOfRank), nullptr, triangulating, warnings);
-  FillParts fill(PartsOf(parts), options, true);
+  FillParts fill(PartsOf(parts), options, true, longest);
   const int partOfRims = parts.CountOfParts() - 1;
   fill.FindHoles(partOfRims);
   fill.Fill();
@@ -458,6 +465,38 @@ FilledSurface FilledInParts(const Ranks& ranks, int partsOfRank, const std::vect
   return filled;
 }
 
+/** Lines that waver, whose distances differ; all between them is long. */
+std::vector<Place> SurveyLines()
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> noise(-0.3, 0.3);
+  std::vector<Place> cloud;
+  for (int line = 0; line < 10; ++line)
+  {
+    for (int i = 0; i < 120; ++i)
+    {
+      const double x = i + noise(random), y = 0.9 * line * line + 5.0 * line + noise(random);
+      cloud.push_back({ x, y, 0.01 * x * y });
+    }
+  }
+  std::shuffle(cloud.begin(), cloud.end(), random);
+  return cloud;
+}
+
+/** Triangles longer than the limit are not made; longer ones than the longest are opened, if above 0. */
+void CheckFillingOf(const Ranks& ranks, const std::vector<Place>& cloud, double limit,
+  double longest, const FillOptions& options, const std::string& name)
+{
+  const FilledSurface expected = FilledAtOnce(cloud, limit, longest, options);
+  Check(expected.Reports.size() > 0, name + ": there are holes");
+  for (const int partsOfRank : { 0, 1, 3 })
+  {
+    Check(FilledInParts(ranks, partsOfRank, cloud, limit, longest, options) == expected,
+      name + ", " + std::to_string(partsOfRank) + " parts of a rank, at most " +
+        std::to_string(options.MaximumInsertedPoints) + " new points: as at once");
+  }
+}
+
 void CheckFilling(const Ranks& ranks)
 {
   for (const bool isLattice : { false, true })
@@ -468,14 +507,14 @@ void CheckFilling(const Ranks& ranks)
     {
       FillOptions options;
       options.MaximumInsertedPoints = most;
-      const FilledSurface expected = FilledAtOnce(cloud, limit, options);
-      for (const int partsOfRank : { 0, 1, 3 })
-      {
-        Check(FilledInParts(ranks, partsOfRank, cloud, limit, options) == expected,
-          std::string(isLattice ? "lattice, " : "random, ") + std::to_string(partsOfRank) +
-            " parts of a rank, at most " + std::to_string(most) + " new points: as at once");
-      }
+      CheckFillingOf(ranks, cloud, limit, 0.0, options, isLattice ? "lattice" : "random");
     }
+    FillOptions options;
+    CheckFillingOf(ranks, cloud, 0.0, limit, options, "opened");
+    CheckFillingOf(ranks, cloud, 2.0 * limit, 0.4 * limit, options, "opened, and holes");
+    options.MaximumHoleSize = 30.0;
+    CheckFillingOf(ranks, SurveyLines(), 0.0, 3.0, options, "no line opened");
+    CheckFillingOf(ranks, SurveyLines(), 0.0, 3.0, FillOptions(), "lines");
   }
 }
 
@@ -514,7 +553,7 @@ std::string FailureAt(const Ranks& ranks, int partsOfRank, bool isFilling, const
       {
         FillOptions filling;
         filling.Monitor = failing;
-        FillParts fill(PartsOf(parts), filling, true);
+        FillParts fill(PartsOf(parts), filling, true, 0.0);
         fill.FindHoles(0);
         fill.Fill();
       }
@@ -745,7 +784,7 @@ void CheckRefusal(const Ranks& ranks)
     options.Spacing = 1e-4;
     try
     {
-      FilledInParts(ranks, partsOfRank, CloudWithLakes(false), 6.0, options);
+      FilledInParts(ranks, partsOfRank, CloudWithLakes(false), 6.0, 0.0, options);
     }
     catch (const Error& error)
     {

@@ -57,8 +57,8 @@ point data: strings               |                            | points + string
 point data: vectors               |                            | points + vectors             | s  s  s  s  s  s  a
 point data: normals               |                            | points + normals             | s  s  s  s  s  s  a
 point data: pedigree ids          |                            | points + pedigree ids        | s  s  s  s  s  s  a
-point data: global ids            |                            | points + global ids          | s  s  s  s  r  r  r
-copies of points, marked as ghosts|                            | points + copies              | s  s  s  s  d4 d4 a
+point data: global ids            |                            | points + global ids          | s  s  s  s  s  s  a
+copies of points, marked as ghosts|                            | points + copies              | s  s  s  s  s  s  a
 composite: multiblock             |                            | points + multiblock          | s  s  s  s  -  -  -
 composite: collection             |                            | points + collection          | s  s  s  s  -  -  -
 composite: partitions             |                            | points + partitions          | s  s  d3 d3 -  -  -
@@ -85,7 +85,7 @@ point data: integers, strings     |                            | coast + integer
 point data: vectors               |                            | coast + vectors              | s  s  s  s  s  s  a
 point data: normals               |                            | coast + normals              | s  s  s  s  s  s  a
 point data: pedigree ids          |                            | coast + pedigree ids         | s  s  s  s  s  s  a
-point data: global ids            |                            | coast + global ids           | s  s  s  s  r  r  r
+point data: global ids            |                            | coast + global ids           | s  s  s  s  s  s  a
 composite: multiblock             |                            | coast + multiblock           | s  s  s  s  -  -  -
 triangles from elsewhere, cell data|                            | surface and coast            | s  s  s  s  -  -  -
 the same, clockwise               |                            | surface and coast + clockwise | s  s  g  g  -  -  -
@@ -100,7 +100,7 @@ interpolation: thin plate         | Interpolation=2            | coast and lakes
 interpolation: adaptive           | Interpolation=3            | coast and lakes              | s  s  s  s  s  s  a
 interpolation: cubic spline       | Interpolation=4            | coast and lakes              | s  s  s  s  s  s  a
 on the nodes of a lattice         |                            | lattice and lakes            | s  s  s  s  s  s  a
-long triangles opened             | MaximumEdgeLength=2.5      | coast and lakes              | s  s  g  g  r  r  r
+long triangles opened             | MaximumEdgeLength=2.5      | coast and lakes              | s  s  s  s  s  s  a
 largest hole                      | MaximumHoleSize=4.0        | coast and lakes              | s  s  s  s  s  s  a
 most edges of a hole              | MaximumHoleEdges=13        | coast and lakes              | s  s  s  s  s  s  a
 what the boundary cut out, open   |                            | coast and lakes              | s  s  s  s  s  s  a
@@ -116,7 +116,7 @@ point data: integers, strings     |                            | coast and lakes
 point data: vectors               |                            | coast and lakes + vectors    | s  s  s  s  s  s  a
 point data: normals               |                            | coast and lakes + normals    | s  s  s  s  s  s  a
 point data: pedigree ids          |                            | coast and lakes + pedigree ids | s  s  s  s  s  s  a
-point data: global ids            |                            | coast and lakes + global ids | s  s  s  d2 r  r  r
+point data: global ids            |                            | coast and lakes + global ids | s  s  s  d2 s  d2 d
 composite: multiblock             |                            | coast and lakes + multiblock | s  s  s  s  -  -  -
 triangles from elsewhere, cell data|                            | surface                      | s  s  s  s  -  -  -
 the same, clockwise               |                            | surface + clockwise          | s  s  s  s  -  -  -

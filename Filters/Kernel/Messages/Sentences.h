@@ -58,9 +58,6 @@ ELEVATION_SENTENCE(DrapingNeedsAll,
 ELEVATION_SENTENCE(NormalsNeedAll,
   "{property:OutwardTest} InwardNormal goes along the whole boundary; Exact leaves the surface "
   "spread.");
-ELEVATION_SENTENCE(OpeningNeedsAll,
-  "{property:MaximumEdgeLength} opens regions that may reach over any part; 0 leaves the surface "
-  "spread.");
 ELEVATION_SENTENCE(PartsDoNotFit,
   "The parts of the ranks cannot be worked on one by one: they have triangles that turn clockwise, "
   "cells that are no polygons, marked copies of triangles or different arrays, or what is near a "
@@ -203,9 +200,6 @@ ELEVATION_SENTENCE(BoundaryNotInPieces,
 ELEVATION_SENTENCE(OutlineNotInPieces,
   "What is near the borders of pieces does not tell the outline, as in surveys along lines: give a "
   "{property:GapTolerance} or the boundary, or trim the surface in memory.");
-ELEVATION_SENTENCE(EdgeLengthNotInPieces,
-  "{property:MaximumEdgeLength} of the filter that fills holes is for a surface in memory, not "
-  "for pieces.");
 /** @} */
 
 #undef ELEVATION_SENTENCE
