@@ -137,11 +137,12 @@ set(es_Parts
   SpoolFile
   SpreadBlocks
   SurfacePart
+  SurfaceParts
   TriangulateParts
   TrimOfPart
   TrimParts)
 set(es_headers_Parts
-  Bytes Parts SurfaceParts)
+  Bytes Parts)
 
 # Lists the files of a room, whose names are in variables with a prefix.
 macro (es_list_room prefix folder room)

@@ -11,7 +11,6 @@
 #include "BoundaryZone.h"
 #include "FilterRun.h"
 #include "PackedData.h"
-#include "PointRows.h"
 
 #include "vtkCellData.h"
 #include "vtkPointData.h"
@@ -537,57 +536,52 @@ bool IsPlain(vtkPolyData* part)
 bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolate, double longest,
   Block& block, FillResult& patches)
 {
-  vtkSmartPointer<vtkPolyData> input = vtkPolyData::SafeDownCast(block.Input);
-  const bool hasPoints = input->GetNumberOfPoints() > 0;
-  const int type = hasPoints ? input->GetPoints()->GetDataType() : VTK_VOID;
-  const bool hasIds = input->GetPointData()->GetGlobalIds() != nullptr;
-  std::vector<vtkIdType> sums = { std::max<vtkIdType>(0, input->GetNumberOfPolys()),
-    type == VTK_FLOAT, type == VTK_DOUBLE, hasPoints && !hasIds };
-  ranks.Sum(sums);
-  const bool areFit = CanAll(ranks, [&]() {
-    Report(ranks.Watched(block.Progress), 0.0);
+  int type = VTK_VOID;
+  bool hasIds = true;
+  const auto isFit = [&](vtkPolyData* part) {
     CheckMaximumEdgeLength(longest);
-    CheckArrays(input);
-    return IsPlain(input) && (!hasPoints || type == VTK_FLOAT || type == VTK_DOUBLE);
+    if (part->GetNumberOfPoints() > 0)
+    {
+      type = part->GetPoints()->GetDataType();
+      hasIds = part->GetPointData()->GetGlobalIds() != nullptr;
+    }
+    return IsPlain(part) && (type == VTK_VOID || type == VTK_FLOAT || type == VTK_DOUBLE);
+  };
+  return WorkOnParts(block, ranks, isFit, [&](const SurfaceParts& surface) {
+    std::vector<vtkIdType> sums = { block.Input->GetNumberOfCells(), type == VTK_FLOAT,
+      type == VTK_DOUBLE, !hasIds };
+    ranks.Sum(sums);
+    if (sums[0] == 0 || (sums[1] > 0 && sums[2] > 0))
+    {
+      return false;
+    }
+    FillOptions filling = options;
+    filling.Monitor = Part(block.Progress, 0.0, 0.82);
+    FillParts fill(surface, filling, interpolate, longest, sums[3] == 0);
+    constexpr int first = 0;
+    try
+    {
+      fill.FindHoles(first);
+    }
+    catch (const Error& error) // on all ranks
+    {
+      if (MessageOf(error).GetCode() == sentences::NotEnoughMemory.Code)
+      {
+        throw;
+      }
+      return false;
+    }
+    fill.Fill();
+    surface.Crew.ForEach(block.Progress, [&](int part, const Progress& progress) {
+      fill.Pass(part, Part(progress, 0.82, 0.97), block.Outputs[0]);
+      if (part == first)
+      {
+        fill.PassRims(Part(progress, 0.97, 1.0), block.Outputs[1]);
+      }
+    });
+    patches = fill.Result();
+    return true;
   });
-  if (!areFit || sums[0] == 0 || (sums[1] > 0 && sums[2] > 0) || !HaveSameArrays(ranks, input))
-  {
-    return false;
-  }
-  Engine crew(ranks, 1, {}, std::string());
-  const auto make = [&](int, const Progress&) { return hasPoints ? input : nullptr; };
-  FillOptions filling = options;
-  filling.Monitor = Part(block.Progress, 0.0, 0.82);
-  FillParts fill({ crew, make }, filling, interpolate, longest, sums[3] == 0);
-  const std::vector<vtkIdType> have =
-    ranks.Collect(std::vector<vtkIdType>{ block.Outputs.empty() ? 0 : 1 });
-  const int first = static_cast<int>(std::find(have.begin(), have.end(), 1) - have.begin());
-  try
-  {
-    fill.FindHoles(first);
-  }
-  catch (const Error& error) // on all ranks
-  {
-    if (MessageOf(error).GetCode() == sentences::NotEnoughMemory.Code)
-    {
-      throw;
-    }
-    return false;
-  }
-  fill.Fill();
-  ranks.Agree([&]() {
-    const Progress writing = ranks.Watched(block.Progress);
-    if (hasPoints)
-    {
-      fill.Pass(ranks.Own(), Part(writing, 0.82, 0.97), block.Outputs[0]);
-    }
-    if (ranks.Own() == first)
-    {
-      fill.PassRims(Part(writing, 0.97, 1.0), block.Outputs[1]);
-    }
-  });
-  patches = fill.Result();
-  return true;
 }
 
 } // namespace elevation
