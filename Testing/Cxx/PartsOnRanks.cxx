@@ -15,7 +15,9 @@
 
 #include "vtkCellArray.h"
 #include "vtkCommand.h"
+#include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
@@ -28,6 +30,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkVariant.h"
 #if VTK_MODULE_ENABLE_VTK_ParallelMPI
 #include "vtkMPIController.h"
 #endif
@@ -826,6 +829,26 @@ void CheckOrder(const Ranks& ranks)
   }
 }
 
+void CheckArraysWithoutValues(const Ranks& ranks)
+{
+  const auto local = PointsOf(Cloud(false), 0, ranks.Own() == 0 ? 10 : 0);
+  if (ranks.Own() == 0)
+  {
+    vtkNew<vtkIdTypeArray> none, some;
+    none->SetName("None");
+    some->SetName("Some");
+    some->InsertNextValue(vtkIdType(7) << 40);
+    local->GetFieldData()->AddArray(none);
+    local->GetFieldData()->AddArray(some);
+  }
+  vtkFieldData* const data = ranks.Gather(local)->GetFieldData();
+  vtkDataArray* const none = data->GetArray("None");
+  vtkDataArray* const some = data->GetArray("Some");
+  Check(none && none->GetNumberOfTuples() == 0 && some && some->GetNumberOfTuples() == 1 &&
+      some->GetVariantValue(0).ToTypeInt64() == vtkTypeInt64(7) << 40,
+    "an array without values keeps none from coming");
+}
+
 /** Word from rank to rank, so that each comes when the one before waits for it. */
 class Chain
 {
@@ -949,6 +972,7 @@ int main(int argc, char** argv)
     CheckFailures(ranks);
     CheckTrimming(ranks);
     CheckFailuresOfTrimming(ranks);
+    CheckArraysWithoutValues(ranks);
     CheckWaiting(ranks, outputs);
   }
   vtkMultiProcessController::SetGlobalController(nullptr);
