@@ -132,6 +132,7 @@ set(es_Parts
   PointSource
   RankNotes
   Ranks
+  ReconstructParts
   SettleParts
   SharedHoles
   SpoolFile

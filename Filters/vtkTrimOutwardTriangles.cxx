@@ -117,9 +117,9 @@ bool TrimSpread(const elevation::Ranks& ranks, elevation::TrimOptions options,
     surface.Crew.ForEach(writing, [&](int part, const Progress& progress) {
       parts.Write(part, progress, block.Outputs[0], block.Outputs[1]);
       block.Outputs[2]->ShallowCopy(parts.Boundary());
-      if (!parts.Loss().IsEmpty())
+      if (!parts.Warning().IsEmpty())
       {
-        block.Warnings.push_back(parts.Loss());
+        block.Warnings.push_back(parts.Warning());
       }
       elevation::AddCounts(parts.Own(), block.Outputs);
       elevation::AddTuple(block.Outputs[0]->GetFieldData(), "WorkOfTrim",
@@ -242,9 +242,9 @@ int vtkTrimOutwardTriangles::RequestData(
     {
       block.Warnings.push_back(elevation::MakeMessage<elevation::sentences::NothingToTrim>());
     }
-    if (!trimmed.Loss.IsEmpty())
+    if (!trimmed.Warning.IsEmpty())
     {
-      block.Warnings.push_back(trimmed.Loss);
+      block.Warnings.push_back(trimmed.Warning);
     }
 
     PassSides(input, triangles, isGiven ? &lines : nullptr, options, trimmed,

@@ -134,6 +134,22 @@ vtkSmartPointer<vtkPointSet> JoinHere(
   return Join(checked, kind, Progress(), warnings);
 }
 
+vtkSmartPointer<vtkPolyData> ShareLines(
+  vtkDataObject* own, const std::string& name, const Ranks& ranks)
+{
+  vtkSmartPointer<vtkPolyData> lines;
+  ranks.Agree([&] { lines = JoinBlocks(own, name); });
+  if (!IsOnAny(ranks, lines != nullptr))
+  {
+    return nullptr;
+  }
+  if (!lines)
+  {
+    lines = vtkSmartPointer<vtkPolyData>::New(); // on other ranks only
+  }
+  return ranks.Gather(lines);
+}
+
 vtkSmartPointer<vtkPolyData> EmptyCopy(vtkPointSet* input)
 {
   auto copy = vtkSmartPointer<vtkPolyData>::New();

@@ -62,13 +62,10 @@ bool AreEqual(vtkPolyData* one, vtkPolyData* other)
     AreEqual(one->GetVerts(), other->GetVerts()) && AreEqual(one->GetLines(), other->GetLines()) &&
     AreEqual(one->GetPolys(), other->GetPolys()) && AreEqual(one->GetStrips(), other->GetStrips());
 }
-} // namespace
 
-std::chrono::milliseconds Ranks::Patience = std::chrono::minutes(1);
-
-Ranks::Ranks(vtkMultiProcessController* controller, vtkInformation* request,
-  vtkInformationVector* outputs, const std::function<void(const Message&)>& waiting)
-  : Waiting(waiting)
+/** Whether an output is asked for in pieces. @throws Error if these are too many */
+bool IsInPieces(
+  vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs)
 {
   const int port = request ? request->Get(vtkExecutive::FROM_OUTPUT_PORT()) : 0;
   vtkInformation* const output = outputs->GetInformationObject(std::max(port, 0));
@@ -81,11 +78,27 @@ Ranks::Ranks(vtkMultiProcessController* controller, vtkInformation* request,
       " on it, each of which makes one. Ask for as many pieces as there are processes, which "
       "SetController() names.");
   }
-  if (pieces > 1)
+  return pieces > 1;
+}
+} // namespace
+
+std::chrono::milliseconds Ranks::Patience = std::chrono::minutes(1);
+
+Ranks::Ranks(
+  vtkMultiProcessController* controller, const std::function<void(const Message&)>& waiting)
+  : Waiting(waiting)
+{
+  if (controller && controller->GetNumberOfProcesses() > 1)
   {
     this->Controller = controller;
     this->Notes = std::make_unique<RankNotes>(controller);
   }
+}
+
+Ranks::Ranks(vtkMultiProcessController* controller, vtkInformation* request,
+  vtkInformationVector* outputs, const std::function<void(const Message&)>& waiting)
+  : Ranks(IsInPieces(controller, request, outputs) ? controller : nullptr, waiting)
+{
 }
 
 int Ranks::Own() const
@@ -376,6 +389,19 @@ bool IsOnAny(const Ranks& ranks, bool isOnThis)
   std::vector<vtkIdType> count = { isOnThis ? 1 : 0 };
   ranks.Sum(count);
   return count[0] > 0;
+}
+
+std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& ranks)
+{
+  std::vector<Message> all;
+  for (const Message& message : ranks.Collect(messages))
+  {
+    if (ranks.Own() == 0 && std::find(all.begin(), all.end(), message) == all.end())
+    {
+      all.push_back(message);
+    }
+  }
+  return all;
 }
 
 Box BoxOfAll(const Ranks& ranks, const Box& own)

@@ -44,13 +44,14 @@ public:
   /** One alone. */
   Ranks() = default;
   /**
-   * @param[in] controller  may be nullptr
+   * All processes of a controller, whatever is asked for.
+   * @param[in] controller  nullptr: one alone
    * @param[in] waiting  gets one message for each time that this rank waits longer than Patience
-   * @throws Error if more pieces are asked for than there are ranks
    */
-  Ranks(
-    vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs,
-    const std::function<void(const Message&)>& waiting = [](const Message&) {});
+  Ranks(vtkMultiProcessController* controller, const std::function<void(const Message&)>& waiting);
+  /** The same, alone where the output is not asked for in pieces. @throws Error if these are too many */
+  Ranks(vtkMultiProcessController* controller, vtkInformation* request,
+    vtkInformationVector* outputs, const std::function<void(const Message&)>& waiting);
 
   /** A minute, but in tests. */
   static std::chrono::milliseconds Patience;
@@ -147,6 +148,9 @@ private:
 bool CanAll(const Ranks& ranks, const std::function<bool()>& step);
 
 bool IsOnAny(const Ranks& ranks, bool isOnThis);
+
+/** The messages of all ranks, on the first, each once. */
+std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& ranks);
 
 /** The box of the boxes of all ranks. */
 Box BoxOfAll(const Ranks& ranks, const Box& own);

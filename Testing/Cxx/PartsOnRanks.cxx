@@ -963,7 +963,8 @@ int main(int argc, char** argv)
     vtkNew<vtkInformation> output;
     output->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), count);
     outputs->Append(output);
-    const Ranks ranks(vtkMultiProcessController::GetGlobalController(), nullptr, outputs);
+    const Ranks ranks(
+      vtkMultiProcessController::GetGlobalController(), nullptr, outputs, [](const Message&) {});
     CheckOrder(ranks);
     CheckTriangles(ranks);
     CheckGivenLattice(ranks);

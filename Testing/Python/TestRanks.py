@@ -6,8 +6,9 @@ import on_ranks
 import TestManyRanks
 import TestManyRanksConstraints
 import TestManyRanksFill
+import TestManyRanksPieces
 import TestManyRanksTrim
 
 OPTIONS = on_ranks.options_of()
-TESTS = TestManyRanks, TestManyRanksConstraints, TestManyRanksFill, TestManyRanksTrim
+TESTS = TestManyRanks, TestManyRanksConstraints, TestManyRanksFill, TestManyRanksPieces, TestManyRanksTrim
 on_ranks.end("; ".join(test.main(OPTIONS) for test in TESTS))
