@@ -118,7 +118,6 @@ set(es_Parts
   CommonPoints
   ConstrainParts
   Engine
-  FailureNotes
   FilledPart
   FillParts
   FilterRun
@@ -131,6 +130,7 @@ set(es_Parts
   PointKeys
   PointRows
   PointSource
+  RankNotes
   Ranks
   ReconstructParts
   SettleParts
@@ -138,11 +138,12 @@ set(es_Parts
   SpoolFile
   SpreadBlocks
   SurfacePart
+  SurfaceParts
   TriangulateParts
   TrimOfPart
   TrimParts)
 set(es_headers_Parts
-  Bytes Parts SurfaceParts)
+  Bytes Parts)
 
 # Lists the files of a room, whose names are in variables with a prefix.
 macro (es_list_room prefix folder room)

@@ -106,14 +106,9 @@ int vtkFillElevationHoles::RequestData(
     this, this->Controller, request, inputVector, outputVector, this->Messages);
   call.Sums = { &this->NumberOfHoles, &this->NumberOfFilledHoles };
   call.Spread = [this](elevation::Block& block, const elevation::Ranks& ranks) {
-    if (this->MaximumEdgeLength != 0.0)
-    {
-      block.WhyGathered = elevation::MakeMessage<elevation::sentences::OpeningNeedsAll>();
-    }
     FillResult patches;
-    if (this->MaximumEdgeLength != 0.0 ||
-      !elevation::FillOnRanks(
-        ranks, elevation::OptionsOf(this), this->InterpolatePointData != 0, block, patches))
+    if (!elevation::FillOnRanks(ranks, elevation::OptionsOf(this), this->InterpolatePointData != 0,
+          this->MaximumEdgeLength, block, patches))
     {
       return false;
     }

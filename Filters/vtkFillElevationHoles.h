@@ -114,8 +114,7 @@
  * with the same global id are one, or, where not all ranks have global ids, those with the same
  * x,y,z. Field data are those of the rank, with the counts of all. Output 1 is on one rank.
  *
- * With a MaximumEdgeLength, vertices, lines or cells marked as another rank's, where borders touch
- * without sharing a point, where not all ranks have the same arrays and type of points, and for
+ * With vertices, lines or cells marked as another rank's, where borders touch without sharing a point, where not all ranks have the same arrays and type of points, and for
  * messages of what is wrong, the triangles are gathered on the rank with most of them, which gets
  * the result, with a warning unless there is an error; the others have empty output with the same
  * arrays. Points are in the order of their global ids then. Cells marked as another rank's are left
@@ -356,7 +355,8 @@ public:
   /**
    * The processes that make one surface together where each asks for its piece of as many pieces as
    * there are processes. More pieces are an error. All of them have to update, so where the input or
-   * a property changes on one, call Modified() on all: else this one waits for ever.
+   * a property changes on one, call Modified() on all: else this one waits for ever
+   * (and reports RankWaits once, after a minute).
    * Default: the global controller when the filter is made. nullptr: this process alone.
    */
   void SetController(vtkMultiProcessController* controller);
@@ -378,7 +378,7 @@ public:
    * NothingToFill, HoleNotFilled and RegionNotFilled (with a reason: BordersTouch, SizeOutOfRange,
    * MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall, PointsCoincide), MoreHolesNotFilled,
    * BordersMeet, TooManyPointsToFill, TooManyPointsByDefault, InvalidEdgeLength, ArraysLeftOut,
-   * OnOneRank (with a reason: OpeningNeedsAll, PartsDoNotFit), NotEnoughMemory, Stopped.
+   * OnOneRank (with a reason: PartsDoNotFit), RankWaits, NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 

@@ -371,7 +371,8 @@ public:
   /**
    * The processes that make one surface together where each asks for its piece of as many pieces as
    * there are processes. More pieces are an error. All of them have to update, so where the input or
-   * a property changes on one, call Modified() on all: else this one waits for ever.
+   * a property changes on one, call Modified() on all: else this one waits for ever
+   * (and reports RankWaits once, after a minute).
    * Default: the global controller when the filter is made. nullptr: this process alone.
    */
   void SetController(vtkMultiProcessController* controller);
@@ -393,8 +394,8 @@ public:
    * NoTriangle, FewTriangles, FewTrianglesAdvice, InvalidEdgeLength, InvalidElevationError,
    * TwoLimits, NoLines, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
    * NonFinitePointOfLine, LinesElsewhere, LinesFarOutside, PolygonsAreLines, LinesNotDraped,
-   * LinesNotSettled, ArraysLeftOut, OnOneRank (with a reason: ErrorNeedsAll, DrapingNeedsAll), EmptyBlocks,
-   * NotEnoughMemory, Stopped.
+   * LinesNotSettled, ArraysLeftOut, OnOneRank (with a reason: ErrorNeedsAll, DrapingNeedsAll),
+   * RankWaits, EmptyBlocks, NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 

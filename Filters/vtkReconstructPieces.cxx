@@ -50,7 +50,7 @@ elevation::ReconstructParts::Settings SettingsOf(vtkReconstructPieces* pieces)
   settings.FillHoles = pieces->GetFillHoles();
   settings.InterpolatePointData = pieces->GetFill()->GetInterpolatePointData() != 0;
   settings.DrapeConstraints = pieces->GetDelaunay()->GetDrapeConstraints() != 0;
-  settings.OpenLongTriangles = pieces->GetFill()->GetMaximumEdgeLength() != 0.0;
+  settings.LongestEdge = pieces->GetFill()->GetMaximumEdgeLength();
   settings.Constraints = UpdatedLines(pieces->GetDelaunay());
   settings.Boundary = UpdatedLines(pieces->GetTrim());
   return settings;
@@ -187,7 +187,8 @@ bool vtkReconstructPieces::AddPoints(vtkPointSet* points)
     {
       throw elevation::Error("Points cannot be added after the first piece; that needs Reset().");
     }
-    this->Parts->Open(this->Controller);
+    this->Parts->Open(this->Controller,
+      [this](const elevation::Message& waiting) { this->ReportWarnings({ waiting }); });
     this->Parts->Add(points, this->Folder, elevation::ProgressOf(this));
     this->Modified();
     return true;
@@ -345,7 +346,8 @@ int vtkReconstructPieces::RequestData(
   bool isReporting = true;
   try
   {
-    parts.Open(this->Controller);
+    parts.Open(this->Controller,
+      [this](const elevation::Message& waiting) { this->ReportWarnings({ waiting }); });
     if ((parts.IsAlone() && !parts.HasPoints()) || piece < 0 || piece >= count)
     {
       return 1; // empty, as VTK's sources

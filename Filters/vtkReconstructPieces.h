@@ -13,8 +13,8 @@
  * @par Pieces:
  * The plane is cut into a cell for each piece, with about as many points each. A piece has the
  * points of its cell, also unused ones, then the corners of its triangles that are points of other
- * pieces: these are marked in vtkGhostType as DUPLICATEPOINT, and GlobalPointIds tell the place of
- * each point in the order of AddPoints(). Each triangle is in one piece, that of its lowest corner
+ * pieces: these are marked in vtkGhostType as DUPLICATEPOINT. Global ids are those of the points that
+ * are added, or, in GlobalPointIds, the place of each in the order of AddPoints(). Each triangle is in one piece, that of its lowest corner
  * if it reaches over the border of a cell. Field data are those of vtkGridDelaunay2D, for this
  * piece.
  *
@@ -33,8 +33,7 @@
  * patches are the same to the last bit, and go to the piece with the first point of the rim.
  * Where MaximumNumberOfInsertedPoints has room for one of two holes of the same need, it may be the
  * other one.
- * MaximumEdgeLength of that filter is for a surface in memory, and is an error. Output 1, of piece 0,
- * has the outline and the report of each hole, as output 1 of that filter.
+ * Output 1, of piece 0, has the outline and the report of each hole, as output 1 of that filter.
  *
  * @par Ranks:
  * Where the controller has several processes, each of them adds its own points, maybe none, and makes
@@ -169,7 +168,8 @@ public:
   ///@}
 
   /**
-   * Adds points, with their point arrays; all parts need the same arrays, without global ids.
+   * Adds points, with their point arrays; all parts need the same arrays. Of points with the same
+   * global id one counts, and none that is marked in vtkGhostType as DUPLICATEPOINT.
    * @return whether it could be done; else there is an error
    */
   bool AddPoints(vtkPointSet* points);
@@ -209,7 +209,7 @@ public:
   /**
    * As of the three filters, but those of the last ErrorEvent or WarningEvent alone. Further codes are
    * HoleTooLarge, Aborted, TooFewPieces, TooFewPiecesToFill, ErrorNotInPieces, ConstraintsNotInPieces,
-   * InwardNormalNotInPieces, BoundaryNotInPieces, OutlineNotInPieces and EdgeLengthNotInPieces.
+   * InwardNormalNotInPieces, BoundaryNotInPieces and OutlineNotInPieces.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 

@@ -105,41 +105,32 @@ void PassSides(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles,
 bool TrimSpread(const elevation::Ranks& ranks, elevation::TrimOptions options,
   elevation::Block& block, elevation::TrimCounts& counts)
 {
-  const vtkSmartPointer<vtkPolyData> input = vtkPolyData::SafeDownCast(block.Input);
-  const auto check = [&input]() {
-    elevation::CheckArrays(input);
-    return true;
-  };
-  if (!elevation::CanAll(ranks, check) || !elevation::HaveSameArrays(ranks, input))
-  {
-    return false;
-  }
-  elevation::Engine crew(ranks, block.Outputs.empty() ? 0 : 1, {}, std::string());
-  const auto make = [&input](int, const Progress&) {
-    return input->GetNumberOfPoints() > 0 ? input : nullptr;
-  };
+  const auto isFit = [](vtkPolyData*) { return true; };
   options.Monitor = Part(block.Progress, 0.0, 0.88);
-  elevation::TrimParts parts({ crew, make }, 0, block.Second, options);
-  if (!parts.Trim())
-  {
-    return false;
-  }
-  crew.ForEach(Part(block.Progress, 0.88, 1.0), [&](int part, const Progress& progress) {
-    parts.Write(part, progress, block.Outputs[0], block.Outputs[1]);
-    block.Outputs[2]->ShallowCopy(parts.Boundary());
-    if (!parts.Warning().IsEmpty())
+  return elevation::WorkOnParts(block, ranks, isFit, [&](const elevation::SurfaceParts& surface) {
+    elevation::TrimParts parts(surface, 0, block.Second, options);
+    if (!parts.Trim())
     {
-      block.Warnings.push_back(parts.Warning());
+      return false;
     }
-    elevation::AddCounts(parts.Own(), block.Outputs);
-    elevation::AddTuple(block.Outputs[0]->GetFieldData(), "WorkOfTrim",
-      { { "Triangles", parts.CountOfOwn() }, { "NearTriangles", parts.CountOfNear() },
-        { "BytesSent", ranks.GetTraffic().BytesSent },
-        { "Exchanges", ranks.GetTraffic().Rounds } });
-    Report(progress, 1.0);
+    const Progress writing = Part(block.Progress, 0.88, 1.0);
+    surface.Crew.ForEach(writing, [&](int part, const Progress& progress) {
+      parts.Write(part, progress, block.Outputs[0], block.Outputs[1]);
+      block.Outputs[2]->ShallowCopy(parts.Boundary());
+      if (!parts.Warning().IsEmpty())
+      {
+        block.Warnings.push_back(parts.Warning());
+      }
+      elevation::AddCounts(parts.Own(), block.Outputs);
+      elevation::AddTuple(block.Outputs[0]->GetFieldData(), "WorkOfTrim",
+        { { "Triangles", parts.CountOfOwn() }, { "NearTriangles", parts.CountOfNear() },
+          { "BytesSent", ranks.GetTraffic().BytesSent },
+          { "Exchanges", ranks.GetTraffic().Rounds } });
+      Report(progress, 1.0);
+    });
+    counts = parts.Own();
+    return true;
   });
-  counts = parts.Own();
-  return true;
 }
 } // namespace
 

@@ -340,7 +340,8 @@ public:
   /**
    * The processes that make one surface together where each asks for its piece of as many pieces as
    * there are processes. More pieces are an error. All of them have to update, so where the input or
-   * a property changes on one, call Modified() on all: else this one waits for ever.
+   * a property changes on one, call Modified() on all: else this one waits for ever
+   * (and reports RankWaits once, after a minute).
    * Default: the global controller when the filter is made. nullptr: this process alone.
    */
   void SetController(vtkMultiProcessController* controller);
@@ -361,8 +362,9 @@ public:
    * are "Words":
    * NothingToTrim, InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut,
    * BoundaryLeavesOutAll, RingsRepeated, BoundaryEnclosesNothing (reasons: NothingInRing,
-   * NothingBetweenRings, BoundaryElsewhere), StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, ArraysLeftOut,
-   * OnOneRank (with a reason: NormalsNeedAll, PartsDoNotFit), NotEnoughMemory, Stopped.
+   * NothingBetweenRings, BoundaryElsewhere), StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
+   * ArraysLeftOut, OnOneRank (with a reason: NormalsNeedAll, PartsDoNotFit), RankWaits,
+   * NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 

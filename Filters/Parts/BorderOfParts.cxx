@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace elevation
@@ -150,31 +152,50 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
   }
 }
 
-void AppendBorder(
-  const Mesh& mesh, const SharedPoints& points, int part, std::vector<EdgeOfPart>& edges)
+void AppendBorder(const Mesh& mesh, const SharedPoints& points, const std::vector<Index>& regionOf,
+  int part, EdgesOfParts& edges)
 {
   const auto numberOf = [&](Index point) {
     const auto at = std::lower_bound(points.Places.begin(), points.Places.end(), point);
     return static_cast<std::size_t>(at - points.Places.begin());
   };
+  const auto regionAt = [&](Index h) {
+    return regionOf.empty() ? None : regionOf[Mesh::Triangle(h)];
+  };
   for (Index h = 0; h < static_cast<Index>(mesh.Twins.size()); ++h)
   {
-    if (mesh.Twin(h) == Mesh::Border)
+    const bool isBorder = mesh.Twin(h) == Mesh::Border;
+    if (isBorder || (regionAt(h) != None && regionAt(mesh.Twin(h)) == None))
     {
       const Index a = mesh.Origin(h), b = mesh.Destination(h);
       const Point2 p = mesh.PointOf(a), q = mesh.PointOf(b);
       const std::size_t from = numberOf(a), to = numberOf(b);
-      edges.push_back({ { points.Keys[from], points.Keys[to] }, { p.X, p.Y, q.X, q.Y },
-        { points.OnBoundary[from], points.OnBoundary[to] }, part, h });
+      (isBorder ? edges.OnBorder : edges.OfRegions)
+        .push_back({ { points.Keys[from], points.Keys[to] }, { p.X, p.Y, q.X, q.Y },
+          { points.OnBoundary[from], points.OnBoundary[to] }, part, h, regionAt(h) });
     }
   }
 }
 
 namespace
 {
-/** Takes away the edges that two parts have in common. */
-void KeepSingleEdges(std::vector<EdgeOfPart>& edges)
+/** Notes what an edge is that two parts have in common, where a triangle beside it is long. */
+void JoinRegions(const EdgeOfPart& one, const EdgeOfPart& other, EdgesOfParts& all)
 {
+  if (one.Region != None && other.Region != None)
+  {
+    all.Joined.push_back({ one.Part, one.Region, other.Part, other.Region });
+  }
+  else if (one.Region != None || other.Region != None)
+  {
+    all.OfRegions.push_back(one.Region != None ? one : other);
+  }
+}
+
+/** Takes away the edges that two parts have in common. */
+void KeepSingleEdges(EdgesOfParts& all)
+{
+  std::vector<EdgeOfPart>& edges = all.OnBorder;
   const auto keyOf = [](const EdgeOfPart& edge) {
     return std::make_tuple(
       std::min(edge.Ends[0], edge.Ends[1]), std::max(edge.Ends[0], edge.Ends[1]), edge.Ends[0]);
@@ -193,7 +214,11 @@ void KeepSingleEdges(std::vector<EdgeOfPart>& edges)
     {
       throw Error("An edge has more than two triangles.");
     }
-    if (!isPair)
+    if (isPair)
+    {
+      JoinRegions(edges[i], edges[i + 1], all);
+    }
+    else
     {
       single.push_back(edges[i]);
     }
@@ -203,29 +228,79 @@ void KeepSingleEdges(std::vector<EdgeOfPart>& edges)
 }
 } // namespace
 
-BorderOfAll::BorderOfAll(std::vector<EdgeOfPart>&& edges)
+BorderOfAll::BorderOfAll(EdgesOfParts&& edges)
 {
-  std::sort(edges.begin(), edges.end(), [](const EdgeOfPart& a, const EdgeOfPart& b) {
-    return std::tie(a.Part, a.HalfEdge) < std::tie(b.Part, b.HalfEdge);
-  });
-  for (const EdgeOfPart& edge : edges)
+  std::vector<EdgeOfPart>& border = edges.OnBorder;
+  const auto isOfRegion = [](const EdgeOfPart& edge) { return edge.Region != None; };
+  std::copy_if(border.begin(), border.end(), std::back_inserter(edges.OfRegions), isOfRegion);
+  for (std::vector<EdgeOfPart>* some : { &border, &edges.OfRegions })
   {
-    this->Keys.insert(this->Keys.end(), { edge.Ends[0], edge.Ends[1] });
+    std::sort(some->begin(), some->end(), [](const EdgeOfPart& a, const EdgeOfPart& b) {
+      return std::tie(a.Part, a.HalfEdge) < std::tie(b.Part, b.HalfEdge);
+    });
+    for (const EdgeOfPart& edge : *some)
+    {
+      this->Keys.insert(this->Keys.end(), { edge.Ends[0], edge.Ends[1] });
+    }
   }
   std::sort(this->Keys.begin(), this->Keys.end());
   this->Keys.erase(std::unique(this->Keys.begin(), this->Keys.end()), this->Keys.end());
   this->Coordinates.resize(3 * this->Keys.size(), 0.0);
   this->OnBoundary.resize(this->Keys.size(), 0);
-  for (const EdgeOfPart& edge : edges)
-  {
-    const Index ends[2] = { this->Find(edge.Ends[0]), this->Find(edge.Ends[1]) };
-    this->Edges.push_back({ ends[0], ends[1] });
-    this->PartOfEdge.push_back(static_cast<int>(edge.Part));
-    for (std::size_t k = 0; k < 2; ++k)
+  const auto add = [this](const std::vector<EdgeOfPart>& some, std::vector<BorderEdge>& found,
+                     std::vector<int>& partOf) {
+    for (const EdgeOfPart& edge : some)
     {
-      std::copy_n(edge.Places + 2 * k, 2, this->Coordinates.begin() + 3 * ends[k]);
-      this->OnBoundary[ends[k]] = edge.OnBoundary[k] != 0;
+      const Index ends[2] = { this->Find(edge.Ends[0]), this->Find(edge.Ends[1]) };
+      found.push_back({ ends[0], ends[1] });
+      partOf.push_back(static_cast<int>(edge.Part));
+      for (std::size_t k = 0; k < 2; ++k)
+      {
+        std::copy_n(edge.Places + 2 * k, 2, this->Coordinates.begin() + 3 * ends[k]);
+        this->OnBoundary[ends[k]] = edge.OnBoundary[k] != 0;
+      }
     }
+  };
+  add(border, this->Edges, this->PartOfEdge);
+  add(edges.OfRegions, this->RegionEdges, this->PartOfRegionEdge);
+  this->NumberRegions(edges);
+}
+
+/** Regions are in the order of the first parts that have some of them. */
+void BorderOfAll::NumberRegions(const EdgesOfParts& edges)
+{
+  for (const EdgeOfPart& edge : edges.OfRegions)
+  {
+    this->Regions.emplace(RegionOfPart(edge.Part, edge.Region), 0);
+  }
+  for (const auto& joined : edges.Joined)
+  {
+    this->Regions.emplace(RegionOfPart(joined[0], joined[1]), 0);
+    this->Regions.emplace(RegionOfPart(joined[2], joined[3]), 0);
+  }
+  std::vector<Index> parents;
+  for (auto& region : this->Regions)
+  {
+    region.second = static_cast<Index>(parents.size());
+    parents.push_back(region.second);
+  }
+  for (const auto& joined : edges.Joined)
+  {
+    const Index a = RootOf(parents, this->Regions[{ joined[0], joined[1] }]);
+    const Index b = RootOf(parents, this->Regions[{ joined[2], joined[3] }]);
+    parents[std::max(a, b)] = std::min(a, b);
+  }
+  std::vector<Index> numbers;
+  Index count = 0;
+  for (auto& region : this->Regions)
+  {
+    const Index root = RootOf(parents, region.second);
+    numbers.push_back(root == region.second ? count++ : numbers[root]);
+    region.second = numbers.back();
+  }
+  for (const EdgeOfPart& edge : edges.OfRegions)
+  {
+    this->RegionOfEdge.push_back(this->Regions.at({ edge.Part, edge.Region }));
   }
 }
 
@@ -245,31 +320,40 @@ PointView BorderOfAll::View() const
 }
 
 // Those that are left on each rank are paired at a rank for each edge; what is single goes to all.
-BorderOfAll CollectBorder(const Ranks& ranks, std::vector<EdgeOfPart>&& edges)
+BorderOfAll CollectBorder(const Ranks& ranks, EdgesOfParts&& edges)
 {
   std::vector<Bytes> packed(ranks.Count());
   ranks.Agree([&]() {
     KeepSingleEdges(edges);
-    for (std::size_t i = 0; i < edges.size() && ranks.Count() > 1; ++i)
+    for (std::size_t i = 0; i < edges.OnBorder.size() && ranks.Count() > 1; ++i)
     {
-      const std::uint64_t bits = BitsOf(edges[i].Ends[0]) + BitsOf(edges[i].Ends[1]);
-      AppendTo(packed[RankOf(bits, ranks)], &edges[i], 1);
+      const EdgeOfPart& edge = edges.OnBorder[i];
+      const std::uint64_t bits = BitsOf(edge.Ends[0]) + BitsOf(edge.Ends[1]);
+      AppendTo(packed[RankOf(bits, ranks)], &edge, 1);
     }
   });
   if (ranks.Count() > 1)
   {
     packed = ranks.Exchange(std::move(packed));
     ranks.Agree([&]() {
-      edges = Unpacked<EdgeOfPart>(packed);
+      edges.OnBorder = Unpacked<EdgeOfPart>(packed);
       KeepSingleEdges(edges);
-      packed = std::vector<Bytes>(ranks.Count());
-      for (Bytes& bytes : packed)
-      {
-        AppendTo(bytes, edges);
-      }
     });
-    packed = ranks.Exchange(std::move(packed));
-    ranks.Agree([&]() { edges = Unpacked<EdgeOfPart>(packed); });
+    const auto toAll = [&](auto& some) {
+      using Some = std::decay_t<decltype(some.front())>;
+      ranks.Agree([&]() {
+        packed = std::vector<Bytes>(ranks.Count());
+        for (Bytes& bytes : packed)
+        {
+          AppendTo(bytes, some);
+        }
+      });
+      packed = ranks.Exchange(std::move(packed));
+      ranks.Agree([&]() { some = Unpacked<Some>(packed); });
+    };
+    toAll(edges.OnBorder);
+    toAll(edges.OfRegions);
+    toAll(edges.Joined);
   }
   BorderOfAll border;
   ranks.Agree([&]() { border = BorderOfAll(std::move(edges)); });

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -25,7 +26,8 @@ namespace elevation
 /** The points of a part that others may have, too. */
 struct SharedPoints
 {
-  std::vector<Index> Places;    ///< increasing: on the border of its triangles, or without any
+  /** Increasing: on the border of its triangles, of long ones, or without any triangle. */
+  std::vector<Index> Places;
   std::vector<PointKey> Keys;   ///< of them
   std::vector<char> AreCopies;  ///< one each: another part's counts; before FindCopies() as marked
   std::vector<char> OnBoundary; ///< one each: marked as of BoundaryMarksOf()
@@ -44,13 +46,25 @@ private:
 /** Finds the copies of parts in memory, at a rank for each key. All ranks call it. */
 void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points);
 
-/** A border edge of a part's triangles. */
+/** An edge of a part's triangles. */
 struct EdgeOfPart
 {
   PointKey Ends[2];
   double Places[4]; ///< x,y of both
   vtkIdType OnBoundary[2];
   vtkIdType Part, HalfEdge;
+  vtkIdType Region; ///< of the triangle: one of long triangles (LongTriangles.h), or None
+};
+
+/** A region of long triangles of a part: the part, and the number of the region there. */
+using RegionOfPart = std::pair<vtkIdType, vtkIdType>;
+
+/** The edges of parts that others have to know. */
+struct EdgesOfParts
+{
+  std::vector<EdgeOfPart> OnBorder;
+  std::vector<EdgeOfPart> OfRegions; ///< between a long triangle, on the left, and another
+  std::vector<std::array<vtkIdType, 4>> Joined; ///< regions of two parts that are one
 };
 
 /** The border of all parts. */
@@ -61,16 +75,28 @@ struct BorderOfAll
   std::vector<PointKey> Keys;      ///< of its points, increasing
   std::vector<double> Coordinates; ///< x, y and 0 of each
   std::vector<char> OnBoundary;    ///< one each, as in SharedPoints
+  // Regions of long triangles: edges around them, their parts and regions
+  std::vector<BorderEdge> RegionEdges;
+  std::vector<int> PartOfRegionEdge;
+  std::vector<Index> RegionOfEdge;
+  std::map<RegionOfPart, Index> Regions; ///< those of the parts, as of all
 
   BorderOfAll() = default;
-  explicit BorderOfAll(std::vector<EdgeOfPart>&& edges);
+  explicit BorderOfAll(EdgesOfParts&& edges);
   Index Find(const PointKey& key) const;
   PointView View() const;
+
+private:
+  void NumberRegions(const EdgesOfParts& edges);
 };
 
-/** Appends the border of a part. @param[in] mesh  with Twins */
-void AppendBorder(
-  const Mesh& mesh, const SharedPoints& points, int part, std::vector<EdgeOfPart>& edges);
+/**
+ * Appends the border of a part, and the edges around its regions.
+ * @param[in] mesh      with Twins
+ * @param[in] regionOf  from NumberRegions()
+ */
+void AppendBorder(const Mesh& mesh, const SharedPoints& points, const std::vector<Index>& regionOf,
+  int part, EdgesOfParts& edges);
 
 /**
  * The border of the parts of all ranks, the same on all of them: without the edges that two parts
@@ -78,7 +104,7 @@ void AppendBorder(
  * @param[in] edges  of the parts of this rank
  * @throws Error on all ranks if an edge has more than two triangles, or two on one side
  */
-BorderOfAll CollectBorder(const Ranks& ranks, std::vector<EdgeOfPart>&& edges);
+BorderOfAll CollectBorder(const Ranks& ranks, EdgesOfParts&& edges);
 
 } // namespace elevation
 

@@ -214,9 +214,9 @@ void Engine::Deliver(const Progress& progress)
     const Progress watched = this->Crew.Watched(progress);
     for (std::vector<Bytes>& list : fromEach)
     {
-      std::vector<Message> labels;
+      std::vector<Label> labels;
       const char* from = list.empty() ? nullptr : list.front().data();
-      TakeFrom(from, list.empty() ? 0 : list.front().size() / sizeof(Message), labels);
+      TakeFrom(from, list.empty() ? 0 : list.front().size() / sizeof(Label), labels);
       for (std::size_t i = 0; i < labels.size(); ++i)
       {
         Report(watched, 1.0);

@@ -119,7 +119,8 @@ public:
   Inbox& At(int part, int box);
 
 private:
-  struct Message
+  /** Of what is sent. */
+  struct Label
   {
     std::size_t Part, Box, Size;
   };
@@ -130,7 +131,7 @@ private:
   std::vector<int> Firsts;                // part of each rank, and the end
   std::vector<Inbox> Boxes;               // of the parts of this rank
   std::vector<std::vector<Bytes>> Outbox; // of each rank
-  std::vector<std::vector<Message>> Labels;
+  std::vector<std::vector<Label>> Labels;
 };
 
 /** All values in a box, to which they have been sent as lists of them. */

@@ -11,7 +11,6 @@
 #include "BoundaryZone.h"
 #include "FilterRun.h"
 #include "PackedData.h"
-#include "PointRows.h"
 
 #include "vtkCellData.h"
 #include "vtkPointData.h"
@@ -36,8 +35,8 @@ constexpr double LeastPointsOfGroup = 1000.0;
 constexpr double GroupsOfPart = 8.0; // so many groups together take the memory of a part
 } // namespace
 
-FillParts::FillParts(
-  const SurfaceParts& surface, const FillOptions& options, bool interpolate, bool byIds)
+FillParts::FillParts(const SurfaceParts& surface, const FillOptions& options, bool interpolate,
+  double longest, bool byIds)
   : Make(surface.Make)
   , Crew(surface.Crew.All(), surface.Crew.EndOwn() - surface.Crew.FirstOwn(), { "patches", "rims" },
       surface.Crew.Folder())
@@ -45,6 +44,7 @@ FillParts::FillParts(
 {
   this->Whole.Options = options;
   this->Whole.Interpolate = interpolate;
+  this->Whole.LongestEdge = longest;
   this->Whole.ByIds = byIds;
 }
 
@@ -59,6 +59,7 @@ void FillParts::WithPart(int part, const Progress& progress, const Visit& visit)
   FilledPart& one = this->Crew.IsInFiles() ? made : this->InMemory;
   if (!one.Input)
   {
+    one.Number = part;
     one.Input = this->Make(part, Part(progress, 0.0, 0.5));
   }
   if (one.Input)
@@ -75,12 +76,12 @@ void FillParts::FindHoles(int partOfRims)
 {
   this->PartOfRims = partOfRims;
   std::vector<KnownPart> own(this->Crew.EndOwn() - this->Crew.FirstOwn());
-  std::vector<EdgeOfPart> edges;
+  EdgesOfParts edges;
   Parts borders;
   this->Crew.ForEach(this->Fraction(0.0, 0.18), [&](int part, const Progress& progress) {
     this->WithPart(part, progress, [&](FilledPart& one, const Progress& reading) {
-      one.Read(this->Whole.ByIds, reading);
-      AppendBorder(one.Own, one.Shared, part, edges);
+      one.Read(this->Whole.ByIds, this->Whole.LongestEdge, reading);
+      AppendBorder(one.Own, one.Shared, one.RegionOf, part, edges);
       borders.push_back(one.PointsOnBorder());
       KnownPart& known = own[part - this->Crew.FirstOwn()];
       for (const Index corner : one.Own.Triangles)
@@ -91,6 +92,15 @@ void FillParts::FindHoles(int partOfRims)
       known.Points = one.Input->GetNumberOfPoints();
       known.OwnPoints = one.CountOfOwn();
       known.LargestId = one.LargestId();
+      for (std::size_t t = 0; t < one.RegionOf.size(); ++t)
+      {
+        if (one.RegionOf[t] != None)
+        {
+          ++this->LongTriangles[{ part, one.RegionOf[t] }];
+          known.LargestHeight =
+            std::max(known.LargestHeight, LargestHeight(one.Own, static_cast<Index>(t)));
+        }
+      }
     });
   });
   if (!this->Crew.IsInFiles())
@@ -117,7 +127,31 @@ void FillParts::FindHoles(int partOfRims)
       throw Error("Borders of the surface touch, so that it cannot be filled in pieces; fill the "
                   "surface in memory.");
     }
+    this->FindReaches();
   });
+}
+
+/**
+ * A long triangle tells the points of a region how far the next line is, up to half of its height away
+ * (Holes::Gaps).
+ */
+void FillParts::FindReaches()
+{
+  const Index count = this->Whole.OfAll.Found.Count();
+  for (Index hole = this->Whole.FirstRegion; hole < count; ++hole)
+  {
+    const Box& rim = this->Whole.Extents[hole].OfRim;
+    for (const KnownPart& known : this->Known)
+    {
+      const double reach = 0.5 * known.LargestHeight;
+      const Box within{ { rim.Low.X - reach, rim.Low.Y - reach },
+        { rim.High.X + reach, rim.High.Y + reach } };
+      if (within.Intersects(known.Place))
+      {
+        this->Whole.Reach[hole] = std::max(this->Whole.Reach[hole], reach);
+      }
+    }
+  }
 }
 
 /** The points on the border of the surface, of all that are on that of a part. */
@@ -160,7 +194,16 @@ void FillParts::Fill()
   this->GroupHoles();
   this->FillAll();
   this->ShareOfHoles(this->Whole.OfAll.Reports);
+  this->ShareOfHoles(this->Whole.HaveRoom);
+  this->Whole.DropRegionsWithoutRoom();
   this->Whole.NumberNewPoints();
+  for (const auto& [region, triangles] : this->LongTriangles)
+  {
+    const Index hole = this->Whole.NumberOf(static_cast<int>(region.first), region.second);
+    const bool isReplaced =
+      hole != None && this->Whole.OfAll.Reports[hole].Status == FillStatus::Replaced;
+    this->NewTriangles -= isReplaced ? triangles : 0;
+  }
   // Parts in files have marks anyway; those in memory get them if any has a point of another.
   std::vector<vtkIdType> sums = { this->NewTriangles, this->Crew.IsInFiles() ? 1 : 0 };
   if (!this->Crew.IsInFiles())
@@ -208,6 +251,10 @@ std::vector<int> FillParts::PartsOfHoles() const
   }
   const BorderOfAll& border = this->Whole.Border;
   std::vector<int> partOf(border.Keys.size(), 0);
+  for (std::size_t i = 0; i < border.RegionEdges.size(); ++i)
+  {
+    partOf[border.RegionEdges[i].Origin] = border.PartOfRegionEdge[i];
+  }
   for (std::size_t i = 0; i < border.Edges.size(); ++i)
   {
     partOf[border.Edges[i].Origin] = border.PartOfEdge[i];
@@ -326,7 +373,7 @@ SurroundedHoles& FillParts::HolesOf(int group, const Progress& progress)
     {
       box.Clear();
     }
-    this->Around.Surround(parts, this->Whole.ByIds, progress);
+    this->Around.Surround(parts, this->Whole, progress);
   }
   return this->Around;
 }
@@ -377,6 +424,11 @@ bool FillParts::FillGroup(int group, const Progress& progress, std::vector<vtkId
   SurroundedHoles& holes = this->HolesOf(group, Part(progress, 0.0, 0.1));
   const std::vector<Index> found = holes.Fill(this->Whole, Part(progress, 0.1, 1.0));
   beyond.insert(beyond.end(), found.begin(), found.end());
+  for (const Index hole : this->Groups[group].Holes)
+  {
+    this->Whole.HaveRoom[hole] =
+      std::binary_search(holes.Numbers.begin(), holes.Numbers.end(), hole) ? 1 : 0;
+  }
   for (std::size_t i = 0; i < holes.Numbers.size(); ++i)
   {
     this->Whole.OfAll.Reports[holes.Numbers[i]] = holes.Patches.Reports[i];
@@ -437,6 +489,10 @@ void FillParts::TakePatches(int part, FilledPart& one)
     box.Clear();
   }
   one.Filled = SurroundedHoles(std::move(groups));
+  for (Index& hole : one.Filled.Numbers)
+  {
+    hole = this->Whole.NewNumbers[hole];
+  }
   one.FindCorners();
 }
 
@@ -446,7 +502,7 @@ void FillParts::Pass(int part, const Progress& progress, vtkPolyData* output)
   this->WithPart(part, progress, [&](FilledPart& one, const Progress& ofPart) {
     if (this->Crew.IsInFiles())
     {
-      one.Read(this->Whole.ByIds, Part(ofPart, 0.0, 0.3));
+      one.Read(this->Whole.ByIds, this->Whole.LongestEdge, Part(ofPart, 0.0, 0.3));
       this->TakePatches(part, one);
     }
     one.Write(this->Whole, this->AreMarked, this->LargestId, Part(ofPart, 0.3, 1.0), output);
@@ -477,59 +533,55 @@ bool IsPlain(vtkPolyData* part)
  * before have made, are as they should be. Here alone it is decided that an error means gathering:
  * with the whole surface on one rank it can be filled, or the error is that of one rank.
  */
-bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolate, Block& block,
-  FillResult& patches)
+bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolate, double longest,
+  Block& block, FillResult& patches)
 {
-  vtkSmartPointer<vtkPolyData> input = vtkPolyData::SafeDownCast(block.Input);
-  const bool hasPoints = input->GetNumberOfPoints() > 0;
-  const int type = hasPoints ? input->GetPoints()->GetDataType() : VTK_VOID;
-  const bool hasIds = input->GetPointData()->GetGlobalIds() != nullptr;
-  std::vector<vtkIdType> sums = { std::max<vtkIdType>(0, input->GetNumberOfPolys()),
-    type == VTK_FLOAT, type == VTK_DOUBLE, hasPoints && !hasIds };
-  ranks.Sum(sums);
-  const bool areFit = CanAll(ranks, [&]() {
-    Report(ranks.Watched(block.Progress), 0.0);
-    CheckArrays(input);
-    return IsPlain(input) && (!hasPoints || type == VTK_FLOAT || type == VTK_DOUBLE);
+  int type = VTK_VOID;
+  bool hasIds = true;
+  const auto isFit = [&](vtkPolyData* part) {
+    CheckMaximumEdgeLength(longest);
+    if (part->GetNumberOfPoints() > 0)
+    {
+      type = part->GetPoints()->GetDataType();
+      hasIds = part->GetPointData()->GetGlobalIds() != nullptr;
+    }
+    return IsPlain(part) && (type == VTK_VOID || type == VTK_FLOAT || type == VTK_DOUBLE);
+  };
+  return WorkOnParts(block, ranks, isFit, [&](const SurfaceParts& surface) {
+    std::vector<vtkIdType> sums = { block.Input->GetNumberOfCells(), type == VTK_FLOAT,
+      type == VTK_DOUBLE, !hasIds };
+    ranks.Sum(sums);
+    if (sums[0] == 0 || (sums[1] > 0 && sums[2] > 0))
+    {
+      return false;
+    }
+    FillOptions filling = options;
+    filling.Monitor = Part(block.Progress, 0.0, 0.82);
+    FillParts fill(surface, filling, interpolate, longest, sums[3] == 0);
+    constexpr int first = 0;
+    try
+    {
+      fill.FindHoles(first);
+    }
+    catch (const Error& error) // on all ranks
+    {
+      if (MessageOf(error).GetCode() == sentences::NotEnoughMemory.Code)
+      {
+        throw;
+      }
+      return false;
+    }
+    fill.Fill();
+    surface.Crew.ForEach(block.Progress, [&](int part, const Progress& progress) {
+      fill.Pass(part, Part(progress, 0.82, 0.97), block.Outputs[0]);
+      if (part == first)
+      {
+        fill.PassRims(Part(progress, 0.97, 1.0), block.Outputs[1]);
+      }
+    });
+    patches = fill.Result();
+    return true;
   });
-  if (!areFit || sums[0] == 0 || (sums[1] > 0 && sums[2] > 0) || !HaveSameArrays(ranks, input))
-  {
-    return false;
-  }
-  Engine crew(ranks, 1, {}, std::string());
-  const auto make = [&](int, const Progress&) { return hasPoints ? input : nullptr; };
-  FillOptions filling = options;
-  filling.Monitor = Part(block.Progress, 0.0, 0.82);
-  FillParts fill({ crew, make }, filling, interpolate, sums[3] == 0);
-  const std::vector<vtkIdType> have =
-    ranks.Collect(std::vector<vtkIdType>{ block.Outputs.empty() ? 0 : 1 });
-  const int first = static_cast<int>(std::find(have.begin(), have.end(), 1) - have.begin());
-  try
-  {
-    fill.FindHoles(first);
-  }
-  catch (const Error& error) // on all ranks
-  {
-    if (MessageOf(error).GetCode() == sentences::NotEnoughMemory.Code)
-    {
-      throw;
-    }
-    return false;
-  }
-  fill.Fill();
-  ranks.Agree([&]() {
-    const Progress writing = ranks.Watched(block.Progress);
-    if (hasPoints)
-    {
-      fill.Pass(ranks.Own(), Part(writing, 0.82, 0.97), block.Outputs[0]);
-    }
-    if (ranks.Own() == first)
-    {
-      fill.PassRims(Part(writing, 0.97, 1.0), block.Outputs[1]);
-    }
-  });
-  patches = fill.Result();
-  return true;
 }
 
 } // namespace elevation

@@ -43,6 +43,7 @@
 #include "SharedHoles.h"
 #include "SurfaceParts.h"
 
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -58,10 +59,11 @@ public:
   /**
    * All ranks make one together, and do its passes together but the last.
    * @param[in] options  Monitor: of all passes but the last
+   * @param[in] longest  edge of a triangle that is not opened; 0: none is
    * @param[in] byIds  whether points of parts are one by global ids, as in files; or by x,y,z
    */
-  FillParts(
-    const SurfaceParts& surface, const FillOptions& options, bool interpolate, bool byIds = true);
+  FillParts(const SurfaceParts& surface, const FillOptions& options, bool interpolate,
+    double longest, bool byIds = true);
 
   /**
    * Pass 1.
@@ -92,6 +94,7 @@ private:
     double Triangles = 0.0;
     vtkIdType Points = 0, OwnPoints = 0; ///< with those that other parts count, and without
     vtkIdType LargestId = -1;
+    double LargestHeight = 0.0; ///< of a long triangle
   };
   /** Holes of one part, increasing, that are filled together. */
   struct Group
@@ -107,6 +110,7 @@ private:
   template <typename Visit>
   void WithPart(int part, const Progress& progress, const Visit& visit);
   void SendRims(Parts&& borders);
+  void FindReaches();
   void FindLattice();
   std::vector<int> PartsOfHoles() const;
   double PointsAround(Index hole, const KnownPart& part) const;
@@ -134,6 +138,7 @@ private:
   std::unique_ptr<Engine> GroupCrew; // whose parts they are
   SurroundedHoles Around;            // of the group that is worked on
   vtkIdType NewTriangles = 0;        // of this rank until all are filled
+  std::map<RegionOfPart, vtkIdType> LongTriangles; // of this rank's parts, in each region
   bool AreMarked = true;             // whether any part has others' points
 };
 
@@ -146,8 +151,8 @@ private:
  *         touch, and whatever is an error before any hole is filled
  * @throws Error, Aborted on all ranks
  */
-bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolate, Block& block,
-  FillResult& patches);
+bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolate, double longest,
+  Block& block, FillResult& patches);
 
 } // namespace elevation
 

@@ -26,11 +26,23 @@
 namespace elevation
 {
 
-void FilledPart::Read(bool byIds, const Progress& progress)
+void FilledPart::Read(bool byIds, double longest, const Progress& progress)
 {
   ToMesh(this->Input, this->Own, Part(progress, 0.0, 0.4));
-  this->Own.ConnectTwins(0, Part(progress, 0.4, 1.0));
+  this->Own.ConnectTwins(0, Part(progress, 0.4, 0.9));
+  if (longest > 0.0)
+  {
+    this->RegionOf = NumberRegions(this->Own, longest, Part(progress, 0.9, 1.0));
+  }
   this->ListShared(byIds);
+}
+
+/** Whether a half-edge is on the border of the triangles, or of long ones, which it belongs to. */
+bool FilledPart::IsRim(Index h) const
+{
+  const Index twin = this->Own.Twin(h);
+  return twin == Mesh::Border ||
+    (!this->RegionOf.empty() && this->IsRegionAt(h) && !this->IsRegionAt(twin));
 }
 
 void FilledPart::ListShared(bool byIds)
@@ -44,7 +56,8 @@ void FilledPart::ListShared(bool byIds)
   }
   for (Index h = 0; h < static_cast<Index>(this->Own.Twins.size()); ++h)
   {
-    if (this->Own.Twin(h) == Mesh::Border)
+    // A patch may have any corner of the triangles that it replaces.
+    if (this->Own.Twin(h) == Mesh::Border || (!this->RegionOf.empty() && this->IsRegionAt(h)))
     {
       mayBeShared[this->Own.Origin(h)] = mayBeShared[this->Own.Destination(h)] = 1;
     }
@@ -210,6 +223,10 @@ FillResult FilledPart::PlacedPatches(const SharedHoles& all, vtkPolyData* input)
     to.TriangleOffsets.push_back(isMine ? from.TriangleOffsets[next] : to.TriangleOffsets.back());
   }
   to.Reports = all.OfAll.Reports;
+  for (const Index region : this->RegionOf)
+  {
+    to.Found.RegionOf.push_back(region == None ? None : all.NumberOf(this->Number, region));
+  }
   this->PlaceAttributes(input, to);
   return to;
 }
@@ -266,9 +283,16 @@ void FilledPart::Write(const SharedHoles& all, bool areMarked, vtkIdType largest
 
 vtkSmartPointer<vtkPolyData> FilledPart::PointsOnBorder() const
 {
-  std::vector<Index> chosen;
-  std::copy_if(this->Shared.Places.begin(), this->Shared.Places.end(), std::back_inserter(chosen),
-    [this](Index place) { return this->AreUsed[place] != 0; });
+  IdSet ends(static_cast<Index>(this->Input->GetNumberOfPoints()));
+  for (Index h = 0; h < static_cast<Index>(this->Own.Twins.size()); ++h)
+  {
+    if (this->IsRim(h))
+    {
+      ends.Add(this->Own.Origin(h));
+      ends.Add(this->Own.Destination(h));
+    }
+  }
+  const std::vector<Index> chosen = ends.ListAndRank();
   return chosen.empty() ? nullptr : ChosenPoints(this->Input, chosen);
 }
 

@@ -22,17 +22,20 @@ namespace elevation
 
 struct FilledPart
 {
+  int Number = 0;
   vtkSmartPointer<vtkPolyData> Input; ///< nullptr: it has no points
   Mesh Own;                           ///< of the input
+  std::vector<Index> RegionOf;        ///< of its triangles, from NumberRegions()
   std::vector<char> AreUsed;          ///< points that a triangle has
   SharedPoints Shared;
   SurroundedHoles Filled; ///< holes whose patches this part gets
 
   /**
-   * Reads the triangles, and lists the points on their border and those without any.
+   * Reads the triangles, finds regions of long ones, and lists the points that other parts may have.
+   * @param[in] longest  edge of a triangle that is not long; 0: none is
    * @throws Error, as SharedPoints::Sort(); Aborted
    */
-  void Read(bool byIds, const Progress& progress);
+  void Read(bool byIds, double longest, const Progress& progress);
 
   /** The points that no other part counts. @param[out] kept  holds them */
   PointView OwnPoints(Buffer<double>& kept) const;
@@ -55,10 +58,12 @@ struct FilledPart
   void Write(const SharedHoles& all, bool areMarked, vtkIdType largestId, const Progress& progress,
     vtkPolyData* output) const;
 
-  /** The points on the border of the triangles, with their data; nullptr: none. */
+  /** The points on the border of the triangles, and of regions, with their data; nullptr: none. */
   vtkSmartPointer<vtkPolyData> PointsOnBorder() const;
 
 private:
+  bool IsRegionAt(Index h) const { return this->RegionOf[Mesh::Triangle(h)] != None; }
+  bool IsRim(Index h) const;
   void ListShared(bool byIds);
   std::vector<char> AreOthers() const;
   vtkSmartPointer<vtkPolyData> WithCorners(bool areMarked, const Progress& progress) const;

@@ -73,7 +73,9 @@ FilterRun::FilterRun(vtkAlgorithm* filter, vtkMultiProcessController* controller
 
 int FilterRun::Run(const std::function<void(Block&)>& body)
 {
-  const Ranks ranks(this->Controller, this->Request, this->Outputs);
+  const Ranks ranks(this->Controller, this->Request, this->Outputs, [this](const Message& waiting) {
+    ReportMessages(this->Filter, {}, { waiting }, this->Messages);
+  });
   for (vtkIdType* sum : this->Sums)
   {
     *sum = 0;

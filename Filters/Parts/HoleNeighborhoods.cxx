@@ -59,7 +59,7 @@ std::vector<int> BalancedRanks(
   return rankOf;
 }
 
-Box BoxAround(const HoleExtent& hole, int retries)
+Box BoxAround(const HoleExtent& hole, int retries, double reach)
 {
   const Box& rim = hole.OfRim;
   constexpr int most = 24; // times: 3e14 as wide
@@ -68,7 +68,7 @@ Box BoxAround(const HoleExtent& hole, int retries)
     return { { -DBL_MAX, -DBL_MAX }, { DBL_MAX, DBL_MAX } };
   }
   const double size = std::hypot(rim.Width(), rim.Height());
-  const double by = std::pow(4.0, retries) * (1.5 * size + 6.0 * hole.MeanEdge);
+  const double by = std::max(reach, std::pow(4.0, retries) * (1.5 * size + 6.0 * hole.MeanEdge));
   return { { rim.Low.X - by, rim.Low.Y - by }, { rim.High.X + by, rim.High.Y + by } };
 }
 

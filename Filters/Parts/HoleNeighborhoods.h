@@ -35,8 +35,9 @@ std::vector<int> BalancedRanks(
 /**
  * Where a hole knows all triangles: those that its trials beside it need nearly always. Each time
  * that they were too few the box is wider by four times, and in the end everywhere.
+ * @param[in] reach  how far beyond the rim it reaches at least
  */
-Box BoxAround(const HoleExtent& hole, int retries);
+Box BoxAround(const HoleExtent& hole, int retries, double reach);
 
 /** The triangles, increasing, that meet one of the boxes, and some nearby. Linear. */
 std::vector<Index> TrianglesIn(const std::vector<Box>& boxes, const Mesh& mesh);

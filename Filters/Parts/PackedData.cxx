@@ -39,7 +39,7 @@ int Replace(vtkFieldData* fields, const std::string& name, int type, int compone
   return fields->AddArray(other);
 }
 
-/** What VTK's communicators do not keep of each array; those without values get lost. */
+/** What VTK's communicators do not keep of each array. */
 struct ArrayMark
 {
   int Field; // of FieldsOf()
@@ -50,7 +50,8 @@ struct ArrayMark
 
 /**
  * Makes the arrays of a data set such that VTK's communicators keep all values and their order: of
- * no attribute, and where vtkIdType, which would be cut to 32 bits, of 64 bits.
+ * no attribute; where vtkIdType, which would be cut to 32 bits, of 64 bits; and none without values,
+ * at which they stop reading field data.
  * @return for each array its mark and its name
  */
 Bytes MarkArrays(vtkPolyData* data)
@@ -77,6 +78,13 @@ Bytes MarkArrays(vtkPolyData* data)
       if (mark.Type == VTK_ID_TYPE)
       {
         Replace(all[k], array->GetName(), VTK_TYPE_INT64, mark.Components);
+      }
+    }
+    for (int i = all[k]->GetNumberOfArrays() - 1; i >= 0; --i)
+    {
+      if (all[k]->GetAbstractArray(i)->GetNumberOfTuples() == 0)
+      {
+        all[k]->RemoveArray(i);
       }
     }
     for (int type = 0; attributes && type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)

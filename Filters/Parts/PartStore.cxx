@@ -17,17 +17,27 @@ const std::vector<std::string>& NamesOfBoxes()
   return names;
 }
 
-// In memory, points that came twice go; so counts are known only when all are there. In files none can
-// come twice, as ids are places.
-void PartStore::Number(std::vector<vtkIdType>&& counts, const Progress& progress)
+// Points that came twice go; so counts are known only when all are there. In files none can come twice
+// where ids are places, and nothing is read.
+void PartStore::Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const Progress& progress)
 {
   this->Part.Own = PointRows(this->Part.Kinds);
   this->Part.Others = PointRows(this->Part.Kinds);
-  if (!this->Crew.IsInFiles())
+  if (!this->Crew.IsInFiles() || areIdsGiven)
   {
     std::fill(counts.begin(), counts.end(), 0);
     this->Crew.ForEach(progress, [&](int part, const Progress& ofPart) {
       Report(ofPart, 0.0);
+      if (this->Crew.IsInFiles())
+      {
+        const PointRows own = this->ReadOwn(part, ofPart).Own;
+        counts[part] = static_cast<vtkIdType>(own.Count());
+        std::vector<vtkIdType> places(own.Count());
+        std::iota(places.begin(), places.end(), vtkIdType(0));
+        this->Crew.At(part, OwnPoints).Clear();
+        this->AddOwn(part, own.Pack(places));
+        return;
+      }
       this->Part.Own.Unpack(this->Crew.At(part, OwnPoints).Take());
       Report(ofPart, 0.5);
       SortOwn(this->Part);

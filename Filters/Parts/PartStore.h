@@ -89,8 +89,9 @@ public:
    * Sets the numbers of the points of all parts: part after part, and within a part in the order of
    * ids. All ranks call it.
    * @param[in] counts  of the points that this rank has sent to each part
+   * @param[in] areIdsGiven  so that one may have come twice; such a point counts once
    */
-  void Number(std::vector<vtkIdType>&& counts, const Progress& progress);
+  void Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const Progress& progress);
 
   /** Adds packed points of lines, with ids from FirstIdOfLines on; Part.Bases has to count them. */
   void AddOwn(int part, Bytes&& rows);

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /*
  * Points come in two ways, which differ until they are sent. At once: the arrays stay VTK's until rows
- * of them are packed, global ids may be given, and ranks may have different arrays, of which those are
- * kept that all have. In slices: rows are packed into files, which go as they are sent; as no rank can look at its points again,
- * all slices need the same arrays, and global ids are places.
+ * of them are packed, and ranks may have different arrays, of which those are kept that all have. In
+ * slices: rows are packed into files, which go as they are sent; as no rank can look at its points
+ * again, all slices need the same arrays.
  *
  * The samples differ too. At once, the number of points is known, and one point of each stretch of
  * some is taken, so that each part gets about 1,000, all of which all ranks get. In slices, a hash of
@@ -59,8 +59,9 @@ bool AreSame(const std::vector<ArrayKind>& kinds, const std::vector<ArrayKind>& 
 {
   return std::equal(kinds.begin(), kinds.end(), others.begin(), others.end(),
     [](const ArrayKind& kind, const ArrayKind& other) {
+      constexpr int ids = vtkDataSetAttributes::GLOBALIDS;
       return kind.Name == other.Name && kind.Type == other.Type &&
-        kind.Components == other.Components;
+        kind.Components == other.Components && (kind.Attribute == ids) == (other.Attribute == ids);
     });
 }
 
@@ -71,9 +72,8 @@ Error DifferentArrays()
 }
 
 /** Takes global ids out of the kinds of arrays, or finds a name for them. @return whether given */
-bool TakeKindOfIds(SurfacePart& common)
+bool TakeKindOfIds(std::vector<ArrayKind>& kinds, std::string& name)
 {
-  std::vector<ArrayKind>& kinds = common.Kinds;
   const auto ids = std::find_if(kinds.begin(), kinds.end(), [](const ArrayKind& kind) {
     return kind.Attribute == vtkDataSetAttributes::GLOBALIDS && kind.Components == 1 &&
       kind.Type != VTK_FLOAT && kind.Type != VTK_DOUBLE && kind.Type != VTK_STRING &&
@@ -81,11 +81,10 @@ bool TakeKindOfIds(SurfacePart& common)
   });
   if (ids != kinds.end())
   {
-    common.NameOfIds = ids->Name;
+    name = ids->Name;
     kinds.erase(ids);
     return true;
   }
-  std::string& name = common.NameOfIds;
   name = NameOfIds;
   const auto isTaken = [&name](const ArrayKind& kind) { return kind.Name == name; };
   while (std::any_of(kinds.begin(), kinds.end(), isTaken))
@@ -127,14 +126,6 @@ void PointSource::TakeKinds(vtkPointSet* points)
   CheckPointArrays(points);
   std::set<std::string> leftOut;
   std::vector<ArrayKind> kinds = CommonArrays(Ranks(), points->GetPointData(), leftOut);
-  const auto isOfIds = [](const ArrayKind& kind) {
-    return kind.Attribute == vtkDataSetAttributes::GLOBALIDS || kind.Name == NameOfIds;
-  };
-  if (std::any_of(kinds.begin(), kinds.end(), isOfIds))
-  {
-    throw Error(std::string("The points have global ids, but are numbered in the order in which "
-                            "they come: take the array away."));
-  }
   if (!leftOut.empty())
   {
     throw Error("Point array \"" + *leftOut.begin() + "\" cannot be written to a file.");
@@ -167,15 +158,18 @@ void PointSource::Add(vtkPointSet* points, const Progress& progress)
     return;
   }
   this->TakeKinds(points);
-  PointRows rows(this->Kinds);
-  rows.Read(points, this->CountOfOwn, Part(progress, 0.0, 0.5));
-  const vtkIdType count = static_cast<vtkIdType>(rows.Count());
+  std::vector<ArrayKind> kinds = this->Kinds;
+  std::string nameOfIds;
+  this->AreGiven = TakeKindOfIds(kinds, nameOfIds);
+  this->Rows = PointRows(kinds);
+  this->Read(points, nameOfIds, this->CountOfOwn, Part(progress, 0.0, 0.5));
+  const vtkIdType count = static_cast<vtkIdType>(this->Kept.size());
   for (vtkIdType first = 0; first < count; first += PointsInStretch)
   {
     Report(progress, 0.5 + 0.5 * static_cast<double>(first) / static_cast<double>(count));
-    std::vector<vtkIdType> places(std::min(PointsInStretch, count - first));
-    std::iota(places.begin(), places.end(), first);
-    const Bytes packed = rows.Pack(places);
+    const std::vector<vtkIdType> places(
+      this->Kept.begin() + first, this->Kept.begin() + std::min(first + PointsInStretch, count));
+    const Bytes packed = this->Rows.Pack(places);
     if (this->InLastStretch + static_cast<vtkIdType>(places.size()) > PointsInStretch ||
       this->Stretches.empty())
     {
@@ -185,19 +179,22 @@ void PointSource::Add(vtkPointSet* points, const Progress& progress)
     }
     this->Stretches.back().Append(packed.data(), packed.size());
     this->InLastStretch += static_cast<vtkIdType>(places.size());
-    this->SampleStretch(rows, first, first + static_cast<vtkIdType>(places.size()));
+    this->SampleStretch(places);
   }
-  this->CountOfOwn += count;
+  this->CountOfOwn += static_cast<vtkIdType>(this->Rows.Count());
+  this->Rows = PointRows();
+  this->Kept.clear();
 }
 
 /** A hash of its place tells whether a point is in the sample; of one too large each other goes. */
-void PointSource::SampleStretch(const PointRows& rows, vtkIdType first, vtkIdType last)
+void PointSource::SampleStretch(const std::vector<vtkIdType>& places)
 {
-  for (vtkIdType i = first; i < last; ++i)
+  for (const vtkIdType at : places)
   {
-    if (((HashOf(rows.Ids[i]) >> 20) & this->SampleMask) == 0 && rows.IsFinite(i))
+    const vtkIdType place = this->CountOfOwn + at;
+    if (((HashOf(place) >> 20) & this->SampleMask) == 0 && this->Rows.IsFinite(at))
     {
-      this->Sample.push_back({ rows.Ids[i], { rows.At(i)[0], rows.At(i)[1] } });
+      this->Sample.push_back({ place, { this->Rows.At(at)[0], this->Rows.At(at)[1] } });
     }
   }
   while (this->Sample.size() > MostSampled)
@@ -240,11 +237,13 @@ void PointSource::NumberPoints(const Progress& progress, SurfacePart& common)
   });
   vtkPointData* const arrays = this->Input ? this->Input->GetPointData() : this->Arrays.Get();
   common.Kinds = CommonArrays(this->All, this->CountOfOwn > 0 ? arrays : nullptr, common.LeftOut);
-  if (this->IsInFile() && !common.LeftOut.empty())
+  const bool areGiven = TakeKindOfIds(common.Kinds, common.NameOfIds);
+  const bool areOthers = this->CountOfOwn > 0 && this->AreGiven != areGiven;
+  if (this->IsInFile() && (!common.LeftOut.empty() || IsOnAny(this->All, areOthers)))
   {
     throw DifferentArrays(); // on all ranks
   }
-  const bool areIdsGiven = TakeKindOfIds(common);
+  this->AreGiven = areGiven;
   const std::vector<vtkIdType> counts =
     this->All.Collect(std::vector<vtkIdType>{ this->CountOfOwn });
   common.TypeOfPoints =
@@ -254,18 +253,18 @@ void PointSource::NumberPoints(const Progress& progress, SurfacePart& common)
   this->All.Agree([&]() {
     if (this->Input)
     {
-      this->ReadInput(areIdsGiven, this->First, this->All.Watched(progress), common);
+      this->Read(this->Input, common.NameOfIds, this->First, this->All.Watched(progress));
     }
   });
 }
 
-/** Rows of points that come at once: with the ids given, if any, and without those of other ranks. */
-void PointSource::ReadInput(
-  bool areIdsGiven, vtkIdType first, const Progress& progress, SurfacePart& common)
+/** Rows of points: with the ids given, if any, and without those of other ranks. */
+void PointSource::Read(
+  vtkPointSet* points, const std::string& nameOfIds, vtkIdType first, const Progress& progress)
 {
-  this->Rows.Read(this->Input, first, progress);
-  vtkPointData* const data = this->Input->GetPointData();
-  vtkDataArray* const ids = areIdsGiven ? data->GetArray(common.NameOfIds.c_str()) : nullptr;
+  this->Rows.Read(points, first, progress);
+  vtkPointData* const data = points->GetPointData();
+  vtkDataArray* const ids = this->AreGiven ? data->GetArray(nameOfIds.c_str()) : nullptr;
   auto* const plainIds = vtkIdTypeArray::FastDownCast(ids);
   auto* const ghosts =
     vtkUnsignedCharArray::SafeDownCast(data->GetArray(vtkDataSetAttributes::GhostArrayName()));
@@ -353,7 +352,8 @@ void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Pr
   std::vector<vtkIdType>& counts)
 {
   // First the parts alone, so that the places of each take no more memory than they need.
-  const int firstOwn = engine.FirstOwn(), ownCount = engine.EndOwn() - firstOwn;
+  const int firstOwn = engine.FirstOwn();
+  const std::uint64_t ownCount = static_cast<std::uint64_t>(engine.EndOwn() - firstOwn);
   std::vector<int> partOf(this->Kept.size());
   std::vector<std::size_t> sizes(counts.size(), 0);
   for (std::size_t i = 0; i < this->Kept.size(); ++i)
@@ -363,7 +363,7 @@ void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Pr
     const double* const p = this->Rows.At(at);
     partOf[i] = this->Rows.IsFinite(at)
       ? plane.OwnerOf({ p[0], p[1] })
-      : firstOwn + static_cast<int>(this->Rows.Ids[at] % ownCount);
+      : firstOwn + static_cast<int>(static_cast<std::uint64_t>(this->Rows.Ids[at]) % ownCount);
     ++sizes[partOf[i]];
   }
   std::vector<std::vector<vtkIdType>> places(counts.size());
@@ -399,6 +399,7 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
   this->NumberPoints(Part(progress, 0.0, 0.4), common);
   Cuts plane = this->CutPlane(engine.CountOfParts());
   counts.assign(engine.CountOfParts(), 0);
+  double done = 0.0; // points
   auto next = this->Stretches.begin();
   const Progress sending = Part(progress, 0.4, 1.0);
   bool isMore = true;
@@ -413,14 +414,14 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
         this->Rows = PointRows(common.Kinds);
         this->Rows.Unpack((next++)->Take());
         const double all = static_cast<double>(this->CountOfOwn);
-        begin = static_cast<double>(this->Rows.Ids[0]) / all;
-        end = begin + static_cast<double>(this->Rows.Count()) / all;
+        begin = done / all;
+        end = (done += static_cast<double>(this->Rows.Count())) / all;
         this->Kept.resize(this->Rows.Count());
         std::iota(this->Kept.begin(), this->Kept.end(), vtkIdType(0));
-        // In files, ids are places among the points of this rank.
+        // In files, ids that are not given are places among the points of this rank.
         for (vtkIdType& id : this->Rows.Ids)
         {
-          id += this->First;
+          id += this->AreGiven ? 0 : this->First;
         }
       }
       this->SendSlice(plane, engine, box, Part(ofSlice, begin, end), counts);

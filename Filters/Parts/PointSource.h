@@ -55,6 +55,8 @@ public:
    */
   void Add(vtkPointSet* points, const Progress& progress);
 
+  /** Whether the points bring global ids, known after Distribute(); or these are places. */
+  bool AreIdsGiven() const { return this->AreGiven; }
   vtkIdType Count() const { return this->CountOfOwn; } ///< of this rank, marked ones included
 
   /**
@@ -76,10 +78,11 @@ private:
 
   bool IsInFile() const { return !this->Folder.empty(); }
   void TakeKinds(vtkPointSet* points);
-  void SampleStretch(const PointRows& rows, vtkIdType first, vtkIdType last);
+  void SampleStretch(const std::vector<vtkIdType>& places);
   void KeepSample();
   void NumberPoints(const Progress& progress, SurfacePart& common);
-  void ReadInput(bool areIdsGiven, vtkIdType first, const Progress& progress, SurfacePart& common);
+  void Read(
+    vtkPointSet* points, const std::string& nameOfIds, vtkIdType first, const Progress& progress);
   std::vector<double> SampleAtOnce(vtkIdType parts) const;
   Cuts CutPlane(int parts);
   void SendSlice(const Cuts& plane, Engine& engine, int box, const Progress& progress,
@@ -88,6 +91,7 @@ private:
   const Ranks& All;
   vtkIdType CountOfOwn = 0, First = 0; // the number of the first
   int TypeOfPoints = VTK_FLOAT;        // where all are float
+  bool AreGiven = false;               // their global ids
   // Points that come at once:
   vtkPointSet* Input = nullptr; // nullptr: no points
   // Those that come in slices:
@@ -98,7 +102,7 @@ private:
   std::vector<ArrayKind> Kinds;
   std::vector<SampledPoint> Sample;
   std::uint64_t SampleMask = 0;
-  // What is sent next:
+  // What is written or sent next:
   PointRows Rows;
   std::vector<vtkIdType> Kept; // places of those that count
 };

@@ -82,18 +82,22 @@ bool IsInPieces(
 }
 } // namespace
 
-Ranks::Ranks(vtkMultiProcessController* controller)
+std::chrono::milliseconds Ranks::Patience = std::chrono::minutes(1);
+
+Ranks::Ranks(
+  vtkMultiProcessController* controller, const std::function<void(const Message&)>& waiting)
+  : Waiting(waiting)
 {
   if (controller && controller->GetNumberOfProcesses() > 1)
   {
     this->Controller = controller;
-    this->Notes = std::make_unique<FailureNotes>(controller);
+    this->Notes = std::make_unique<RankNotes>(controller);
   }
 }
 
-Ranks::Ranks(
-  vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs)
-  : Ranks(IsInPieces(controller, request, outputs) ? controller : nullptr)
+Ranks::Ranks(vtkMultiProcessController* controller, vtkInformation* request,
+  vtkInformationVector* outputs, const std::function<void(const Message&)>& waiting)
+  : Ranks(IsInPieces(controller, request, outputs) ? controller : nullptr, waiting)
 {
 }
 
@@ -107,10 +111,28 @@ int Ranks::Count() const
   return this->Controller ? this->Controller->GetNumberOfProcesses() : 1;
 }
 
+void Ranks::WaitForAll() const
+{
+  if (!this->Notes)
+  {
+    return;
+  }
+  this->Notes->Meet(Patience, [this](const std::vector<int>& missing) {
+    std::string names;
+    for (const int rank : missing)
+    {
+      names += (names.empty() ? "" : ", ") + std::to_string(rank);
+    }
+    this->Waiting(
+      MakeMessage<sentences::RankWaits>(this->Own(), missing.size() > 1 ? "ranks" : "rank", names));
+  });
+}
+
 void Ranks::Sum(std::vector<vtkIdType>& values) const
 {
   if (this->Controller && !values.empty())
   {
+    this->WaitForAll();
     const std::vector<vtkIdType> own = values;
     this->Controller->AllReduce(
       own.data(), values.data(), static_cast<vtkIdType>(own.size()), vtkCommunicator::SUM_OP);
@@ -121,6 +143,7 @@ void Ranks::Maximum(std::vector<double>& values) const
 {
   if (this->Controller && !values.empty())
   {
+    this->WaitForAll();
     const std::vector<double> own = values;
     this->Controller->AllReduce(
       own.data(), values.data(), static_cast<vtkIdType>(own.size()), vtkCommunicator::MAX_OP);
@@ -129,6 +152,7 @@ void Ranks::Maximum(std::vector<double>& values) const
 
 Bytes Ranks::CollectBytes(const Bytes& bytes) const
 {
+  this->WaitForAll();
   const vtkIdType length = static_cast<vtkIdType>(bytes.size());
   std::vector<vtkIdType> lengths(this->Count());
   this->Controller->AllGather(&length, lengths.data(), 1);
@@ -170,16 +194,13 @@ void Ranks::Agree(const std::function<void()>& step) const
   {
     failures.clear();
   }
-  if (this->Notes && !failures.empty())
-  {
-    this->Notes->Send();
-  }
   const int own = static_cast<int>(failures.size());
-  failures = this->Collect(failures);
-  if (this->Notes)
+  if (own > 0)
   {
-    this->Notes->Take(static_cast<int>(failures.size()) - own);
+    this->Notes->SendFailure();
   }
+  failures = this->Collect(failures);
+  this->Notes->TakeFailures(static_cast<int>(failures.size()) - own);
   if (std::any_of(failures.begin(), failures.end(), [](const Message& m) { return m.IsEmpty(); }))
   {
     throw Aborted();
@@ -197,7 +218,7 @@ Progress Ranks::Watched(const Progress& progress) const
     return progress;
   }
   return [this, progress](double fraction) {
-    this->IsStopped = this->IsStopped || this->Notes->HasCome();
+    this->IsStopped = this->IsStopped || this->Notes->HasFailureCome();
     return !this->IsStopped && (!progress || progress(fraction));
   };
 }
@@ -238,6 +259,7 @@ std::vector<std::vector<Bytes>> Ranks::ExchangeLists(std::vector<std::vector<Byt
   std::vector<std::vector<Bytes>> fromEach(toEach.size());
   std::swap(fromEach[this->Own()], toEach[this->Own()]);
   std::vector<std::vector<std::size_t>> sizes(toEach.size());
+  this->WaitForAll();
   this->Meet([&](int other) {
     std::vector<std::size_t> own;
     for (const Bytes& bytes : toEach[other])

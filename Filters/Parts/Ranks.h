@@ -8,13 +8,14 @@
 #define Ranks_h
 
 #include "Bytes.h"
-#include "FailureNotes.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Messages/Messages.h"
+#include "RankNotes.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <chrono>
 #include <cstddef>
 #include <exception>
 #include <functional>
@@ -42,14 +43,18 @@ class Ranks
 public:
   /** One alone. */
   Ranks() = default;
-  /** All processes of a controller, whatever is asked for; nullptr: one alone. */
-  explicit Ranks(vtkMultiProcessController* controller);
   /**
-   * @param[in] controller  may be nullptr
-   * @throws Error if more pieces are asked for than there are ranks
+   * All processes of a controller, whatever is asked for.
+   * @param[in] controller  nullptr: one alone
+   * @param[in] waiting  gets one message for each time that this rank waits longer than Patience
    */
-  Ranks(
-    vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs);
+  Ranks(vtkMultiProcessController* controller, const std::function<void(const Message&)>& waiting);
+  /** The same, alone where the output is not asked for in pieces. @throws Error if these are too many */
+  Ranks(vtkMultiProcessController* controller, vtkInformation* request,
+    vtkInformationVector* outputs, const std::function<void(const Message&)>& waiting);
+
+  /** A minute, but in tests. */
+  static std::chrono::milliseconds Patience;
 
   int Own() const;
   int Count() const;
@@ -124,11 +129,14 @@ public:
   vtkSmartPointer<vtkPolyData> Gather(vtkPolyData* local) const;
 
 private:
+  /** Where ranks wait: no rank goes on before all have come. */
+  void WaitForAll() const;
   void Meet(const std::function<void(int other)>& withOther) const;
   Bytes CollectBytes(const Bytes& bytes) const;
 
   vtkMultiProcessController* Controller = nullptr; // nullptr: one rank
-  std::unique_ptr<FailureNotes> Notes;
+  std::function<void(const Message&)> Waiting;
+  std::unique_ptr<RankNotes> Notes;
   mutable bool IsStopped = false; // this step, as another rank has failed
   mutable Traffic Sent;
 };

@@ -17,11 +17,12 @@ ReconstructParts::ReconstructParts() = default;
 
 ReconstructParts::~ReconstructParts() = default;
 
-void ReconstructParts::Open(vtkMultiProcessController* controller)
+void ReconstructParts::Open(
+  vtkMultiProcessController* controller, const std::function<void(const Message&)>& waiting)
 {
   if (!this->IsOpen())
   {
-    this->Everybody = std::make_unique<Ranks>(controller);
+    this->Everybody = std::make_unique<Ranks>(controller, waiting);
   }
 }
 
@@ -178,9 +179,9 @@ void ReconstructParts::Check() const
   {
     throw MakeError<sentences::InwardNormalNotInPieces>();
   }
-  if (this->Set.FillHoles && this->Set.OpenLongTriangles)
+  if (this->Set.FillHoles)
   {
-    throw MakeError<sentences::EdgeLengthNotInPieces>();
+    CheckMaximumEdgeLength(this->Set.LongestEdge);
   }
 }
 
@@ -237,8 +238,8 @@ std::vector<Message> ReconstructParts::Fill(const Progress& progress)
     const auto make = [this](int part, const Progress& ofPart) {
       return this->MakeTrimmed(part, ofPart);
     };
-    auto filled = std::make_unique<FillParts>(
-      SurfaceParts{ this->Work->Holders(), make }, this->Set.Fill, this->Set.InterpolatePointData);
+    auto filled = std::make_unique<FillParts>(SurfaceParts{ this->Work->Holders(), make },
+      this->Set.Fill, this->Set.InterpolatePointData, this->Set.LongestEdge);
     filled->FindHoles(0);
     filled->Fill();
     this->Filled = std::move(filled);

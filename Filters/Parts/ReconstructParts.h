@@ -62,9 +62,8 @@ public:
     bool TrimOutward = false; ///< also without a boundary
     bool FillHoles = false;
     bool InterpolatePointData = true;
-    // For points in memory alone:
-    bool DrapeConstraints = false;
-    bool OpenLongTriangles = false;
+    double LongestEdge = 0.0;      ///< of triangles that filling does not open; 0: of all
+    bool DrapeConstraints = false; ///< for points in memory alone
     // Lines of this rank, or composites of them; nullptr: none.
     vtkDataObject* Constraints = nullptr;
     vtkDataObject* Boundary = nullptr;
@@ -85,7 +84,8 @@ public:
   ~ReconstructParts();
 
   /** @param[in] controller  of the processes that work together; nullptr: this one alone */
-  void Open(vtkMultiProcessController* controller);
+  void Open(
+    vtkMultiProcessController* controller, const std::function<void(const Message&)>& waiting);
   void Close(); ///< forgets all points, and removes the files
   bool IsOpen() const { return this->Everybody != nullptr; }
   bool IsAlone() const { return this->Everybody->Count() == 1; }

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <map>
 #include <utility>
 
 namespace elevation
@@ -36,8 +37,16 @@ bool SharedHoles::Find(const Progress& progress)
   const PointView points = this->Border.View();
   this->OfAll = FillResult();
   this->OfAll.Found = FindHolesOfBorder(this->Border.Edges, points, progress);
+  this->FirstRegion = this->OfAll.Found.Count();
+  if (!this->Border.RegionEdges.empty())
+  {
+    AddRegionsOfBorder(
+      this->Border.RegionEdges, this->Border.RegionOfEdge, points, this->OfAll.Found, progress);
+  }
   this->Extents = ExtentsOf(this->OfAll.Found, points);
   this->Retries.assign(this->Extents.size(), 0);
+  this->Reach.assign(this->Extents.size(), 0.0);
+  this->HaveRoom.assign(this->Extents.size(), 1);
   Mesh places;
   for (Index i = 0; i < points.Count; ++i)
   {
@@ -71,6 +80,26 @@ void SharedHoles::FindLattice(
     ThreadsAtOnce(this->Options.NumberOfThreads), progress, sample, this->Lattice.Steps);
 }
 
+void SharedHoles::DropRegionsWithoutRoom()
+{
+  std::vector<HoleReport> reports;
+  for (std::size_t hole = 0; hole < this->HaveRoom.size(); ++hole)
+  {
+    this->NewNumbers.push_back(this->HaveRoom[hole] ? static_cast<Index>(reports.size()) : None);
+    if (this->HaveRoom[hole])
+    {
+      reports.push_back(std::move(this->OfAll.Reports[hole]));
+    }
+  }
+  this->OfAll.Reports = std::move(reports);
+  KeepRegions({ this->HaveRoom.begin(), this->HaveRoom.end() }, this->OfAll.Found);
+}
+
+Index SharedHoles::NumberOf(int part, Index region) const
+{
+  return this->NewNumbers[this->FirstRegion + this->Border.Regions.at({ part, region })];
+}
+
 void SharedHoles::NumberNewPoints()
 {
   this->FirstNewPoints.assign(1, 0);
@@ -80,14 +109,51 @@ void SharedHoles::NumberNewPoints()
   }
 }
 
-void SurroundedHoles::Surround(const Parts& parts, bool byIds, const Progress& progress)
+void SurroundedHoles::Surround(const Parts& parts, const SharedHoles& all, const Progress& progress)
 {
   std::vector<Message> warnings; // none: all have the same arrays
   this->Near = Mesh();
   this->Surrounding = elevation::Join(parts, PartKind::Mesh, Part(progress, 0.0, 0.4), warnings);
-  this->Keys = KeysOf(this->Surrounding, byIds, nullptr);
+  this->Keys = KeysOf(this->Surrounding, all.ByIds, nullptr);
   ToMesh(this->Surrounding, this->Near, Part(progress, 0.4, 0.7));
-  this->Near.ConnectTwins(0, Part(progress, 0.7, 1.0));
+  this->Near.ConnectTwins(0, Part(progress, 0.7, 0.9));
+  Mesh rest;
+  if (all.LongestEdge > 0.0 &&
+    OpenLongTriangles(this->Near, all.LongestEdge, this->Regions, rest, Part(progress, 0.9, 1.0)))
+  {
+    this->Near = std::move(rest);
+  }
+}
+
+/**
+ * Of holes from the first that is a region, by the points of the surrounding: what is inside. All of
+ * their triangles are there, so the rim begins with the same edge; other regions may be cut off.
+ */
+void SurroundedHoles::ListRegions(Index first, Holes& holes) const
+{
+  std::map<std::pair<Index, Index>, Index> regionAt;
+  const auto rimOf = [](const Holes& some, Index hole) {
+    const Index* const rim = some.Walks.Begin(some.Rim(hole));
+    return std::make_pair(rim[0], rim[1]);
+  };
+  for (Index region = 0; region < this->Regions.Count(); ++region)
+  {
+    regionAt.emplace(rimOf(this->Regions, region), region);
+  }
+  for (Index hole = first; hole < holes.Count(); ++hole)
+  {
+    const auto found = regionAt.find(rimOf(holes, hole));
+    if (found == regionAt.end())
+    {
+      throw Error("A triangle of a hole has not come from another part of the surface.");
+    }
+    this->Regions.VisitInnerEdges(found->second, [&holes](Index a, Index b) {
+      holes.InnerEnds.insert(holes.InnerEnds.end(), { a, b });
+    });
+    holes.InnerOffsets.push_back(static_cast<Index>(holes.InnerEnds.size() / 2));
+  }
+  holes.LongestEdge = this->Regions.LongestEdge;
+  holes.Gaps = this->Regions.Gaps;
 }
 
 /** The holes by the points of the surrounding. */
@@ -121,6 +187,9 @@ Holes SurroundedHoles::Listed(const SharedHoles& all) const
   {
     throw Error("A point of a hole has not come from another part of the surface.");
   }
+  const auto firstRegion =
+    std::lower_bound(this->Numbers.begin(), this->Numbers.end(), all.FirstRegion);
+  this->ListRegions(static_cast<Index>(firstRegion - this->Numbers.begin()), holes);
   return holes;
 }
 
@@ -161,7 +230,15 @@ std::vector<Index> SurroundedHoles::Fill(const SharedHoles& all, const Progress&
 {
   this->Patches = FillHoles(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all),
     this->OptionsFor(all, progress), this->KnownOf(all));
-  std::vector<Index> beyond;
+  std::vector<Index> numbers, beyond;
+  for (std::size_t i = 0; i < this->Numbers.size(); ++i)
+  {
+    if (this->Patches.HaveRoom[i])
+    {
+      numbers.push_back(this->Numbers[i]);
+    }
+  }
+  this->Numbers = std::move(numbers);
   for (std::size_t i = 0; i < this->Numbers.size(); ++i)
   {
     if (this->Patches.Reports[i].NeedsMoreSurroundings)
@@ -200,6 +277,7 @@ void SurroundedHoles::KeepCorners()
   }
   this->Keys = std::move(keys);
   this->Near = Mesh();
+  this->Regions = Holes();
 }
 
 namespace

@@ -41,10 +41,14 @@ struct SharedHoles
   FillOptions Options; ///< without what is of a part
   bool Interpolate = true;
   bool ByIds = false; ///< whether points of parts are one by their global ids, or by x,y,z
+  double LongestEdge = 0.0; ///< of triangles that are not long; 0: none is long
   BorderOfAll Border;
   FillResult OfAll; ///< the holes, by points of the border, and reports; no patches
   std::vector<HoleExtent> Extents;
-  std::vector<int> Retries; ///< for each hole: how often it needed triangles beyond its box
+  std::vector<int> Retries;        ///< for each hole: how often it needed triangles beyond its box
+  std::vector<double> Reach;       ///< how far beyond its rim it needs all triangles at least
+  std::vector<vtkIdType> HaveRoom; ///< 0 for regions without; see DropRegionsWithoutRoom()
+  Index FirstRegion = 0;           ///< its number as a hole
   LatticeSearch Lattice;
   std::vector<double> Quotas;
   std::vector<vtkIdType> FirstNewPoints; ///< of each hole, and the number of all
@@ -56,10 +60,17 @@ struct SharedHoles
   {
     return this->OfAll.Reports[hole].Status == FillStatus::Filled;
   }
-  Box BoxOf(Index hole) const { return BoxAround(this->Extents[hole], this->Retries[hole]); }
+  Box BoxOf(Index hole) const
+  {
+    return BoxAround(this->Extents[hole], this->Retries[hole], this->Reach[hole]);
+  }
   bool NeedLattice() const;
   /** @param[in] points  of all parts, each once */
   void FindLattice(const Ranks& ranks, const PointSlices& points, const Progress& progress);
+  /** When all is filled: these are no holes any more, and later ones get lower numbers. */
+  void DropRegionsWithoutRoom();
+  std::vector<Index> NewNumbers;                ///< then, of the holes before, or None
+  Index NumberOf(int part, Index region) const; ///< then, of a region of a part
   void NumberNewPoints();
 };
 
@@ -72,9 +83,9 @@ struct SurroundedHoles
   FillResult Patches;                       ///< by its points
 
   /** Joins what parts have around the holes. */
-  void Surround(const Parts& parts, bool byIds, const Progress& progress);
+  void Surround(const Parts& parts, const SharedHoles& all, const Progress& progress);
   std::vector<HoleNeed> Needs(const SharedHoles& all, const Progress& progress) const;
-  /** @return the holes that need triangles beyond their boxes */
+  /** Takes regions without room out of Numbers. @return the holes that need more than their boxes */
   std::vector<Index> Fill(const SharedHoles& all, const Progress& progress);
   /** Keeps only those points of the surrounding that patches have. */
   void KeepCorners();
@@ -86,11 +97,13 @@ struct SurroundedHoles
   explicit SurroundedHoles(std::vector<SurroundedHoles>&& groups);
 
 private:
+  void ListRegions(Index first, Holes& holes) const;
   Holes Listed(const SharedHoles& all) const;
   FillOptions OptionsFor(const SharedHoles& all, const Progress& progress) const;
   WholeSurface KnownOf(const SharedHoles& all) const;
 
-  Mesh Near; // the triangles
+  Mesh Near;     // the triangles, without long ones
+  Holes Regions; // of these
 };
 
 } // namespace elevation

@@ -3,7 +3,8 @@
 /**
  * @file
  * A surface in parts, as the steps after triangulating get it: who holds the parts, and how each is
- * made. Private to the module.
+ * made. In files that is the step before; on ranks it is the input of a filter, where one block is
+ * spread over them. Private to the module.
  */
 #ifndef SurfaceParts_h
 #define SurfaceParts_h
@@ -18,6 +19,7 @@ class vtkPolyData;
 
 namespace elevation
 {
+struct Block;
 
 struct SurfaceParts
 {
@@ -31,6 +33,17 @@ struct SurfaceParts
    */
   MakePart Make;
 };
+
+/**
+ * Works on a block that is spread over ranks, of which each rank with a place for it has one part, in
+ * memory. All ranks call it.
+ * @param[in] isFit  whether the part of this rank can be worked on; an Error is as false
+ * @param[in] work   false on all ranks, with nothing written, if the block has to be gathered after all
+ * @return false on all ranks if the block has to be gathered: parts that are not fit, or whose arrays
+ *         differ
+ */
+bool WorkOnParts(Block& block, const Ranks& ranks, const std::function<bool(vtkPolyData*)>& isFit,
+  const std::function<bool(const SurfaceParts&)>& work);
 
 } // namespace elevation
 

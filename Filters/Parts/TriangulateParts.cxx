@@ -63,7 +63,7 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
   std::vector<vtkIdType> counts;
   this->Plane = std::make_unique<Cuts>(this->Source.Distribute(
     *this->Crew, OwnPoints, this->Fraction(0.0, 0.1), this->Store->Part, counts));
-  this->Store->Number(std::move(counts), this->Fraction(0.1, 0.15));
+  this->Store->Number(std::move(counts), this->Source.AreIdsGiven(), this->Fraction(0.1, 0.15));
   this->Store->CheckCounts();
   this->Total.Points = this->Store->Part.Bases.back();
   // Lines keep to no lattice.

@@ -9,12 +9,15 @@
 
 #include "Adapt/Adapt.h"
 #include "Kernel/Constrain/Constrain.h"
+#include "Parts/PackedData.h"
 #include "Parts/Parts.h"
 #include "vtkFillElevationHoles.h"
 #include "vtkGridDelaunay2D.h"
 
 #include "vtkCellArray.h"
+#include "vtkCommand.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
@@ -25,6 +28,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 #if VTK_MODULE_ENABLE_VTK_ParallelMPI
 #include "vtkMPIController.h"
@@ -32,8 +36,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -48,6 +54,13 @@ namespace
 using namespace elevation;
 
 using Place = std::array<double, 3>;
+
+struct Observer : public vtkCommand
+{
+  static Observer* New() { return new Observer; }
+  void Execute(vtkObject*, unsigned long, void*) override { this->Call(); }
+  std::function<void()> Call;
+};
 /** The places of the corners of a triangle, the lowest first. */
 using Corners = std::array<double, 6>;
 
@@ -318,16 +331,18 @@ std::vector<Corners3> TrianglesOf(vtkPolyData* surface)
   return triangles;
 }
 
-/** What is known of holes in words, in an order that no part decides. */
+/** What is known of holes in words, in an order that no part decides; no spacing of one that is refused. */
 std::vector<std::string> InWords(const std::vector<HoleReport>& reports)
 {
   std::vector<std::string> words;
   for (const HoleReport& report : reports)
   {
+    const bool isRefused = report.Status == FillStatus::TooLarge;
     words.push_back(std::to_string(static_cast<int>(report.Status)) + " of " +
       std::to_string(report.NumberOfEdges) + " edges, " + ToText(report.Area, 15) + " " +
       ToText(report.Perimeter, 15) + " " + ToText(report.Size, 15) + " " +
-      ToText(report.Spacing, 15) + " " + std::to_string(report.NumberOfInsertedPoints) + " " +
+      ToText(isRefused ? 0.0 : report.Spacing, 15) + " " +
+      std::to_string(report.NumberOfInsertedPoints) + " " +
       std::to_string(static_cast<int>(report.Method)) + report.Reason.Words());
   }
   std::sort(words.begin(), words.end());
@@ -351,7 +366,7 @@ struct FilledSurface
 
 /** By the filters, on one rank. */
 FilledSurface FilledAtOnce(
-  const std::vector<Place>& cloud, double limit, const FillOptions& options)
+  const std::vector<Place>& cloud, double limit, double longest, const FillOptions& options)
 {
   vtkNew<vtkGridDelaunay2D> whole;
   whole->SetController(nullptr);
@@ -360,6 +375,8 @@ FilledSurface FilledAtOnce(
   vtkNew<vtkFillElevationHoles> fill;
   fill->SetController(nullptr);
   fill->SetInputConnection(whole->GetOutputPort());
+  fill->SetMaximumEdgeLength(longest);
+  fill->SetMaximumHoleSize(options.MaximumHoleSize);
   fill->SetMaximumNumberOfInsertedPoints(options.MaximumInsertedPoints);
   fill->Update();
   vtkPolyData* const made = whole->GetOutput();
@@ -367,8 +384,11 @@ FilledSurface FilledAtOnce(
   Mesh mesh;
   ToMesh(made, mesh, Progress());
   mesh.ConnectTwins(0, Progress());
+  Holes found = FindHoles(mesh, 0, Progress());
+  Mesh rest;
+  const bool isOpened = longest > 0.0 && OpenLongTriangles(mesh, longest, found, rest);
   const FillResult patches =
-    FillHoles(mesh, ViewPoints(made).View, FindHoles(mesh, 0, Progress()), options);
+    FillHoles(isOpened ? rest : mesh, ViewPoints(made).View, std::move(found), options);
   FilledSurface filled{ TrianglesOf(fill->GetOutput()), InWords(patches.Reports),
     fill->GetOutput(1)->GetNumberOfPoints(), fill->GetOutput()->GetNumberOfPoints() };
   std::sort(filled.Triangles.begin(), filled.Triangles.end());
@@ -396,7 +416,7 @@ SurfaceParts PartsOf(TriangulateParts& parts)
 }
 
 FilledSurface FilledInParts(const Ranks& ranks, int partsOfRank, const std::vector<Place>& cloud,
-  double limit, const FillOptions& options)
+  double limit, double longest, const FillOptions& options)
 {
   std::vector<vtkSmartPointer<vtkPolyData>> kept;
   TriangulateParts parts(ranks, FolderOf(ranks, partsOfRank));
@@ -405,7 +425,7 @@ FilledSurface FilledInParts(const Ranks& ranks, int partsOfRank, const std::vect
   DelaunayOptions triangulating;
   triangulating.MaximumEdgeLength = limit;
   parts.Triangulate(std::max(1, partsOfRank), nullptr, triangulating, warnings);
-  FillParts fill(PartsOf(parts), options, true);
+  FillParts fill(PartsOf(parts), options, true, longest);
   const int partOfRims = parts.CountOfParts() - 1;
   fill.FindHoles(partOfRims);
   fill.Fill();
@@ -447,6 +467,38 @@ FilledSurface FilledInParts(const Ranks& ranks, int partsOfRank, const std::vect
   return filled;
 }
 
+/** Lines that waver, whose distances differ; all between them is long. */
+std::vector<Place> SurveyLines()
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> noise(-0.3, 0.3);
+  std::vector<Place> cloud;
+  for (int line = 0; line < 10; ++line)
+  {
+    for (int i = 0; i < 120; ++i)
+    {
+      const double x = i + noise(random), y = 0.9 * line * line + 5.0 * line + noise(random);
+      cloud.push_back({ x, y, 0.01 * x * y });
+    }
+  }
+  std::shuffle(cloud.begin(), cloud.end(), random);
+  return cloud;
+}
+
+/** Triangles longer than the limit are not made; longer ones than the longest are opened, if above 0. */
+void CheckFillingOf(const Ranks& ranks, const std::vector<Place>& cloud, double limit,
+  double longest, const FillOptions& options, const std::string& name)
+{
+  const FilledSurface expected = FilledAtOnce(cloud, limit, longest, options);
+  Check(expected.Reports.size() > 0, name + ": there are holes");
+  for (const int partsOfRank : { 0, 1, 3 })
+  {
+    Check(FilledInParts(ranks, partsOfRank, cloud, limit, longest, options) == expected,
+      name + ", " + std::to_string(partsOfRank) + " parts of a rank, at most " +
+        std::to_string(options.MaximumInsertedPoints) + " new points: as at once");
+  }
+}
+
 void CheckFilling(const Ranks& ranks)
 {
   for (const bool isLattice : { false, true })
@@ -457,14 +509,14 @@ void CheckFilling(const Ranks& ranks)
     {
       FillOptions options;
       options.MaximumInsertedPoints = most;
-      const FilledSurface expected = FilledAtOnce(cloud, limit, options);
-      for (const int partsOfRank : { 0, 1, 3 })
-      {
-        Check(FilledInParts(ranks, partsOfRank, cloud, limit, options) == expected,
-          std::string(isLattice ? "lattice, " : "random, ") + std::to_string(partsOfRank) +
-            " parts of a rank, at most " + std::to_string(most) + " new points: as at once");
-      }
+      CheckFillingOf(ranks, cloud, limit, 0.0, options, isLattice ? "lattice" : "random");
     }
+    FillOptions options;
+    CheckFillingOf(ranks, cloud, 0.0, limit, options, "opened");
+    CheckFillingOf(ranks, cloud, 2.0 * limit, 0.4 * limit, options, "opened, and holes");
+    options.MaximumHoleSize = 30.0;
+    CheckFillingOf(ranks, SurveyLines(), 0.0, 3.0, options, "no line opened");
+    CheckFillingOf(ranks, SurveyLines(), 0.0, 3.0, FillOptions(), "lines");
   }
 }
 
@@ -503,7 +555,7 @@ std::string FailureAt(const Ranks& ranks, int partsOfRank, bool isFilling, const
       {
         FillOptions filling;
         filling.Monitor = failing;
-        FillParts fill(PartsOf(parts), filling, true);
+        FillParts fill(PartsOf(parts), filling, true, 0.0);
         fill.FindHoles(0);
         fill.Fill();
       }
@@ -734,7 +786,7 @@ void CheckRefusal(const Ranks& ranks)
     options.Spacing = 1e-4;
     try
     {
-      FilledInParts(ranks, partsOfRank, CloudWithLakes(false), 6.0, options);
+      FilledInParts(ranks, partsOfRank, CloudWithLakes(false), 6.0, 0.0, options);
     }
     catch (const Error& error)
     {
@@ -775,6 +827,118 @@ void CheckOrder(const Ranks& ranks)
     });
   }
 }
+
+void CheckArraysWithoutValues()
+{
+  const vtkSmartPointer<vtkPolyData> local = PointsOf(Cloud(false), 0, 10);
+  vtkNew<vtkIdTypeArray> none, some;
+  none->SetName("None");
+  some->SetName("Some");
+  some->InsertNextValue(vtkIdType(7) << 40);
+  local->GetFieldData()->AddArray(none);
+  local->GetFieldData()->AddArray(some);
+  const Bytes bytes = PackData(local);
+  const vtkSmartPointer<vtkPolyData> arrived = UnpackData(bytes.data(), bytes.size());
+  vtkFieldData* const data = arrived->GetFieldData();
+  auto* const noneToo = vtkIdTypeArray::SafeDownCast(data->GetArray("None"));
+  auto* const someToo = vtkIdTypeArray::SafeDownCast(data->GetArray("Some"));
+  Check(noneToo && noneToo->GetNumberOfTuples() == 0, "an array without values arrives");
+  Check(someToo && someToo->GetNumberOfTuples() == 1 && someToo->GetValue(0) == some->GetValue(0),
+    "and keeps no other from coming");
+}
+
+/** Word from rank to rank, so that each comes when the one before waits for it. */
+class Chain
+{
+public:
+  explicit Chain(const Ranks& ranks)
+    : All(ranks)
+    , IsLast(ranks.Own() + 1 == ranks.Count())
+  {
+  }
+  void Await() const
+  {
+    int word = 0;
+    if (this->All.Own() > 0)
+    {
+      this->All.Receive(&word, sizeof(word), this->All.Own() - 1);
+    }
+  }
+  void CallNext() const
+  {
+    const int word = 1;
+    if (!this->IsLast)
+    {
+      this->All.Send(&word, sizeof(word), this->All.Own() + 1);
+    }
+  }
+
+private:
+  const Ranks& All;
+  const bool IsLast;
+};
+
+/** "1, 2": the ranks after this one. */
+std::string RanksAfter(const Ranks& ranks)
+{
+  std::string names;
+  for (int rank = ranks.Own() + 1; rank < ranks.Count(); ++rank)
+  {
+    names += (names.empty() ? "" : ", ") + std::to_string(rank);
+  }
+  return names;
+}
+
+// No rank comes before the ones below have reported that they wait for it, however long that takes.
+void CheckWaiting(const Ranks& ranks, vtkInformationVector* outputs)
+{
+  const Chain chain(ranks);
+  const auto minute = std::exchange(Ranks::Patience, std::chrono::milliseconds(20));
+  std::vector<Message> messages;
+  const Ranks waiting(vtkMultiProcessController::GetGlobalController(), nullptr, outputs,
+    [&](const Message& message) {
+      messages.push_back(message);
+      chain.CallNext();
+    });
+  const bool isLast = ranks.Own() + 1 == ranks.Count();
+  for (int wait = 1; wait <= 2; ++wait)
+  {
+    chain.Await();
+    std::vector<vtkIdType> sum = { 1 };
+    waiting.Sum(sum);
+    Check(messages.size() == (isLast ? 0u : wait), "a rank reports once for each time it waits");
+  }
+  for (const Message& message : messages)
+  {
+    const std::vector<Message::Value>& values = message.GetValues();
+    Check(message.GetCode() == "RankWaits" && values.size() == 3 &&
+        values[0] == Message::Value("rank", std::to_string(ranks.Own())) &&
+        values[2] == Message::Value("others", RanksAfter(ranks)),
+      "the message names who waits for whom");
+  }
+
+  // A filter reports it as all its warnings, while it waits.
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(PointsOf(Cloud(false), 0, 100));
+  bool isReported = false;
+  const auto report = [&]() {
+    vtkStringArray* const rows = delaunay->GetMessages();
+    if (!isReported)
+    {
+      isReported = true;
+      Check(rows->GetNumberOfTuples() >= 4 && rows->GetValue(1) == "RankWaits",
+        "the filter's messages have it");
+      chain.CallNext();
+    }
+  };
+  vtkNew<Observer> observer;
+  observer->Call = report;
+  delaunay->AddObserver(vtkCommand::WarningEvent, observer);
+  chain.Await();
+  delaunay->UpdatePiece(ranks.Own(), ranks.Count(), 0);
+  Check(isReported || isLast, "a filter that waits reports it");
+  Ranks::Patience = minute;
+}
 } // namespace
 
 int main(int argc, char** argv)
@@ -797,7 +961,8 @@ int main(int argc, char** argv)
     vtkNew<vtkInformation> output;
     output->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), count);
     outputs->Append(output);
-    const Ranks ranks(vtkMultiProcessController::GetGlobalController(), nullptr, outputs);
+    const Ranks ranks(
+      vtkMultiProcessController::GetGlobalController(), nullptr, outputs, [](const Message&) {});
     CheckOrder(ranks);
     CheckTriangles(ranks);
     CheckGivenLattice(ranks);
@@ -806,6 +971,8 @@ int main(int argc, char** argv)
     CheckFailures(ranks);
     CheckTrimming(ranks);
     CheckFailuresOfTrimming(ranks);
+    CheckArraysWithoutValues();
+    CheckWaiting(ranks, outputs);
   }
   vtkMultiProcessController::SetGlobalController(nullptr);
 #if VTK_MODULE_ENABLE_VTK_ParallelMPI

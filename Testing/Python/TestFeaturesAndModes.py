@@ -20,7 +20,7 @@ POINTS = 500  # of a row, or about so many
 POINTS_FOR_THREADS = 12000  # so that several threads have something to do
 FEW = 60  # triangles, of which each rank might not have some
 # How what differs begins, by the remarks of the page.
-REMARKS = {1: "messages", 2: "output 0: points differ", 3: "output 0: points (", 4: "NumberOfDuplicatePoints"}
+REMARKS = {1: "messages", 2: "output 0: points differ", 3: "output 0: points ("}
 # Properties that change no result, which are there to compare, or to be quicker.
 WITHOUT_EFFECT = {("Delaunay", "SearchStrategy")}
 EFFECTIVE = set()  # (filter, property) of which a row has shown that it changes something

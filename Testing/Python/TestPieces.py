@@ -17,7 +17,7 @@ from unittest import mock
 
 import numpy
 from in_folder import InFolder, Program
-from meshes import by_places, ghosts_of, sorted_rows, sorted_triangles, triangles_of
+from meshes import GHOSTS, by_places, ghosts_of, sorted_rows, sorted_triangles, triangles_of
 from vtkelevationsurface import (
     pieces,
     reading,
@@ -32,6 +32,7 @@ from vtkelevationsurface.reading import text
 from vtkelevationsurface.reading.slicing import read_files
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 from vtkmodules.vtkIOXML import vtkXMLPartitionedDataSetReader, vtkXMLPolyDataReader
 
 TRIANGULATION_ONLY = ("--no-trim", "--no-fill")
@@ -294,6 +295,38 @@ class InPieces(WithFilter):
         self.assertEqual(sum(part.GetNumberOfPolys() for part in self.parts(source, 2)),
                          source.GetNumberOfTriangles())
 
+    def test_global_ids_that_are_given_are_those_of_pieces(self):
+        """Slices overlap: points that come twice, with the same id or marked as others', count once."""
+        points = clouds()["random"]
+        points = points[numpy.isfinite(points).all(axis=1)]
+        numbers = 2**40 + 7 * numpy.arange(len(points))
+
+        def slice_of(begin, end, new, are_marked):
+            data = make_points(points[begin:end])
+            add_array(data, "Number", numbers[begin:end])
+            data.GetPointData().SetActiveAttribute("Number", vtkDataSetAttributes.GLOBALIDS)
+            if are_marked:
+                add_array(data, GHOSTS, (numbers[begin:end] < numbers[new]).astype("u1"))
+            return data
+
+        whole = vtkGridDelaunay2D()
+        whole.SetInputData(slice_of(0, len(points), 0, False))
+        whole.Update()
+        expected = sorted_triangles(numbers[triangles_of(whole.GetOutput())])
+        for are_marked in (False, True):
+            for count in (1, 4):
+                source = self.source(())
+                for new in range(0, len(points), 700):
+                    data = slice_of(max(0, new - 100), new + 700, new, are_marked)
+                    self.assertTrue(source.AddPoints(data))
+                parts = self.parts(source, count)
+                numpy.testing.assert_array_equal(all_triangles(parts), expected)
+                own = numpy.concatenate([ids_of(part)[~ghosts_of(part)] for part in parts])
+                numpy.testing.assert_array_equal(numpy.sort(own), numbers)
+        source = self.source(points[:10])
+        errors = self.errors_of(source, lambda: source.AddPoints(slice_of(0, 10, 0, False)))
+        self.assertIn("same point arrays", errors[0])
+
     @unittest.skipUnless(os.path.isdir("/proc/self/fd"), "the system lists no open files")
     def test_no_file_stays_open(self):
         before = os.listdir("/proc/self/fd")
@@ -303,16 +336,13 @@ class InPieces(WithFilter):
 
     def test_what_cannot_be_done_is_one_error(self):
         points = clouds()["random"]
-        ids = make_points(points)
-        add_array(ids, "GlobalPointIds", numpy.arange(len(points)))
         other = make_points(points)
         add_array(other, "Depth", points[:, 2])
         cases = (
             (None, make_points(points), "Folder is not set"),
             (self.path("nowhere"), make_points(points), "No such file or directory"),
             (self.folder, None, "no data set"),
-            (self.empty_folder(), ids, "global ids"),
-            (self.folder, make_points(points), "is not an empty folder"),
+            (os.path.dirname(self.empty_folder()), make_points(points), "is not an empty folder"),
         )
         for folder, data, words in cases:
             source = vtkReconstructPieces()
@@ -788,10 +818,10 @@ class Filled(WithFilter):
         source = self.source(points)
         source.SetFillHoles(True)
         source.GetFill().FillCutOutsOn()
-        source.GetFill().SetMaximumEdgeLength(30.0)
+        source.GetFill().SetMaximumEdgeLength(-1.0)
         errors = self.errors_of(source, lambda: source.UpdatePiece(0, 3, 0))
         self.assertEqual(len(errors), 1)
-        self.assertIn("fills holes is for a surface in memory", errors[0])
+        self.assertIn("MaximumEdgeLength is -1", errors[0])
         source.GetFill().SetMaximumEdgeLength(0.0)
         self.assertEqual(self.errors_of(source, lambda: source.UpdatePiece(0, 3, 0)), [])
         source.SetFillHoles(False)

@@ -56,8 +56,8 @@ point data: strings               |                            | points + string
 point data: vectors               |                            | points + vectors             | s  s  s  s  s  s  s
 point data: normals               |                            | points + normals             | s  s  s  s  s  s  s
 point data: pedigree ids          |                            | points + pedigree ids        | s  s  s  s  s  s  s
-point data: global ids            |                            | points + global ids          | s  s  s  s  r  r  r
-copies of points, marked as ghosts|                            | points + copies              | s  s  s  s  d4 d4 d4
+point data: global ids            |                            | points + global ids          | s  s  s  s  s  s  s
+copies of points, marked as ghosts|                            | points + copies              | s  s  s  s  s  s  s
 composite: multiblock             |                            | points + multiblock          | s  s  s  s  -  -  -
 composite: collection             |                            | points + collection          | s  s  s  s  -  -  -
 composite: partitions             |                            | points + partitions          | s  s  d3 d3 -  -  -
@@ -84,7 +84,7 @@ point data: integers, strings     |                            | coast + integer
 point data: vectors               |                            | coast + vectors              | s  s  s  s  s  s  s
 point data: normals               |                            | coast + normals              | s  s  s  s  s  s  s
 point data: pedigree ids          |                            | coast + pedigree ids         | s  s  s  s  s  s  s
-point data: global ids            |                            | coast + global ids           | s  s  s  s  r  r  r
+point data: global ids            |                            | coast + global ids           | s  s  s  s  s  s  s
 composite: multiblock             |                            | coast + multiblock           | s  s  s  s  -  -  -
 triangles from elsewhere, cell data|                            | surface and coast            | s  s  s  s  -  -  -
 the same, clockwise               |                            | surface and coast + clockwise | s  s  g  g  -  -  -
@@ -99,7 +99,7 @@ interpolation: thin plate         | Interpolation=2            | coast and lakes
 interpolation: adaptive           | Interpolation=3            | coast and lakes              | s  s  s  s  s  s  s
 interpolation: cubic spline       | Interpolation=4            | coast and lakes              | s  s  s  s  s  s  s
 on the nodes of a lattice         |                            | lattice and lakes            | s  s  s  s  s  s  s
-long triangles opened             | MaximumEdgeLength=2.5      | coast and lakes              | s  s  g  g  r  r  r
+long triangles opened             | MaximumEdgeLength=2.5      | coast and lakes              | s  s  s  s  s  s  s
 largest hole                      | MaximumHoleSize=4.0        | coast and lakes              | s  s  s  s  s  s  s
 most edges of a hole              | MaximumHoleEdges=13        | coast and lakes              | s  s  s  s  s  s  s
 what the boundary cut out, open   |                            | coast and lakes              | s  s  s  s  s  s  s
@@ -115,7 +115,7 @@ point data: integers, strings     |                            | coast and lakes
 point data: vectors               |                            | coast and lakes + vectors    | s  s  s  s  s  s  s
 point data: normals               |                            | coast and lakes + normals    | s  s  s  s  s  s  s
 point data: pedigree ids          |                            | coast and lakes + pedigree ids | s  s  s  s  s  s  s
-point data: global ids            |                            | coast and lakes + global ids | s  s  s  d2 r  r  r
+point data: global ids            |                            | coast and lakes + global ids | s  s  s  d2 s  d2 d2
 composite: multiblock             |                            | coast and lakes + multiblock | s  s  s  s  -  -  -
 triangles from elsewhere, cell data|                            | surface                      | s  s  s  s  -  -  -
 the same, clockwise               |                            | surface + clockwise          | s  s  s  s  -  -  -

@@ -475,6 +475,7 @@ private:
       KeepRegions(this->HasRoom, this->Given);
     }
     this->Result.Found = std::move(this->Given);
+    this->Result.HaveRoom = std::move(this->HasRoom);
   }
 
   const Mesh& Surface;

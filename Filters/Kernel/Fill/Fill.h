@@ -116,6 +116,7 @@ struct HoleReport
 struct FillResult
 {
   Holes Found; ///< the given ones, without regions that have no room; one report each
+  std::vector<char> HaveRoom;   ///< one a given hole: 0 for regions without room
   std::vector<double> Points;   ///< x, y, z
   std::vector<Index> Triangles; ///< three point ids per triangle, counter-clockwise
   /** The new points of hole i are PointOffsets[i] to PointOffsets[i+1] - 1; likewise triangles. */

@@ -466,11 +466,8 @@ private:
   std::vector<Index> Passing; ///< segments with the current point inside
   std::string Message;        ///< of the error
 };
+} // namespace
 
-/**
- * A mesh in which half-edge 3i is border edge i, and nothing else is meaningful.
- * @param[out] ids  of its points
- */
 Mesh MeshOfBorder(const std::vector<BorderEdge>& border, const PointView& points,
   const Progress& progress, std::vector<Index>& ids)
 {
@@ -501,7 +498,6 @@ Mesh MeshOfBorder(const std::vector<BorderEdge>& border, const PointView& points
   }
   return mesh;
 }
-} // namespace
 
 Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
 {

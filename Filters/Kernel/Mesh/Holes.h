@@ -136,6 +136,13 @@ Holes FindHolesOfBorder(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress);
 
 /**
+ * A mesh in which half-edge 3i is border edge i, and nothing else is meaningful.
+ * @param[out] ids  of its points
+ */
+Mesh MeshOfBorder(const std::vector<BorderEdge>& border, const PointView& points,
+  const Progress& progress, std::vector<Index>& ids);
+
+/**
  * Whether the border proves that counter-clockwise triangles cover no place twice. If not,
  * FindHoles() names the cell.
  * @throws Aborted; std::bad_alloc

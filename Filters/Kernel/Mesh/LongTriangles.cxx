@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <queue>
 #include <utility>
@@ -25,6 +26,7 @@ class RegionFinder
 public:
   RegionFinder(const Mesh& mesh, double longest, Holes& holes)
     : Surface(mesh)
+    , Longest(longest)
     , Limit(longest)
     , Result(holes)
   {
@@ -45,6 +47,25 @@ public:
     return true;
   }
 
+  /** Of a mesh of borders (MeshOfBorder), with the regions on the right of their edges. */
+  void RunOnBorder(const std::vector<Index>& regionOf, const Progress& progress)
+  {
+    std::vector<Index>& vertices = this->Result.Walks.Vertices;
+    this->FirstRegion = this->Result.Count();
+    this->FirstWalk = this->Result.Walks.Count();
+    const Rings walks = TraceBorder(this->Surface, progress);
+    for (Index walk = 0; walk < walks.Count(); ++walk)
+    {
+      const std::size_t first = vertices.size();
+      std::transform(walks.Begin(walk), walks.End(walk), std::back_inserter(vertices),
+        [this](Index h) { return this->Surface.Origin(h); });
+      this->EndWalk(first, regionOf[Mesh::Triangle(*walks.Begin(walk))]);
+    }
+    this->NumberOfRegions = 1 + *std::max_element(regionOf.begin(), regionOf.end());
+    this->FindRims();
+    this->Result.InnerOffsets.resize(static_cast<std::size_t>(this->NumberOfRegions) + 1, 0);
+  }
+
   /** One flag a triangle: 1 if it is not long. */
   std::vector<char> Others() const
   {
@@ -58,36 +79,14 @@ private:
   /** Numbers the regions from the first triangle on, behind the other holes. @return if any */
   bool FindRegions(const Progress& progress)
   {
-    const Mesh& mesh = this->Surface;
-    const Index count = mesh.NumberOfTriangles();
-    std::vector<char> isLong(count);
-    ForEachStretch(count, Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
-      for (Index t = begin; t < end; ++t)
-      {
-        isLong[t] = !this->Limit.Admits([&](Index v) -> const Point2& { return mesh.PointOf(v); },
-          mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2));
-      }
-    });
-    if (std::find(isLong.begin(), isLong.end(), 1) == isLong.end())
+    this->FirstRegion = this->Result.Count();
+    this->Result.RegionOf = NumberRegions(this->Surface, this->Longest, progress);
+    for (Index& region : this->Result.RegionOf)
     {
-      return false;
+      this->NumberOfRegions = std::max(this->NumberOfRegions, region == None ? 0 : region + 1);
+      region = region == None ? None : this->FirstRegion + region;
     }
-    const Components parts = FindComponents(mesh, Part(progress, 0.5, 1.0), [&](Index h) {
-      return isLong[Mesh::Triangle(h)] && isLong[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
-    });
-    std::vector<Index> numbers(parts.Count(), None);
-    Index number = this->FirstRegion = this->Result.Count();
-    for (Index part = 0; part < parts.Count(); ++part)
-    {
-      numbers[part] = isLong[parts.Lowest[part]] ? number++ : None;
-    }
-    this->NumberOfRegions = number - this->FirstRegion;
-    this->Result.RegionOf.resize(count);
-    for (Index t = 0; t < count; ++t)
-    {
-      this->Result.RegionOf[t] = numbers[parts.ComponentOf(t)];
-    }
-    return true;
+    return this->NumberOfRegions > 0;
   }
 
   Index RegionAt(Index h) const
@@ -132,10 +131,16 @@ private:
         this->OnBorder[mesh.Origin(h)] = 1;
       }
       std::reverse(vertices.begin() + static_cast<std::ptrdiff_t>(first), vertices.end());
-      this->StartAtLowest(first);
-      this->Result.Walks.Offsets.push_back(static_cast<Index>(vertices.size()));
-      this->RegionOfWalk.push_back(this->RegionAt(start) - this->FirstRegion);
+      this->EndWalk(first, this->RegionAt(start) - this->FirstRegion);
     }
+  }
+
+  /** Of the last walk, which begins at a place in Vertices. @param[in] region  from FirstRegion */
+  void EndWalk(std::size_t first, Index region)
+  {
+    this->StartAtLowest(first);
+    this->Result.Walks.Offsets.push_back(static_cast<Index>(this->Result.Walks.Vertices.size()));
+    this->RegionOfWalk.push_back(region);
   }
 
   /** Whether edge ab is lower than edge cd: by origin, then, at pinched vertices, by destination. */
@@ -258,7 +263,7 @@ private:
     {
       if (this->Result.RegionOf[t] != None)
       {
-        const double height = this->LargestHeight(t);
+        const double height = LargestHeight(this->Surface, t);
         for (Index h = 3 * t; h < 3 * t + 3; ++h)
         {
           double& gap = this->Result.Gaps[this->Surface.Origin(h)];
@@ -267,22 +272,6 @@ private:
       }
     }
     this->SpreadGaps(progress);
-  }
-
-  /** Over the shortest edge of a triangle. */
-  double LargestHeight(Index t) const
-  {
-    double height = 0.0;
-    for (Index h = 3 * t; h < 3 * t + 3; ++h)
-    {
-      const Point2& a = this->Surface.PointOf(this->Surface.Origin(h));
-      const Point2& b = this->Surface.PointOf(this->Surface.Destination(h));
-      const Point2& c = this->Surface.PointOf(this->Surface.Apex(h));
-      const double length = std::hypot(b.X - a.X, b.Y - a.Y);
-      height =
-        std::max(height, (b.X - a.X) / length * (c.Y - a.Y) - (b.Y - a.Y) / length * (c.X - a.X));
-    }
-    return height;
   }
 
   /** Of a line that wavers, many points have flat triangles only: they take the gap from others. */
@@ -327,6 +316,7 @@ private:
   }
 
   const Mesh& Surface;
+  const double Longest;
   const EdgeLimit Limit;
   Holes& Result;
   Index FirstRegion = 0; ///< its number as a hole
@@ -336,6 +326,71 @@ private:
   std::vector<char> OnBorder;      ///< one a vertex: 1 on the border of a region
 };
 } // namespace
+
+std::vector<Index> NumberRegions(const Mesh& mesh, double longest, const Progress& progress)
+{
+  const EdgeLimit limit(longest);
+  const Index count = mesh.NumberOfTriangles();
+  std::vector<char> isLong(count);
+  ForEachStretch(count, Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      isLong[t] = !limit.Admits([&](Index v) -> const Point2& { return mesh.PointOf(v); },
+        mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2));
+    }
+  });
+  std::vector<Index> regionOf;
+  if (std::find(isLong.begin(), isLong.end(), 1) == isLong.end())
+  {
+    return regionOf;
+  }
+  const Components parts = FindComponents(mesh, Part(progress, 0.5, 1.0), [&](Index h) {
+    return isLong[Mesh::Triangle(h)] && isLong[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
+  });
+  std::vector<Index> numbers(parts.Count(), None);
+  Index number = 0;
+  for (Index part = 0; part < parts.Count(); ++part)
+  {
+    numbers[part] = isLong[parts.Lowest[part]] ? number++ : None;
+  }
+  regionOf.resize(count);
+  for (Index t = 0; t < count; ++t)
+  {
+    regionOf[t] = numbers[parts.ComponentOf(t)];
+  }
+  return regionOf;
+}
+
+double LargestHeight(const Mesh& mesh, Index triangle)
+{
+  double height = 0.0;
+  for (Index h = 3 * triangle; h < 3 * triangle + 3; ++h)
+  {
+    const Point2& a = mesh.PointOf(mesh.Origin(h));
+    const Point2& b = mesh.PointOf(mesh.Destination(h));
+    const Point2& c = mesh.PointOf(mesh.Apex(h));
+    const double length = std::hypot(b.X - a.X, b.Y - a.Y);
+    height =
+      std::max(height, (b.X - a.X) / length * (c.Y - a.Y) - (b.Y - a.Y) / length * (c.X - a.X));
+  }
+  return height;
+}
+
+void AddRegionsOfBorder(const std::vector<BorderEdge>& border, const std::vector<Index>& regionOf,
+  const PointView& points, Holes& holes, const Progress& progress)
+{
+  std::vector<BorderEdge> reversed;
+  for (const BorderEdge& edge : border)
+  {
+    reversed.push_back({ edge.Destination, edge.Origin });
+  }
+  std::vector<Index> ids;
+  const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(holes.Walks.Vertices.size());
+  const Mesh mesh = MeshOfBorder(reversed, points, Part(progress, 0.0, 0.3), ids);
+  RegionFinder(mesh, holes.LongestEdge, holes).RunOnBorder(regionOf, Part(progress, 0.3, 1.0));
+  std::for_each(holes.Walks.Vertices.begin() + first, holes.Walks.Vertices.end(),
+    [&ids](Index& vertex) { vertex = ids[vertex]; });
+}
 
 bool OpenLongTriangles(
   const Mesh& mesh, double longest, Holes& holes, Mesh& rest, const Progress& progress)

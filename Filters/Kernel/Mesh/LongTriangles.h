@@ -46,6 +46,23 @@ namespace elevation
 bool OpenLongTriangles(const Mesh& mesh, double longest, Holes& holes, Mesh& rest,
   const Progress& progress = Progress());
 
+/** @return for each triangle the number of its region, counted from 0, or None; empty: none is long */
+std::vector<Index> NumberRegions(
+  const Mesh& mesh, double longest, const Progress& progress = Progress());
+
+/** The largest height of a triangle, over its shortest edge. */
+double LargestHeight(const Mesh& mesh, Index triangle);
+
+/**
+ * Adds regions by their borders alone, which may be those of parts: with rims and islands, without
+ * inner edges.
+ * @param[in]     border    edges of long triangles, which are on their left
+ * @param[in]     regionOf  of each edge, counted from 0
+ * @param[in,out] holes     from FindHolesOfBorder()
+ */
+void AddRegionsOfBorder(const std::vector<BorderEdge>& border, const std::vector<Index>& regionOf,
+  const PointView& points, Holes& holes, const Progress& progress = Progress());
+
 /**
  * Takes regions back: they are holes no more, and none of their triangles is in a region. The numbers
  * of later regions become lower; Walks stay. Linear.

@@ -35,6 +35,14 @@ ELEVATION_SENTENCE(InvalidEdgeLength,
   "{property:MaximumEdgeLength} is {value}; it must be 0 (off) or a length in x,y.");
 /** @} */
 
+/** @name Of a filter on several ranks; each rank reports it for itself, while it waits @{ */
+ELEVATION_SENTENCE(RankWaits,
+  "Rank (process) {rank} has waited for a minute for {noun} {others}, which may still be at work. "
+  "If "
+  "not, an input or a property has changed on some ranks only: all have to call Modified() and to "
+  "update together.");
+/** @} */
+
 /** @name Of a filter on several ranks that brings their data together @{ */
 ELEVATION_SENTENCE(OnOneRank,
   "The surface is made on one rank (process), which needs memory for all of it. {reason}");
@@ -48,9 +56,6 @@ ELEVATION_SENTENCE(DrapingNeedsAll,
   "of their own leave it spread.");
 ELEVATION_SENTENCE(NormalsNeedAll,
   "{property:OutwardTest} InwardNormal goes along the whole boundary; Exact leaves the surface "
-  "spread.");
-ELEVATION_SENTENCE(OpeningNeedsAll,
-  "{property:MaximumEdgeLength} opens regions that may reach over any part; 0 leaves the surface "
   "spread.");
 ELEVATION_SENTENCE(PartsDoNotFit,
   "The parts of the ranks cannot be worked on one by one: they have triangles that turn clockwise, "
@@ -201,9 +206,6 @@ ELEVATION_SENTENCE(BoundaryNotInPieces,
 ELEVATION_SENTENCE(OutlineNotInPieces,
   "What is near the borders of pieces does not tell the outline, as in surveys along lines: give a "
   "{property:GapTolerance} or the boundary, or trim the surface in memory.");
-ELEVATION_SENTENCE(EdgeLengthNotInPieces,
-  "{property:MaximumEdgeLength} of the filter that fills holes is for a surface in memory, not "
-  "for pieces.");
 /** @} */
 
 #undef ELEVATION_SENTENCE

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RankNotes.h"
+
+#include "vtkMultiProcessController.h"
+#if VTK_MODULE_ENABLE_VTK_ParallelMPI
+#include "vtkMPIController.h"
+#endif
+
+#include <algorithm>
+#include <thread>
+
+namespace elevation
+{
+
+#if VTK_MODULE_ENABLE_VTK_ParallelMPI
+
+namespace
+{
+constexpr int TagOfFailure = 20201, TagOfArrival = 20202; // of no other message
+} // namespace
+
+struct RankNotes::Sent
+{
+  /** Sends the others a note. */
+  Sent(vtkMPIController* ranks, int tag)
+    : Ranks(ranks)
+    , Requests(ranks->GetNumberOfProcesses())
+  {
+    this->ForEachOther([this, tag](int rank) {
+      this->Ranks->NoBlockSend(&this->Note, 1, rank, tag, this->Requests[rank]);
+    });
+  }
+
+  /** Until all of them have it. */
+  void Wait()
+  {
+    this->ForEachOther([this](int rank) { this->Requests[rank].Wait(); });
+  }
+
+  template <typename Visit>
+  void ForEachOther(const Visit& visit) const
+  {
+    for (int rank = 0; rank < this->Ranks->GetNumberOfProcesses(); ++rank)
+    {
+      if (rank != this->Ranks->GetLocalProcessId())
+      {
+        visit(rank);
+      }
+    }
+  }
+
+  vtkMPIController* const Ranks;
+  const int Note = 1;
+  std::vector<vtkMPICommunicator::Request> Requests;
+};
+
+RankNotes::RankNotes(vtkMultiProcessController* ranks)
+  : Ranks(vtkMPIController::SafeDownCast(ranks))
+{
+}
+
+void RankNotes::SendFailure()
+{
+  if (this->Ranks)
+  {
+    this->Own = std::make_unique<Sent>(this->Ranks, TagOfFailure);
+  }
+}
+
+bool RankNotes::HasFailureCome()
+{
+  const auto now = std::chrono::steady_clock::now();
+  if (!this->Ranks || now < this->Next)
+  {
+    return false;
+  }
+  this->Next = now + std::chrono::milliseconds(50);
+  int isThere = 0, source = 0;
+  this->Ranks->Iprobe(vtkMultiProcessController::ANY_SOURCE, TagOfFailure, &isThere, &source);
+  return isThere != 0;
+}
+
+void RankNotes::TakeFailures(int failures)
+{
+  for (int i = 0; this->Ranks && i < failures; ++i)
+  {
+    int note = 0;
+    this->Ranks->Receive(&note, 1, vtkMultiProcessController::ANY_SOURCE, TagOfFailure);
+  }
+  if (this->Own)
+  {
+    this->Own->Wait();
+  }
+  this->Own.reset();
+}
+
+/*
+ * Nobody goes on before the notes of all have come, so each rank has at most one note of another that
+ * belongs to a later meeting, and takes that there.
+ */
+void RankNotes::Meet(
+  std::chrono::milliseconds patience, const std::function<void(const std::vector<int>&)>& late)
+{
+  if (!this->Ranks)
+  {
+    return;
+  }
+  Sent arrival(this->Ranks, TagOfArrival);
+  std::vector<int> missing;
+  arrival.ForEachOther([&missing](int rank) { missing.push_back(rank); });
+  const auto hasCome = [this](int rank) {
+    int isThere = 0, source = 0, note = 0;
+    this->Ranks->Iprobe(rank, TagOfArrival, &isThere, &source);
+    return isThere != 0 && this->Ranks->Receive(&note, 1, rank, TagOfArrival) != 0;
+  };
+  const auto end = std::chrono::steady_clock::now() + patience;
+  bool isLate = false;
+  while (true)
+  {
+    missing.erase(std::remove_if(missing.begin(), missing.end(), hasCome), missing.end());
+    if (missing.empty())
+    {
+      break;
+    }
+    if (!isLate && std::chrono::steady_clock::now() >= end)
+    {
+      isLate = true;
+      late(missing);
+    }
+    std::this_thread::yield();
+  }
+  arrival.Wait();
+}
+
+#else
+
+struct RankNotes::Sent
+{
+};
+
+RankNotes::RankNotes(vtkMultiProcessController*) {}
+
+void RankNotes::SendFailure() {}
+
+bool RankNotes::HasFailureCome()
+{
+  return false;
+}
+
+void RankNotes::TakeFailures(int) {}
+
+void RankNotes::Meet(std::chrono::milliseconds, const std::function<void(const std::vector<int>&)>&)
+{
+}
+
+#endif
+
+RankNotes::~RankNotes() = default;
+
+} // namespace elevation

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Notes of a rank to all others: that it has failed in a long step, so that they need not finish
+ * theirs; and that it has come to where all meet, so that they know whom they wait for. Private to
+ * the module.
+ *
+ * A note is one number, sent to every other rank without waiting for it. This needs MPI: with any
+ * other controller, or where VTK has been built without the module VTK::ParallelMPI, no note is sent;
+ * the others learn of a failure at the end of their step, and wait without a word.
+ */
+#ifndef RankNotes_h
+#define RankNotes_h
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <vector>
+
+class vtkMPIController;
+class vtkMultiProcessController;
+
+namespace elevation
+{
+
+class RankNotes
+{
+public:
+  explicit RankNotes(vtkMultiProcessController* ranks);
+  ~RankNotes();
+
+  /** Reports a failure to all other ranks. At most once before TakeFailures(). */
+  void SendFailure();
+
+  /** Whether another rank has failed. Looks every 50 ms, so that asking costs nothing. */
+  bool HasFailureCome();
+
+  /** Ends a step after which all know how many other ranks have failed: takes all notes in. */
+  void TakeFailures(int failures);
+
+  /**
+   * Waits until all ranks have called this as often.
+   * @param[in] patience  after which late() gets the ranks that have not come, once
+   */
+  void Meet(
+    std::chrono::milliseconds patience, const std::function<void(const std::vector<int>&)>& late);
+
+private:
+  struct Sent;
+  vtkMPIController* Ranks = nullptr; // nullptr: none is sent
+  std::unique_ptr<Sent> Own;         // the notes of a failure that are under way
+  std::chrono::steady_clock::time_point Next;
+};
+
+} // namespace elevation
+
+#endif

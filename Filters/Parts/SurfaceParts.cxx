@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SurfaceParts.h"
+
+#include "Adapt/Adapt.h"
+#include "FilterRun.h"
+#include "PointRows.h"
+
+#include "vtkPolyData.h"
+
+namespace elevation
+{
+
+bool WorkOnParts(Block& block, const Ranks& ranks, const std::function<bool(vtkPolyData*)>& isFit,
+  const std::function<bool(const SurfaceParts&)>& work)
+{
+  const vtkSmartPointer<vtkPolyData> input = vtkPolyData::SafeDownCast(block.Input);
+  const auto check = [&]() {
+    Report(ranks.Watched(block.Progress), 0.0);
+    CheckArrays(input);
+    return isFit(input);
+  };
+  if (!CanAll(ranks, check) || !HaveSameArrays(ranks, input))
+  {
+    return false;
+  }
+  Engine crew(ranks, block.Outputs.empty() ? 0 : 1, {}, std::string());
+  const auto make = [&input](int, const Progress&) {
+    return input->GetNumberOfPoints() > 0 ? input : nullptr;
+  };
+  return work({ crew, make });
+}
+
+} // namespace elevation
