@@ -28,8 +28,10 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from .messages import ElevationSurfaceError, counted
 from .names import option
 from .properties import DUPLICATES
+from .ranks import collected, total, widest
 from .reading.nulls import body
 from .selecting import MOST_VALUES, Words, as_option, coded, columns_in, shown_values
+from .spreading import NOT_FINITE, SAME_PLACE
 
 MANY = 0.01  # of all places
 MANY_BY_NAME = 0.001
@@ -280,6 +282,19 @@ def way_out(told):
         f"{called} tells them apart: {shown_values(column)}; {option('each_value')} {shlex.quote(name)} "
         f"makes a surface of each value, {as_option(name, value)} one of this; {policies()}"
     )
+
+
+def heights_on_ranks(ranks, result, policy):
+    """As check_heights(), of a Reconstruction whose points are triangulated: then all points at a place
+    are on one rank. It looks at no columns."""
+    heights, xyz = HeightsOfPieces(), result.coordinates
+    heights.see(xyz)
+    heights.sample = collected(ranks, numpy.concatenate(heights.sample), "f8")
+    heights.add(xyz)
+    heights.count, heights.clear = (total(ranks, one) for one in (heights.count, heights.clear))
+    heights.largest = widest(ranks, 0.0, heights.largest)[1]
+    is_vertex = ~numpy.isin(result.reasons, (SAME_PLACE, NOT_FINITE))
+    return heights.check(total(ranks, numpy.count_nonzero(is_vertex)), policy)
 
 
 class HeightsOfPieces:

@@ -67,7 +67,7 @@ def measured(ranks, surface):
     every = 1 + total(ranks, len(triangles)) // MOST_SAMPLES
     if every > 1:
         # All triangles with the same least corner: the order of triangles does not matter.
-        least = ids_of(surface)[triangles].min(axis=1).astype("u8")
+        least = ids_of(ranks, surface)[triangles].min(axis=1).astype("u8")
         triangles = triangles[(least * numpy.uint64(0x9E3779B97F4A7C15) >> numpy.uint64(32)) % every == 0]
     rows = numpy.zeros((3, 0))
     if len(triangles):

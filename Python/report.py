@@ -6,21 +6,29 @@ as a dictionary."""
 import time
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
-
-from .clouds import corner_flags
+from .clouds import coordinates_of
 from .distance import distance_to
-from .holes import hole_counts, hole_lines, holes_of
+from .holes import hole_lines, holes_of
 from .messages import counted, of_reason
 from .names import option
 from .properties import LATTICE_MODES
-from .spreading import IN_NO_TRIANGLE, OUT_OF_OUTLINE, WITHIN_ERROR
+from .ranks import all_values, extremes, total
+from .spreading import (
+    IN_NO_TRIANGLE,
+    NOT_FINITE,
+    OUT_OF_OUTLINE,
+    SAME_PLACE,
+    WITHIN_ERROR,
+    ids_of,
+    places_of,
+    used_points,
+)
 
 OUTSIDE = "outside the boundary"
-# Why a point is not used, by number: the first three are those of vtkGridDelaunay2D.
+# Why a point is not used, by number.
 REASONS = {
-    1: "same x,y as another point",
-    2: "not finite",
+    SAME_PLACE: "same x,y as another point",
+    NOT_FINITE: "not finite",
     WITHIN_ERROR: "within the elevation error",
     OUT_OF_OUTLINE: OUTSIDE,
     IN_NO_TRIANGLE: "in no triangle below the edge limit",
@@ -30,18 +38,18 @@ FOUND = "found from the points"
 
 
 def make_report(result):
-    """Everything the user may want to know of a Reconstruction, as plain numbers and words."""
-    cloud, delaunay, trim = result.cloud, result.delaunay, result.trim
-    coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData())
-    surface = result.surface
+    """Everything the user may want to know of a Reconstruction, as plain numbers and words. Where it is
+    spread over ranks, all of them make it together."""
+    cloud, delaunay, trim, ranks = result.cloud, result.delaunay, result.trim, result.ranks
+    ids = ids_of(ranks, result.points)[: len(result.reasons)]
     reasons = reasons_unused(result)
-    counts, listed = list_unused(reasons, cloud.lines)
+    counts, listed = list_unused(ranks, reasons, ids, cloud.lines)
     report = {
         "notes": cloud.notes + result.decided + result.notes,
         "left_out": cloud.left_out,
-        "bounds": bounds_of(surface),
+        "bounds": bounds_of(ranks, result.surface),
         "crs": result.crs,
-        "points": len(coordinates),
+        "points": result.number_of_points,
         "points_unused": sum(counts.values()),
         "unused_reasons": counts,
         "unused": listed,
@@ -70,7 +78,7 @@ def make_report(result):
         report["trim"] = trimming_of(result)
     if result.fill:
         report["holes"] = holes_of(result)
-    report["distance"] = distance_of(result, coordinates, reasons)
+    report["distance"] = distance_of(result, reasons, ids)
     return report
 
 
@@ -82,7 +90,7 @@ def trimming_of(result):
         "recovered_edges": trim.GetNumberOfRecoveredEdges(),
         "inserted_points": trim.GetNumberOfInsertedPoints(),
         "boundary": result.boundary_name or FOUND,
-        "boundary_rings": result.boundary.GetNumberOfLines(),
+        "boundary_rings": total(result.ranks, result.boundary.GetNumberOfLines()),
     }
     if not result.boundary_name:
         report["effective_gap_tolerance"] = trim.GetEffectiveGapTolerance()
@@ -90,47 +98,49 @@ def trimming_of(result):
     return report
 
 
-def distance_of(result, coordinates, reasons):
+def distance_of(result, reasons, ids):
     """The distance of all points that the user wants in the surface, used or not."""
+    coordinates = result.coordinates
     measured = numpy.isfinite(coordinates).all(axis=1)
     if result.boundary_name:
         measured &= reasons != OUT_OF_OUTLINE
     began = time.perf_counter()
-    distance = distance_to(result.surface, coordinates, measured, result.measuring)
+    distance = distance_to(
+        result.surface, coordinates, measured, result.measuring, result.ranks, ids
+    )
     result.times["measure"] = time.perf_counter() - began
     return distance
 
 
 def reasons_unused(result):
-    """(n,) numbers of REASONS, or 0, for the points of the cloud."""
-    corners = vtk_to_numpy(result.surface.GetPolys().GetConnectivityArray())
-    used = corner_flags(corners, result.surface.GetNumberOfPoints())[: len(result.reasons)]
+    """(n,) numbers of REASONS, or 0, for the points that Reconstruction.reasons are of."""
+    used = used_points(result.ranks, result.surface)[: len(result.reasons)]
     return numpy.where((result.reasons == 0) & ~used, OUT_OF_OUTLINE, result.reasons)
 
 
-def list_unused(reasons, lines):
-    """({reason: count}, the first MOST_LISTED unused points for each reason as dictionaries)."""
-    counts, some = {}, []
+def list_unused(ranks, reasons, ids, lines):
+    """({reason: count}, the first MOST_LISTED unused points for each reason as dictionaries).
+
+    ids  of the points of this rank
+    """
+    counts, listed = {}, []
     for number, words in REASONS.items():
-        ids = numpy.flatnonzero(reasons == number)
-        if len(ids):
-            counts[words] = len(ids)
-            some.append(ids[:MOST_LISTED])
-    listed = []
-    for point in numpy.sort(numpy.concatenate(some)).tolist() if some else []:
-        listed.append({"point": point, "reason": REASONS[int(reasons[point])]})
-        if lines is not None:
-            listed[-1]["line"] = int(lines[point])
+        unused = ids[reasons == number]
+        count = total(ranks, len(unused))
+        if count:
+            counts[words] = count
+            unused = numpy.sort(all_values(ranks, numpy.sort(unused)[:MOST_LISTED]))[:MOST_LISTED]
+            listed += [(point, words) for point in places_of(ranks, unused, ids).tolist()]
+    listed = [{"point": point, "reason": words} for point, words in sorted(listed)]
+    for one in listed if lines is not None else ():
+        one["line"] = int(lines[one["point"]])
     return counts, listed
 
 
-def bounds_of(surface):
+def bounds_of(ranks, surface):
     """{"x": [lowest, highest], ...} of the points in triangles."""
-    points = vtk_to_numpy(surface.GetPoints().GetData())
-    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
-    used = corner_flags(corners, len(points))
-    columns = {axis: points[used, i] for i, axis in enumerate("xyz")}
-    return {axis: [float(c.min()), float(c.max())] for axis, c in columns.items()}
+    points = coordinates_of(surface)[used_points(ranks, surface)]
+    return {axis: list(extremes(ranks, points[:, i])) for i, axis in enumerate("xyz")}
 
 
 def crs_name(crs):
@@ -270,10 +280,10 @@ def distance_lines(report, line):
 def main_counts(result):
     """What one wants to know first: how many points, triangles and holes, as a list of words."""
     parts = [
-        counted(result.cloud.points.GetNumberOfPoints(), "point"),
-        counted(result.surface.GetNumberOfPolys(), "triangle"),
+        counted(result.number_of_points, "point"),
+        counted(list(result.triangles.values())[-1], "triangle"),
     ]
-    found, filled = hole_counts(result) if result.fill else (0, 0)
+    found, filled = result.hole_counts
     if filled < found:
         parts.append(f"{filled:,} of {found:,} holes filled")
     elif found:

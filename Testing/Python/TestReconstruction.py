@@ -20,7 +20,7 @@ from vtkelevationsurface import (
     read,
     reconstruct,
 )
-from vtkelevationsurface.gathering import BASE, ROW, make_grid
+from vtkelevationsurface.inputs import nodes_of
 from vtkelevationsurface.picture.signs import add_scalar_bar
 from vtkelevationsurface.properties import PROPERTIES
 from vtkelevationsurface.reconstruction import as_lines
@@ -38,13 +38,16 @@ RING = numpy.array([(0.5, 0.5), (9.5, 0.5), (9.5, 9.5), (0.5, 9.5)])
 class Parts(unittest.TestCase):
     """What larger tests see only in a picture, on several ranks, or in a message."""
 
-    def test_a_grid_of_ranks_has_the_extent_of_its_nodes(self):
-        own, whole = vtkImageData(), vtkImageData()
-        own.SetDimensions(2, 2, 1)
-        rows, columns = numpy.meshgrid(numpy.arange(-3, 2), numpy.arange(5, 9), indexing="ij")
-        numbers = ROW * (BASE + rows.ravel()) + BASE + columns.ravel()
-        make_grid(whole, own, numbers, numpy.empty((0, 3)))
-        self.assertEqual(whole.GetExtent(), (5, 8, -3, 1, 0, 0))
+    def test_nodes_have_numbers_by_row_and_column_of_the_whole_grid(self):
+        grid = vtkImageData()
+        grid.SetExtent(5, 8, -3, 1, 0, 0)
+        numbers = nodes_of(grid, [])
+        self.assertTrue((numpy.diff(numbers.ravel()) > 0).all())
+        there = nodes_of(grid, [[7, 20, -9, -2, 0, 0]])
+        numpy.testing.assert_array_equal(there[:2, 2:], -1)
+        self.assertEqual(numpy.count_nonzero(there < 0), 4)
+        grid.SetExtent(7, 20, -9, -2, 0, 0)
+        numpy.testing.assert_array_equal(nodes_of(grid, [])[-2:, :2], numbers[:2, 2:])
 
     def test_arrays_keep_their_names_in_xml(self):
         data = vtkPolyData()
