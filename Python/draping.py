@@ -135,6 +135,7 @@ class Surface:
             edges = [edge for line in lines for edge in edges_with_reach(line)]
             beside = [between(p, q, self.vertices, reach) for p, q, _, reach in edges]
             found = all_values(ranks, numpy.concatenate([ends, *beside]).ravel(), "f8").reshape(-1, 3)
+            found = numpy.unique(found, axis=0)
             self.vertices = found[numpy.argsort(found[:, 1], kind="stable")]
             ends = self.vertices[self.are_ends(lines)]
         self.at = dict(zip(places_of(ends).tolist(), ends))

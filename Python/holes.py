@@ -18,9 +18,10 @@ STATUS = {
 
 def holes_of(result):
     """The part of the report on holes."""
-    return report_of_holes(
+    report = report_of_holes(
         result.holes, result.bridged, result.fill, result.why_opened, result.ranks
     )
+    return {**report, "open_edge_length": result.open_edge_length}
 
 
 def report_of_holes(outlines, bridged, fill, why_opened=None, ranks=None):

@@ -40,7 +40,6 @@ from .reading.upwards import notes_on_up
 from .reading.vtk_files import points_of_grid
 
 SAMPLE = 3000  # rows of a table that tell its columns
-ROW, BASE = 1 << 31, 1 << 30  # the number of a node is BASE + column + ROW * (BASE + row)
 
 
 def cloud_of(parts, array="", options=None, ranks=None):
@@ -149,20 +148,21 @@ def clouds_of_grids(grids, array, ranks):
             copy.ShallowCopy(grid)
             grid = copy
             grid.GetPointData().SetActiveScalars(array)
-        clouds.append(points_of_grid("input", grid, nodes_of(grid, extents[:i]) if ranks else None))
+        clouds.append(points_of_grid("input", grid, nodes_of(extents, i) if ranks else None))
         clouds[-1].crs = crs_of(grid)
     if ranks and not total(ranks, sum(cloud.points.GetNumberOfPoints() for cloud in clouds)):
         raise ElevationSurfaceError("input: all pixels are without data")
     return clouds
 
 
-def nodes_of(grid, others):
-    """(rows, columns) numbers of the nodes, by their places in the whole grid; -1 for those within the
-    extents of others."""
-    west, east, south, north = grid.GetExtent()[:4]
+def nodes_of(extents, number):
+    """(rows, columns) numbers of the nodes of a piece of a grid, by their places in the whole; -1 for those
+    that pieces before it have. extents: of all pieces"""
+    low, high = numpy.min(extents, axis=0), numpy.max(extents, axis=0)
+    west, east, south, north = extents[number][:4]
     rows, columns = numpy.arange(south, north + 1)[:, None], numpy.arange(west, east + 1)
-    nodes = ROW * (BASE + rows) + BASE + columns
-    for west, east, south, north, *_ in others:
+    nodes = (rows - low[2]) * (high[1] - low[0] + 1) + columns - low[0]
+    for west, east, south, north, *_ in extents[:number]:
         is_there = (rows >= south) & (rows <= north) & (columns >= west) & (columns <= east)
         nodes[is_there] = -1
     return nodes

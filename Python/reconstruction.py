@@ -26,7 +26,7 @@ from .heights import check_heights, heights_on_ranks
 from .holes import are_bridged, hole_counts
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .names import argument
-from .opening import length_to_open
+from .opening import length_to_open, longest_edge
 from .paths import check_suffix
 from .properties import COLOURS, PROPERTIES, checked
 from .ranks import extremes, total
@@ -158,7 +158,7 @@ class Reconstruction:
         self.progress = None  # what run_chain() was given
         self.boundary_name = None  # where a given boundary is from
         self.faults_name = None
-        self.why_opened = None
+        self.open_edge_length, self.why_opened = 0.0, None  # above which triangles are opened
         self.several = None
 
     @property
@@ -301,10 +301,12 @@ def run_chain(
         if boundary is None:
             filling.FillCutOutsOn()  # an outline of few points is no boundary that is given
         if "open_edge_length" in given:
-            result.why_opened = AS_GIVEN
+            result.open_edge_length, result.why_opened = given["open_edge_length"], AS_GIVEN
         elif not given.get("maximum_elevation_error"):  # else long edges are no voids
             length, result.why_opened = length_to_open(ranks, last.GetOutput(), result)
-            filling.SetMaximumEdgeLength(length)
+            if not ranks or longest_edge(ranks, last.GetOutput()) > length:  # else it stays spread
+                filling.SetMaximumEdgeLength(length)
+            result.open_edge_length = length
         result.fill = last = run("fill", filling)
         result.triangles["filled"] = total(ranks, last.GetOutput().GetNumberOfPolys())
         result.holes = filling.GetOutput(1)

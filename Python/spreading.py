@@ -149,15 +149,16 @@ def scatter(ranks, points):
     own, count = ranks.GetLocalProcessId(), ranks.GetNumberOfProcesses()
     for rank in range(count):
         part = agreed(ranks, lambda: None if own else packed(slice_of(points, rank, count)))
-        if rank > 0 == own:
+        if rank == own == 0:
+            mine = unpacked(part)
+            mine.GetFieldData().ShallowCopy(points.GetFieldData())
+        elif own == 0:
             ranks.Send(part, rank, TAG)
         elif rank == own:
-            mine = part or vtkPolyData()
-    if own:
-        ranks.Receive(mine, 0, TAG)
-    else:
-        mine.GetFieldData().ShallowCopy(points.GetFieldData())
-    return unpacked(mine)
+            mine = vtkPolyData()
+            ranks.Receive(mine, 0, TAG)
+            unpacked(mine)
+    return mine
 
 
 def slice_of(points, rank, ranks):
@@ -198,7 +199,12 @@ def gather_surface(ranks, result):
             unpacked(parts[-1])
         else:
             parts[-1].ShallowCopy(part)
-    result.surface = joined_by_ids(ranks, parts)
+    ids = parts[0].GetPointData().GetGlobalIds()  # none where a filter has made the whole on one rank
+    result.surface = joined_by_ids(ranks, parts) if len(parts) > 1 else parts[0]
+    for name in (ids.GetName() if ids else "", GHOSTS):
+        result.surface.GetPointData().RemoveArray(name)
+    for name in OF_A_RANK:
+        result.surface.GetFieldData().RemoveArray(name)
     set_counts(result.surface, (result.delaunay, result.trim, result.fill))
 
 
@@ -206,10 +212,10 @@ def joined_by_ids(ranks, parts):
     """Parts of a surface as one, with the points in the order of their ids."""
     append, unused = vtkAppendPolyData(), [numpy.zeros((2, 0), dtype="i8")]
     ids = numpy.concatenate([ids_of(ranks, part) for part in parts])
-    name = parts[0].GetPointData().GetGlobalIds().GetName()
     for part in parts:
         rows, why = (part.GetFieldData().GetArray(f"UnusedPoint{what}") for what in ("Ids", "Reasons"))
-        unused.append([ids_of(ranks, part)[vtk_to_numpy(rows)], vtk_to_numpy(why)])
+        if rows:  # empty ones are lost on the way
+            unused.append([ids_of(ranks, part)[vtk_to_numpy(rows)], vtk_to_numpy(why)])
         part.GetPointData().SetActiveAttribute(-1, vtkDataSetAttributes.GLOBALIDS)
         append.AddInputData(part)
     append.Update()
@@ -225,10 +231,6 @@ def joined_by_ids(ranks, parts):
     unused, why = numpy.concatenate(unused, axis=1)
     order = numpy.argsort(unused, kind="stable")
     set_unused(surface, numpy.searchsorted(ids[rows], unused[order]), why[order])
-    for array in (name, GHOSTS):
-        surface.GetPointData().RemoveArray(array)
-    for name in OF_A_RANK:
-        surface.GetFieldData().RemoveArray(name)
     return surface
 
 
