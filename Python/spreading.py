@@ -200,7 +200,7 @@ def gather_surface(ranks, result):
         else:
             parts[-1].ShallowCopy(part)
     ids = parts[0].GetPointData().GetGlobalIds()  # none where a filter has made the whole on one rank
-    result.surface = joined_by_ids(ranks, parts) if len(parts) > 1 else parts[0]
+    result.surface = joined_by_ids(ranks, parts)
     for name in (ids.GetName() if ids else "", GHOSTS):
         result.surface.GetPointData().RemoveArray(name)
     for name in OF_A_RANK:
