@@ -256,7 +256,8 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         return self.tell(accounts, any(has_failed_reader(part.data) for part in parts), outputs)
 
     def reconstruct_surfaces(self, surfaces, lines, results):
-        """Adds the Reconstruction of each Surface to results, {Part: its part of it}. Returns their accounts."""
+        """Adds the Reconstruction of each Surface to results, by the Part whose place it takes. Returns
+        their accounts."""
         accounts = []
         for i, surface in enumerate(surfaces):
             self._share = (i / len(surfaces), 1.0 / len(surfaces))

@@ -444,7 +444,7 @@ def keep_points(cloud, keep):
 
 def turn_over(cloud):
     """Turns the sign of z: depths become elevations."""
-    coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData()).astype("f8")
+    coordinates = coordinates_of(cloud.points).astype("f8")
     coordinates[:, 2] *= -1.0
     points = make_points(coordinates).GetPoints()
     turned = cloud.points.NewInstance()

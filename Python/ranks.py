@@ -235,19 +235,20 @@ def shared(controller, work):
 
     def size():
         own.append(work())
+        own.append(packed(own[0]))
         return [own[0].GetNumberOfPoints()]
 
     everywhere, parts = [], []
     for rank, count in enumerate(together(controller, size)):
         if count:
             is_own = rank == controller.GetLocalProcessId()
-            part = packed(own[0]) if is_own else vtkPolyData()
+            part = own[1] if is_own else vtkPolyData()
             controller.Broadcast(part, rank)
             everywhere.append(own[0] if is_own else unpacked(part))
     for part in everywhere:
         if not any(are_equal(part, other) for other in parts):
             parts.append(part)
-    return parts or own
+    return parts or own[:1]
 
 
 def packed(data):
