@@ -132,6 +132,7 @@ set(es_Parts
   PointRows
   PointSource
   Ranks
+  ReconstructParts
   SettleParts
   SharedHoles
   SpoolFile

@@ -330,13 +330,15 @@ int vtkGridDelaunay2D::RequestData(
     if (draped)
     {
       elevation::CheckPointArrays(draped, "The constraints'");
-      std::vector<elevation::Message> ofOwnElevations;
+      std::vector<elevation::Message> ofLines;
       LinesOf(draped, elevation::ViewPoints(draped), points.View, this->NumberOfThreads,
-        Part(progress, split, split), ofOwnElevations);
-      if (!ofOwnElevations.empty())
+        Part(progress, split, split), ofLines);
+      for (const elevation::Message& message : ofLines)
       {
-        block.Warnings.push_back(
-          elevation::MakeMessage<elevation::sentences::LinesNotDraped>("constraints"));
+        const bool isOfOutside = message.GetCode() == elevation::sentences::LinesFarOutside.Code;
+        block.Warnings.push_back(!isOfOutside
+            ? message
+            : elevation::MakeMessage<elevation::sentences::LinesNotDraped>("constraints"));
       }
       constrained.Added.resize(static_cast<std::size_t>(elevation::SplitSurface(
         output, draped, this->NumberOfThreads, Part(progress, split, 1.0))));

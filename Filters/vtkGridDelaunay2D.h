@@ -109,7 +109,8 @@
  * Warnings tell of fewer than three distinct points, or points all on one line, which give the
  * points and no triangle; a MaximumEdgeLength that leaves more than half of the points without a
  * triangle (it tells one that does not, for which it triangulates once more); constraints of which
- * more than half lies farther outside the points' bounding box than a tenth of its size.
+ * more than half lies farther outside the points' bounding box than a tenth of its size, or which
+ * have polygons: vtkDelaunay2D would cut along these.
  *
  * Errors leave empty output. They are: a MaximumEdgeLength that is no length, a
  * MaximumElevationError that is no distance, or both; more points than can be handled
@@ -391,8 +392,8 @@ public:
    * are "Words":
    * NoTriangle, FewTriangles, FewTrianglesAdvice, InvalidEdgeLength, InvalidElevationError,
    * TwoLimits, NoLines, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
-   * NonFinitePointOfLine, LinesElsewhere, LinesFarOutside, LinesNotDraped, LinesNotSettled,
-   * ArraysLeftOut, OnOneRank (with a reason: ErrorNeedsAll, DrapingNeedsAll), EmptyBlocks,
+   * NonFinitePointOfLine, LinesElsewhere, LinesFarOutside, PolygonsAreLines, LinesNotDraped,
+   * LinesNotSettled, ArraysLeftOut, OnOneRank (with a reason: ErrorNeedsAll, DrapingNeedsAll), EmptyBlocks,
    * NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }

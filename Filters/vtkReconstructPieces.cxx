@@ -5,7 +5,6 @@
 #include "Adapt/Adapt.h"
 #include "FilterOptions.h"
 #include "Kernel/Base/Base.h"
-#include "Kernel/Lattice/Lattice.h"
 #include "Kernel/Messages/Messages.h"
 #include "Parts/Parts.h"
 #include "vtkFillElevationHoles.h"
@@ -15,6 +14,7 @@
 #include "vtkExecutive.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
@@ -22,13 +22,44 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
-#include <new>
-#include <utility>
 #include <vector>
 
 vtkStandardNewMacro(vtkReconstructPieces);
 
+namespace
+{
+/** Input 1 of a filter, brought up to date; nullptr: there is none. */
+vtkDataObject* UpdatedLines(vtkAlgorithm* filter)
+{
+  if (filter->GetNumberOfInputConnections(1) == 0)
+  {
+    return nullptr;
+  }
+  filter->GetInputAlgorithm(1, 0)->Update();
+  return filter->GetInputDataObject(1, 0);
+}
+
+elevation::ReconstructParts::Settings SettingsOf(vtkReconstructPieces* pieces)
+{
+  elevation::ReconstructParts::Settings settings;
+  settings.Delaunay = elevation::OptionsOf(pieces->GetDelaunay());
+  settings.Trim = elevation::OptionsOf(pieces->GetTrim());
+  settings.Fill = elevation::OptionsOf(pieces->GetFill());
+  settings.Fill.MemoryOfHole = pieces->GetMemoryOfHole();
+  settings.TrimOutward = pieces->GetTrimOutward();
+  settings.FillHoles = pieces->GetFillHoles();
+  settings.InterpolatePointData = pieces->GetFill()->GetInterpolatePointData() != 0;
+  settings.DrapeConstraints = pieces->GetDelaunay()->GetDrapeConstraints() != 0;
+  settings.OpenLongTriangles = pieces->GetFill()->GetMaximumEdgeLength() != 0.0;
+  settings.Constraints = UpdatedLines(pieces->GetDelaunay());
+  settings.Boundary = UpdatedLines(pieces->GetTrim());
+  return settings;
+}
+} // namespace
+
 vtkReconstructPieces::vtkReconstructPieces()
+  : Controller(vtkMultiProcessController::GetGlobalController())
+  , Parts(std::make_unique<elevation::ReconstructParts>())
 {
   this->SetNumberOfInputPorts(0);
   this->SetNumberOfOutputPorts(2);
@@ -36,9 +67,29 @@ vtkReconstructPieces::vtkReconstructPieces()
 
 vtkReconstructPieces::~vtkReconstructPieces() = default;
 
+void vtkReconstructPieces::SetController(vtkMultiProcessController* controller)
+{
+  if (this->Parts->HasPoints())
+  {
+    this->ReportError(
+      elevation::Error("Controller cannot be changed after the first points; that needs Reset()."));
+  }
+  else if (this->Controller != controller)
+  {
+    this->Parts->Close();
+    this->Controller = controller;
+    this->Modified();
+  }
+}
+
+vtkMultiProcessController* vtkReconstructPieces::GetController()
+{
+  return this->Controller;
+}
+
 void vtkReconstructPieces::SetFolder(const std::string& folder)
 {
-  if (this->Work)
+  if (this->Parts->HasPoints())
   {
     this->ReportError(
       elevation::Error("Folder cannot be changed after the first points; that needs Reset()."));
@@ -70,12 +121,21 @@ vtkFillElevationHoles* vtkReconstructPieces::GetFill()
   return this->Fill;
 }
 
+void vtkReconstructPieces::SetTrimOutward(bool trim)
+{
+  if (this->TrimOutward != trim)
+  {
+    this->TrimOutward = trim;
+    this->Trim->Modified(); // as its properties: see TimeOfProperties()
+  }
+}
+
 void vtkReconstructPieces::SetFillHoles(bool fill)
 {
   if (this->FillHoles != fill)
   {
     this->FillHoles = fill;
-    this->Fill->Modified(); // as its properties: see TimeOfProperties()
+    this->Fill->Modified(); // the same
   }
 }
 
@@ -89,186 +149,146 @@ void vtkReconstructPieces::SetMemoryOfHole(double bytes)
   }
 }
 
+/** An abort is a warning. More pieces may help where memory ends. */
 void vtkReconstructPieces::ReportError(const std::exception& error)
 {
-  elevation::ReportMessages(this, { elevation::MessageOf(error) }, {}, this->Messages);
+  if (dynamic_cast<const elevation::Aborted*>(&error))
+  {
+    this->ReportWarnings({ elevation::MakeMessage<elevation::sentences::Aborted>() });
+    return;
+  }
+  elevation::Message message = elevation::MessageOf(error);
+  if (message.GetCode() == elevation::sentences::NotEnoughMemory.Code)
+  {
+    message = this->FillHoles ? elevation::MakeMessage<elevation::sentences::TooFewPiecesToFill>()
+                              : elevation::MakeMessage<elevation::sentences::TooFewPieces>();
+  }
+  elevation::ReportMessages(this, { message }, {}, this->Messages);
 }
 
-/** Reports what the work throws. */
-bool vtkReconstructPieces::Try(const std::function<void()>& work)
+void vtkReconstructPieces::ReportWarnings(const std::vector<elevation::Message>& warnings)
 {
-  if (this->HasFailed)
+  if (!warnings.empty())
   {
-    this->ReportError(elevation::Error(
-      "The points are not complete after the error before: begin again with Reset()."));
-    return false;
+    elevation::ReportMessages(this, {}, warnings, this->Messages);
   }
+}
+
+bool vtkReconstructPieces::AddPoints(vtkPointSet* points)
+{
   try
   {
-    work();
+    // What can be put right loses no points that are there.
+    if (!points || this->Folder.empty())
+    {
+      throw elevation::Error(points ? "Folder is not set." : "There is no data set of points.");
+    }
+    if (this->Parts->CountOfParts() > 0)
+    {
+      throw elevation::Error("Points cannot be added after the first piece; that needs Reset().");
+    }
+    this->Parts->Open(this->Controller);
+    this->Parts->Add(points, this->Folder, elevation::ProgressOf(this));
+    this->Modified();
     return true;
-  }
-  catch (const elevation::Aborted&)
-  {
-    elevation::ReportMessages(
-      this, {}, { elevation::MakeMessage<elevation::sentences::Aborted>() }, this->Messages);
-  }
-  catch (const std::bad_alloc&)
-  {
-    this->ReportError(this->FillHoles
-        ? elevation::MakeError<elevation::sentences::TooFewPiecesToFill>()
-        : elevation::MakeError<elevation::sentences::TooFewPieces>());
   }
   catch (const std::exception& error)
   {
     this->ReportError(error);
   }
-  this->HasFailed = true;
   return false;
-}
-
-bool vtkReconstructPieces::AddPoints(vtkPointSet* points)
-{
-  // What can be put right loses no points that are there.
-  if (!points || this->Folder.empty())
-  {
-    this->ReportError(
-      elevation::Error(points ? "Folder is not set." : "There is no data set of points."));
-    return false;
-  }
-  if (this->Work && this->Work->CountOfParts() > 0)
-  {
-    this->ReportError(
-      elevation::Error("Points cannot be added after the first piece; that needs Reset()."));
-    return false;
-  }
-  return this->Try([this, points]() {
-    if (!this->Work)
-    {
-      this->Alone = std::make_unique<elevation::Ranks>();
-      this->Work = std::make_unique<elevation::TriangulateParts>(*this->Alone, this->Folder);
-    }
-    this->Work->Add(points, elevation::ProgressOf(this));
-    this->Modified();
-  });
 }
 
 void vtkReconstructPieces::Reset()
 {
-  this->Filled.reset();
-  this->Trimmed.reset();
-  this->Work.reset();
-  this->Alone.reset();
-  this->HasFailed = false;
+  this->Parts->Close();
   this->SetAbortExecute(0); // the executive does so before pieces, not before points are added
   this->Modified();
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfPoints()
 {
-  return this->Work ? this->Work->CountOfPoints() : 0;
+  return this->Parts->All().Points;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfTriangles()
 {
-  return this->Work ? this->Work->All().Triangles : 0;
+  return this->Parts->All().Triangles;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfTrimmedTriangles()
 {
-  return this->Trimmed ? this->Trimmed->CountOfKept() : 0;
+  return this->Parts->All().TrimmedTriangles;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfOutwardTriangles()
 {
-  return this->Trimmed ? this->Trimmed->All().OutwardTriangles : 0;
+  return this->Parts->All().Trim.OutwardTriangles;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfRecoveredEdges()
 {
-  return this->Trimmed ? this->Trimmed->All().RecoveredEdges : 0;
+  return this->Parts->All().Trim.RecoveredEdges;
+}
+
+vtkIdType vtkReconstructPieces::GetNumberOfPointsLeftOut()
+{
+  return this->Parts->All().Trim.PointsLeftOut;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfInsertedPoints()
 {
-  return this->Trimmed ? this->Trimmed->All().InsertedPoints : 0;
+  return this->Parts->All().Trim.InsertedPoints;
+}
+
+double vtkReconstructPieces::GetEffectiveGapTolerance()
+{
+  return this->Parts->All().Trim.GapTolerance;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfBoundaryRings()
 {
-  return this->Trimmed ? this->Trimmed->CountOfRings() : 0;
+  return this->Parts->All().BoundaryRings;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfHoles()
 {
-  return this->Filled ? this->Filled->Result().Found.Count() : 0;
+  return this->Parts->All().Holes;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfFilledHoles()
 {
-  return this->Filled ? elevation::CountOfFilled(this->Filled->Result()) : 0;
+  return this->Parts->All().FilledHoles;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfFilledTriangles()
 {
-  return !this->Filled ? 0
-                       : this->Filled->CountOfNewTriangles() +
-      (this->Trimmed ? this->Trimmed->CountOfKept() : this->Work->All().Triangles);
+  return this->Parts->All().FilledTriangles;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfDuplicatePoints()
 {
-  return this->Work ? this->Work->All().Duplicates : 0;
+  return this->Parts->All().Duplicates;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfNonFinitePoints()
 {
-  return this->Work ? this->Work->All().NotFinite : 0;
+  return this->Parts->All().NotFinite;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfConstraintCrossings()
 {
-  return this->Work ? static_cast<vtkIdType>(this->Work->All().Crossings) : 0;
+  return this->Parts->All().Crossings;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfAddedPoints()
 {
-  return this->Work ? this->Work->All().AddedPoints : 0;
+  return this->Parts->All().AddedPoints;
 }
 
 bool vtkReconstructPieces::GetLatticeFound()
 {
-  return this->Work && this->Work->All().LatticeFound;
-}
-
-/** @throws elevation::Error where the properties are wrong. They can still be put right. */
-void vtkReconstructPieces::CheckProperties()
-{
-  const elevation::DelaunayOptions options = elevation::OptionsOf(this->Delaunay);
-  elevation::CheckLimits(options);
-  const bool areLines = this->Delaunay->GetNumberOfInputConnections(1) > 0;
-  if (options.GivenLattice.IsSet() && options.UseLattice == elevation::LatticeMode::Automatic &&
-    !areLines)
-  {
-    elevation::StepsOfGiven(options.GivenLattice);
-  }
-  if (options.MaximumElevationError > 0.0)
-  {
-    throw elevation::MakeError<elevation::sentences::ErrorNotInPieces>();
-  }
-  if (areLines && this->Delaunay->GetDrapeConstraints())
-  {
-    throw elevation::MakeError<elevation::sentences::ConstraintsNotInPieces>();
-  }
-  const bool isTrimmed = this->Trim->GetNumberOfInputConnections(1) > 0;
-  if (isTrimmed && elevation::OptionsOf(this->Trim).Test != elevation::OutwardTest::Exact)
-  {
-    throw elevation::MakeError<elevation::sentences::InwardNormalNotInPieces>();
-  }
-  if (this->FillHoles && this->Fill->GetMaximumEdgeLength() != 0.0)
-  {
-    throw elevation::MakeError<elevation::sentences::EdgeLengthNotInPieces>();
-  }
+  return this->Parts->All().LatticeFound;
 }
 
 vtkMTimeType vtkReconstructPieces::TimeOfProperties()
@@ -276,122 +296,27 @@ vtkMTimeType vtkReconstructPieces::TimeOfProperties()
   return std::max({ this->Delaunay->GetMTime(), this->Trim->GetMTime(), this->Fill->GetMTime() });
 }
 
-/** Does all work but writing pieces. */
+/** Does all work but writing pieces, on all ranks together. */
 void vtkReconstructPieces::WorkOnAll(int count, const elevation::Progress& progress)
 {
-  const bool isTrimmed = this->Trim->GetNumberOfInputConnections(1) > 0;
+  elevation::ReconstructParts& parts = *this->Parts;
+  parts.Begin(
+    count, this->Folder, [this]() { return SettingsOf(this); }, this->GetMTime());
+  this->TimeOfWork = this->TimeOfProperties();
   const double filling = this->FillHoles ? 0.7 : 1.0; // where it begins
-  const double trimming = isTrimmed ? 0.6 * filling : filling;
-  elevation::DelaunayOptions options = elevation::OptionsOf(this->Delaunay);
-  options.Monitor = elevation::Part(progress, 0.0, trimming);
+  const double trimming = parts.IsTrimmed() ? 0.6 * filling : filling;
   this->SetProgressText("triangulating");
-  vtkSmartPointer<vtkPolyData> constraints;
-  if (this->Delaunay->GetNumberOfInputConnections(1) > 0)
+  this->ReportWarnings(parts.Triangulate(elevation::Part(progress, 0.0, trimming)));
+  if (parts.IsTrimmed())
   {
-    this->Delaunay->GetInputAlgorithm(1, 0)->Update();
-    constraints = elevation::JoinBlocks(this->Delaunay->GetInputDataObject(1, 0), "constraints");
-  }
-  std::vector<elevation::Message> warnings;
-  this->Work->Triangulate(count, constraints, options, warnings);
-  this->WarnOfMissing(warnings);
-  if (this->Work->All().Triangles == 0)
-  {
-    return;
-  }
-  if (isTrimmed)
-  {
-    this->TrimAll(elevation::Part(progress, trimming, filling));
+    this->SetProgressText("trimming");
+    this->ReportWarnings(parts.Trim(elevation::Part(progress, trimming, filling)));
   }
   if (this->FillHoles)
   {
-    this->FillAll(elevation::Part(progress, filling, 1.0));
+    this->SetProgressText("filling holes");
+    this->ReportWarnings(parts.Fill(elevation::Part(progress, filling, 1.0)));
   }
-}
-
-/** Tells what there is to tell, and why there is no triangle, or most points are without one. */
-void vtkReconstructPieces::WarnOfMissing(std::vector<elevation::Message>& warnings)
-{
-  const elevation::TriangulateParts::Totals& all = this->Work->All();
-  if (all.Settled == 0)
-  {
-    warnings.push_back(elevation::MakeMessage<elevation::sentences::NoTriangle>(all.Points));
-  }
-  else if (all.Effect.AreMostMissing())
-  {
-    warnings.push_back(
-      elevation::AdviceOnLimit(this->Delaunay->GetMaximumEdgeLength(), all.Effect));
-  }
-  elevation::ReportMessages(this, {}, warnings, this->Messages);
-}
-
-void vtkReconstructPieces::TrimAll(const elevation::Progress& progress)
-{
-  this->SetProgressText("trimming");
-  this->Trim->GetInputAlgorithm(1, 0)->Update();
-  elevation::TrimOptions options = elevation::OptionsOf(this->Trim);
-  options.Monitor = progress;
-  const auto make = [this](int piece, const elevation::Progress& ofPiece) {
-    return this->MakePiece(piece, ofPiece);
-  };
-  this->Trimmed =
-    std::make_unique<elevation::TrimParts>(elevation::SurfaceParts{ this->Work->Holders(), make },
-      this->Work->All().Triangles, this->Trim->GetBoundary(), options);
-  this->Trimmed->Trim();
-}
-
-void vtkReconstructPieces::FillAll(const elevation::Progress& progress)
-{
-  this->SetProgressText("filling holes");
-  elevation::FillOptions options = elevation::OptionsOf(this->Fill);
-  options.MemoryOfHole = this->MemoryOfHole;
-  options.Monitor = progress;
-  const auto make = [this](int piece, const elevation::Progress& ofPiece) {
-    return this->MakeTrimmed(piece, ofPiece);
-  };
-  auto filled =
-    std::make_unique<elevation::FillParts>(elevation::SurfaceParts{ this->Work->Holders(), make },
-      options, this->Fill->GetInterpolatePointData() != 0);
-  filled->FindHoles(0);
-  filled->Fill();
-  this->Filled = std::move(filled);
-  const std::vector<elevation::Message> warnings = elevation::WarningsOf(this->Filled->Result());
-  if (!warnings.empty())
-  {
-    elevation::ReportMessages(this, {}, warnings, this->Messages);
-  }
-}
-
-/** A piece of the triangulation; nullptr: it has no points. */
-vtkSmartPointer<vtkPolyData> vtkReconstructPieces::MakePiece(
-  int piece, const elevation::Progress& progress)
-{
-  elevation::SurfacePart part = this->Work->Take(piece, progress);
-  if (part.Own.Count() == 0)
-  {
-    return nullptr;
-  }
-  auto made = vtkSmartPointer<vtkPolyData>::New();
-  elevation::PassPart(
-    part, elevation::ResolveNumberOfThreads(this->Delaunay->GetNumberOfThreads()), made);
-  elevation::ConstrainedTriangulation counts;
-  counts.Added.resize(static_cast<std::size_t>(part.AddedPoints));
-  counts.NumberOfCrossings = this->Work->All().Crossings;
-  counts.Result = std::move(part.Result);
-  elevation::AddReport(counts, progress, made->GetFieldData());
-  return made;
-}
-
-/** The same, trimmed if there is a boundary. */
-vtkSmartPointer<vtkPolyData> vtkReconstructPieces::MakeTrimmed(
-  int piece, const elevation::Progress& progress)
-{
-  if (!this->Trimmed)
-  {
-    return this->MakePiece(piece, progress);
-  }
-  auto trimmed = vtkSmartPointer<vtkPolyData>::New();
-  this->Trimmed->Write(piece, progress, trimmed, nullptr);
-  return trimmed->GetNumberOfPoints() > 0 ? trimmed : nullptr;
 }
 
 int vtkReconstructPieces::RequestInformation(
@@ -416,64 +341,41 @@ int vtkReconstructPieces::RequestData(
   const int count = std::max(1, get(Pipeline::UPDATE_NUMBER_OF_PIECES()));
   vtkPolyData* const output = vtkPolyData::GetData(outputVector, 0);
   vtkPolyData* const rims = vtkPolyData::GetData(outputVector, 1);
-  if (!this->Work && !this->HasFailed)
-  {
-    return 1; // no points
-  }
-  const int cells = this->Work ? this->Work->CountOfParts() : 0;
-  if (cells > 0 && cells != count)
-  {
-    this->ReportError(elevation::Error(
-      "There are " + std::to_string(cells) + " pieces; another number of pieces needs Reset()."));
-    return 1;
-  }
-  if (piece < 0 || piece >= count)
-  {
-    return 1; // empty, as VTK's sources
-  }
+  elevation::ReconstructParts& parts = *this->Parts;
+  bool isReporting = true;
   try
   {
-    if (cells == 0)
+    parts.Open(this->Controller);
+    if ((parts.IsAlone() && !parts.HasPoints()) || piece < 0 || piece >= count)
     {
-      this->CheckProperties();
+      return 1; // empty, as VTK's sources
     }
-    else if (this->TimeOfProperties() > this->TimeOfWork)
+    parts.CheckPart(piece, count);
+    const bool isFirst = parts.CountOfParts() == 0;
+    if (!isFirst && this->TimeOfProperties() > this->TimeOfWork)
     {
       throw elevation::Error("Properties were changed after the first piece; that needs Reset().");
     }
-  }
-  catch (const elevation::Error& error)
-  {
-    this->ReportError(error);
-    return 1;
-  }
-  const auto work = [this, piece, count, output, rims]() {
     const elevation::Progress progress = elevation::ProgressOf(this);
-    if (this->Work->CountOfParts() != count)
+    isReporting = false; // unless the parts say so
+    if (isFirst)
     {
-      this->TimeOfWork = this->TimeOfProperties();
       this->WorkOnAll(count, elevation::Part(progress, 0.0, 0.9));
     }
-    const elevation::Progress last = elevation::Part(progress, 0.9, 1.0);
-    if (this->Filled)
+    parts.Pass(piece, elevation::Part(progress, 0.9, 1.0), output, rims);
+    if (!this->KeepFiles)
     {
-      this->Filled->Pass(piece, last, output);
+      parts.Forget(piece);
     }
-    else if (const vtkSmartPointer<vtkPolyData> made = this->MakeTrimmed(piece, last))
-    {
-      output->ShallowCopy(made);
-    }
-    if (this->Filled && piece == 0)
-    {
-      this->Filled->PassRims(elevation::Progress(), rims);
-      elevation::AddHoleCounts(this->Filled->Result(), { rims });
-    }
-  };
-  this->Try(std::ref(work)); // a copy would need memory, which may be at its end
-  if (this->HasFailed)
+  }
+  catch (const std::exception& error)
   {
     output->Initialize();
     rims->Initialize();
+    if (isReporting || parts.IsReporting())
+    {
+      this->ReportError(error);
+    }
   }
   return 1;
 }
@@ -482,6 +384,9 @@ void vtkReconstructPieces::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Folder: " << this->Folder << "\n";
+  os << indent << "Controller: " << this->Controller << "\n";
+  os << indent << "KeepFiles: " << (this->KeepFiles ? "On" : "Off") << "\n";
+  os << indent << "TrimOutward: " << (this->TrimOutward ? "On" : "Off") << "\n";
   os << indent << "NumberOfPoints: " << this->GetNumberOfPoints() << "\n";
   os << indent << "NumberOfTriangles: " << this->GetNumberOfTriangles() << "\n";
   os << indent << "NumberOfDuplicatePoints: " << this->GetNumberOfDuplicatePoints() << "\n";
@@ -492,7 +397,9 @@ void vtkReconstructPieces::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfTrimmedTriangles: " << this->GetNumberOfTrimmedTriangles() << "\n";
   os << indent << "NumberOfOutwardTriangles: " << this->GetNumberOfOutwardTriangles() << "\n";
   os << indent << "NumberOfRecoveredEdges: " << this->GetNumberOfRecoveredEdges() << "\n";
+  os << indent << "NumberOfPointsLeftOut: " << this->GetNumberOfPointsLeftOut() << "\n";
   os << indent << "NumberOfInsertedPoints: " << this->GetNumberOfInsertedPoints() << "\n";
+  os << indent << "EffectiveGapTolerance: " << this->GetEffectiveGapTolerance() << "\n";
   os << indent << "NumberOfBoundaryRings: " << this->GetNumberOfBoundaryRings() << "\n";
   os << indent << "FillHoles: " << (this->FillHoles ? "On" : "Off") << "\n";
   os << indent << "MemoryOfHole: " << this->MemoryOfHole << "\n";

@@ -22,7 +22,9 @@
  * All properties of the triangulation are those of GetDelaunay(), and so are constraints. As those of
  * the other filters, they are brought up to date. MaximumElevationError and DrapeConstraints are for
  * points in memory, and are errors. Where GetTrim() has a boundary, all pieces are trimmed along it, as
- * that filter would trim the whole surface. Points that constraints add get ids after the largest, and
+ * that filter would trim the whole surface; with TrimOutward on and no boundary, along the outline that
+ * it would find. Where only the whole surface would tell the outline, as of some surveys along lines,
+ * there is an error. Points that constraints add get ids after the largest, and
  * points that trimming inserts after those. OutwardTest InwardNormal is an error. Beside points that
  * trimming inserts, diagonals may differ from those of that filter, as they do with that filter for
  * triangles in another order.
@@ -34,10 +36,19 @@
  * MaximumEdgeLength of that filter is for a surface in memory, and is an error. Output 1, of piece 0,
  * has the outline and the report of each hole, as output 1 of that filter.
  *
+ * @par Ranks:
+ * Where the controller has several processes, each of them adds its own points, maybe none, and makes
+ * its own pieces: of n pieces, which have to be a multiple of p processes, process r makes
+ * [r n / p, (r + 1) n / p). Ids count the points of process 0 first, then those of process 1 and so on;
+ * counts are those of all. Boundary and constraints may be on any of them. They wait for each other
+ * when each asks for its first piece, and only then: what one of them has wrong, or an abort, is then
+ * that of all, and process 0 reports it. After such an error, properties have to be changed, or
+ * Modified() be called, on all processes. Each needs a Folder of its own.
+ *
  * @par Files, memory and time:
  * What is not worked on is in files in Folder. They take 32 bytes a point and the values of its
- * point arrays, twice while the points go to their cells, and later 24 bytes more. Pieces can be
- * asked for again until the files are removed: by Reset(), and with this object. The first piece
+ * point arrays, and from the triangulation on 24 bytes more. Pieces can be asked for again until the
+ * files are removed: by Reset(), with this object and, with KeepFiles off, piece by piece. The first piece
  * that is asked for decides on the number of pieces; it takes the time of the whole triangulation,
  * which is linear in the points. Memory is what a piece takes, some 250 bytes a point of it; the
  * seams of pieces, which it holds too, have some multiple of the square root of so many points. To
@@ -70,15 +81,13 @@
 
 namespace elevation
 {
-class FillParts;
 class Message;
-class Ranks;
-class TriangulateParts;
-class TrimParts;
+class ReconstructParts;
 using Progress = std::function<bool(double)>;
 } // namespace elevation
 class vtkFillElevationHoles;
 class vtkGridDelaunay2D;
+class vtkMultiProcessController;
 class vtkPointSet;
 class vtkStringArray;
 class vtkTrimOutwardTriangles;
@@ -105,12 +114,41 @@ public:
 
   ///@{
   /**
+   * Whether the files of a piece stay when it has been made, so that it can be asked for again. On by
+   * default. Off, the space on disk does not grow while pieces are written.
+   */
+  vtkSetMacro(KeepFiles, bool);
+  vtkGetMacro(KeepFiles, bool);
+  vtkBooleanMacro(KeepFiles, bool);
+  ///@}
+
+  ///@{
+  /**
+   * The processes that work together, each with points and pieces of its own. By default the global
+   * controller; with nullptr this process works alone. It is taken with the first points.
+   */
+  virtual void SetController(vtkMultiProcessController* controller);
+  virtual vtkMultiProcessController* GetController();
+  ///@}
+
+  ///@{
+  /**
    * The filters whose properties tell how to triangulate, trim and fill, and the boundary. Their
    * input 0 is not used.
    */
   vtkGridDelaunay2D* GetDelaunay();
   vtkTrimOutwardTriangles* GetTrim();
   vtkFillElevationHoles* GetFill();
+  ///@}
+
+  ///@{
+  /**
+   * Whether the surface is trimmed along its outline where no boundary is given. Off by default; along
+   * a given boundary it is always trimmed.
+   */
+  virtual void SetTrimOutward(bool trim);
+  virtual bool GetTrimOutward() { return this->TrimOutward; }
+  vtkBooleanMacro(TrimOutward, bool);
   ///@}
 
   ///@{
@@ -151,11 +189,13 @@ public:
   ///@}
 
   ///@{
-  /** As those of vtkTrimOutwardTriangles, of all pieces; 0 without a boundary. */
+  /** As those of vtkTrimOutwardTriangles, of all pieces; 0 where the surface is not trimmed. */
   vtkIdType GetNumberOfTrimmedTriangles(); ///< what is left
   vtkIdType GetNumberOfOutwardTriangles();
   vtkIdType GetNumberOfRecoveredEdges();
+  vtkIdType GetNumberOfPointsLeftOut();
   vtkIdType GetNumberOfInsertedPoints();
+  double GetEffectiveGapTolerance();
   vtkIdType GetNumberOfBoundaryRings();
   ///@}
 
@@ -184,29 +224,22 @@ protected:
 private:
   vtkReconstructPieces(const vtkReconstructPieces&) = delete;
   void operator=(const vtkReconstructPieces&) = delete;
-  bool Try(const std::function<void()>& work);
   void ReportError(const std::exception& error);
-  void CheckProperties();
+  void ReportWarnings(const std::vector<elevation::Message>& warnings);
   vtkMTimeType TimeOfProperties();
   void WorkOnAll(int count, const elevation::Progress& progress);
-  void WarnOfMissing(std::vector<elevation::Message>& warnings);
-  void TrimAll(const elevation::Progress& progress);
-  void FillAll(const elevation::Progress& progress);
-  vtkSmartPointer<vtkPolyData> MakePiece(int piece, const elevation::Progress& progress);
-  vtkSmartPointer<vtkPolyData> MakeTrimmed(int piece, const elevation::Progress& progress);
 
   std::string Folder;
+  vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkNew<vtkGridDelaunay2D> Delaunay;
   vtkNew<vtkTrimOutwardTriangles> Trim;
   vtkNew<vtkFillElevationHoles> Fill;
+  bool KeepFiles = true;
+  bool TrimOutward = false;
   bool FillHoles = false;
   double MemoryOfHole = 0.0;
-  std::unique_ptr<elevation::Ranks> Alone;
-  std::unique_ptr<elevation::TriangulateParts> Work;
-  std::unique_ptr<elevation::TrimParts> Trimmed;
-  std::unique_ptr<elevation::FillParts> Filled;
+  std::unique_ptr<elevation::ReconstructParts> Parts;
   vtkMTimeType TimeOfWork = 0;
-  bool HasFailed = false;
   vtkNew<vtkStringArray> Messages;
 };
 

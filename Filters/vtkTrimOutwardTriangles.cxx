@@ -127,9 +127,9 @@ bool TrimSpread(const elevation::Ranks& ranks, elevation::TrimOptions options,
   crew.ForEach(Part(block.Progress, 0.88, 1.0), [&](int part, const Progress& progress) {
     parts.Write(part, progress, block.Outputs[0], block.Outputs[1]);
     block.Outputs[2]->ShallowCopy(parts.Boundary());
-    if (!parts.Loss().IsEmpty())
+    if (!parts.Warning().IsEmpty())
     {
-      block.Warnings.push_back(parts.Loss());
+      block.Warnings.push_back(parts.Warning());
     }
     elevation::AddCounts(parts.Own(), block.Outputs);
     elevation::AddTuple(block.Outputs[0]->GetFieldData(), "WorkOfTrim",
@@ -251,9 +251,9 @@ int vtkTrimOutwardTriangles::RequestData(
     {
       block.Warnings.push_back(elevation::MakeMessage<elevation::sentences::NothingToTrim>());
     }
-    if (!trimmed.Loss.IsEmpty())
+    if (!trimmed.Warning.IsEmpty())
     {
-      block.Warnings.push_back(trimmed.Loss);
+      block.Warnings.push_back(trimmed.Warning);
     }
 
     PassSides(input, triangles, isGiven ? &lines : nullptr, options, trimmed,

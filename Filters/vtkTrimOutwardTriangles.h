@@ -16,8 +16,9 @@
  * - polygons.
  * A place is inside when an odd number of rings goes around it, so rings may nest (a lake, an
  * island in it), in any order and direction. They may touch; edges that two rings share cancel out,
- * so that two parcels side by side are one surface. They may not cross, not even in a point or
- * along edges that they share; nor may a ring cross itself.
+ * so that two parcels side by side are one surface. A ring that is there twice counts once, with a
+ * warning. They may not cross, not even in a point or along edges that they share; nor may a ring
+ * cross itself.
  *
  * The boundary may be drawn anywhere, and its z plays no part. It becomes edges of the mesh:
  * - A point of it with exactly the x,y of a corner of the mesh is that corner.
@@ -359,8 +360,8 @@ public:
    * text has the same for people, are invoked. Codes, besides those of data that are invalid, which
    * are "Words":
    * NothingToTrim, InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut,
-   * BoundaryLeavesOutAll, BoundaryEnclosesNothing (reasons: NothingInRing, NothingBetweenRings,
-   * BoundaryElsewhere), StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, ArraysLeftOut,
+   * BoundaryLeavesOutAll, RingsRepeated, BoundaryEnclosesNothing (reasons: NothingInRing,
+   * NothingBetweenRings, BoundaryElsewhere), StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, ArraysLeftOut,
    * OnOneRank (with a reason: NormalsNeedAll, PartsDoNotFit), NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }

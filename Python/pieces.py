@@ -173,6 +173,7 @@ class Pieces:
         self.run, self.options = run, run.options
         self.cloud = Cloud(None)
         self.source = vtkReconstructPieces()
+        self.source.SetController(None)
         self.unused = {number: numpy.empty(0, "i8") for number in (1, 2)}  # of REASONS
         self.low, self.high = numpy.full(3, numpy.inf), numpy.full(3, -numpy.inf)
         self.range = None  # of z of the points

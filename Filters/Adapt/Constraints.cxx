@@ -9,6 +9,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -34,6 +35,11 @@ void CheckLines(const ConstraintLines& lines, const Box& box, std::vector<Messag
   if (lines.Vertices.empty())
   {
     throw MakeError<sentences::NoLines>("constraints");
+  }
+  const auto polygons = std::count(lines.IsClosed.begin(), lines.IsClosed.end(), true);
+  if (polygons > 0)
+  {
+    warnings.push_back(MakeMessage<sentences::PolygonsAreLines>(polygons));
   }
   // Outlines may lie a little outside.
   const double dx = 0.1 * box.Width(), dy = 0.1 * box.Height();

@@ -10,6 +10,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -274,6 +275,11 @@ vtkSmartPointer<vtkPolyData> FilledPart::PointsOnBorder() const
 void WriteRims(
   const SharedHoles& all, const Parts& points, const Progress& progress, vtkPolyData* output)
 {
+  if (points.empty()) // no triangle
+  {
+    MakeReport(vtkNew<vtkPolyData>(), all.OfAll, progress, output);
+    return;
+  }
   const vtkSmartPointer<vtkPolyData> joined = Append(points);
   const std::vector<PointKey> keys = KeysOf(joined, all.ByIds, nullptr);
   std::vector<Index> places(all.Border.Keys.size(), 0);

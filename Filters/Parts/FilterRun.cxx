@@ -38,20 +38,6 @@ const char* RequiredType(vtkAlgorithm* filter)
   return filter->GetInputPortInformation(0)->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), 0);
 }
 
-/** The messages of all ranks, on the first, each once. */
-std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& ranks)
-{
-  std::vector<Message> all;
-  for (const Message& message : ranks.Collect(messages))
-  {
-    if (ranks.Own() == 0 && std::find(all.begin(), all.end(), message) == all.end())
-    {
-      all.push_back(message);
-    }
-  }
-  return all;
-}
-
 /** Where a block has been gathered, that is told, if there are cells or else a reason to tell. */
 void WarnOfGathering(Place* home, const Message& why)
 {
@@ -133,19 +119,9 @@ void FilterRun::EmptyOutputs()
 
 vtkSmartPointer<vtkPolyData> FilterRun::ShareSecond(const Ranks& ranks) const
 {
-  if (this->Filter->GetNumberOfInputPorts() < 2)
-  {
-    return nullptr;
-  }
-  vtkSmartPointer<vtkPolyData> own;
-  ranks.Agree([&] { own = JoinBlocks(vtkDataObject::GetData(this->Inputs[1]), this->Second); });
-  std::vector<vtkIdType> found = { own ? 1 : 0 };
-  ranks.Sum(found);
-  if (found[0] > 0 && !own)
-  {
-    own = vtkSmartPointer<vtkPolyData>::New(); // on other ranks only
-  }
-  return own ? ranks.Gather(own) : nullptr;
+  return this->Filter->GetNumberOfInputPorts() < 2
+    ? nullptr
+    : ShareLines(vtkDataObject::GetData(this->Inputs[1]), this->Second, ranks);
 }
 
 bool FilterRun::ShouldReport(const Place& place, const Ranks& ranks) const

@@ -10,6 +10,9 @@
 #include "Joining.h"
 #include "Kernel/Messages/Messages.h"
 
+#include <string>
+
+class vtkDataObject;
 class vtkPointSet;
 
 namespace elevation
@@ -36,6 +39,16 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
 /** Joins parts that are on this rank; one part is returned itself. @throws Error as Gather() */
 vtkSmartPointer<vtkPointSet> JoinHere(
   const std::vector<vtkPointSet*>& parts, PartKind kind, std::vector<Message>& warnings);
+
+/**
+ * The lines of all ranks, on all of them; all have to call it.
+ * @param[in] own   those of this rank, a composite of them, or nullptr
+ * @param[in] name  what messages call them
+ * @return nullptr if no rank has any
+ * @throws Error on all ranks, as JoinBlocks() and Ranks::Gather()
+ */
+vtkSmartPointer<vtkPolyData> ShareLines(
+  vtkDataObject* own, const std::string& name, const Ranks& ranks);
 
 /** The same data set without points and cells, its arrays without values. */
 vtkSmartPointer<vtkPolyData> EmptyCopy(vtkPointSet* input);

@@ -4,14 +4,14 @@
 
 #include "Kernel/Base/Base.h"
 
+#include "vtkAbstractArray.h"
 #include "vtkCellData.h"
 #include "vtkCharArray.h"
 #include "vtkCommunicator.h"
-#include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkTypeInt64Array.h"
+#include "vtkType.h"
 
 #include <array>
 #include <string>
@@ -26,65 +26,88 @@ std::array<vtkFieldData*, 3> FieldsOf(vtkPolyData* data)
   return { data->GetPointData(), data->GetCellData(), data->GetFieldData() };
 }
 
-/** Puts an array in the place of one with the same name. */
-template <typename Array>
-void Replace(vtkFieldData* fields, vtkDataArray* array)
+/** Puts an array in the place of one with the same name, which has another type or is missing. */
+int Replace(vtkFieldData* fields, const std::string& name, int type, int components)
 {
-  vtkNew<Array> other;
-  other->DeepCopy(array);
-  other->SetName(array->GetName());
-  fields->AddArray(other);
+  const auto other = vtk::TakeSmartPointer(vtkAbstractArray::CreateArray(type));
+  other->SetNumberOfComponents(components);
+  if (vtkAbstractArray* const array = fields->GetAbstractArray(name.c_str()))
+  {
+    other->DeepCopy(array);
+  }
+  other->SetName(name.c_str());
+  return fields->AddArray(other);
 }
 
-/** Makes values of type vtkIdType others of 64 bits. @return what RestoreIds() needs to know */
-Bytes ReplaceIds(vtkPolyData* data)
+/** What VTK's communicators do not keep of each array; those without values get lost. */
+struct ArrayMark
 {
-  Bytes known; // field, attribute, length of the name, name; of each array
+  int Field; // of FieldsOf()
+  int Type;
+  int Components;
+  int Attributes; // a bit for each
+};
+
+/**
+ * Makes the arrays of a data set such that VTK's communicators keep all values and their order: of
+ * no attribute, and where vtkIdType, which would be cut to 32 bits, of 64 bits.
+ * @return for each array its mark and its name
+ */
+Bytes MarkArrays(vtkPolyData* data)
+{
+  Bytes marks;
   const std::array<vtkFieldData*, 3> all = FieldsOf(data);
   for (int k = 0; k < 3; ++k)
   {
-    vtkFieldData* const fields = all[k];
-    auto* const attributes = vtkDataSetAttributes::SafeDownCast(fields);
-    for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
+    auto* const attributes = vtkDataSetAttributes::SafeDownCast(all[k]);
+    for (int i = 0; i < all[k]->GetNumberOfArrays(); ++i)
     {
-      auto* const ids = vtkIdTypeArray::SafeDownCast(fields->GetAbstractArray(i));
-      if (!ids || !ids->GetName())
+      vtkAbstractArray* const array = all[k]->GetAbstractArray(i);
+      if (!array->GetName())
       {
         continue;
       }
-      const std::string name = ids->GetName();
-      const int about[3] = { k, attributes ? attributes->IsArrayAnAttribute(i) : -1,
-        static_cast<int>(name.size()) };
-      AppendTo(known, about, 3);
-      AppendTo(known, name.data(), name.size());
-      if (about[1] >= 0)
+      ArrayMark mark = { k, array->GetDataType(), array->GetNumberOfComponents(), 0 };
+      for (int type = 0; attributes && type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)
       {
-        attributes->SetActiveAttribute(-1, about[1]);
+        mark.Attributes |= attributes->GetAbstractAttribute(type) == array ? 1 << type : 0;
       }
-      Replace<vtkTypeInt64Array>(fields, ids);
+      AppendTo(marks, &mark, 1);
+      AppendList(marks, std::string(array->GetName()));
+      if (mark.Type == VTK_ID_TYPE)
+      {
+        Replace(all[k], array->GetName(), VTK_TYPE_INT64, mark.Components);
+      }
+    }
+    for (int type = 0; attributes && type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)
+    {
+      attributes->SetActiveAttribute(-1, type);
     }
   }
-  return known;
+  return marks;
 }
 
-void RestoreIds(const char* known, const char* end, vtkPolyData* data)
+void RestoreArrays(const char* marks, const char* end, vtkPolyData* data)
 {
-  while (known != end)
+  while (marks != end)
   {
-    int about[3];
-    TakeFrom(known, about, 3);
-    std::string name(static_cast<std::size_t>(about[2]), ' ');
-    TakeFrom(known, &name[0], name.size());
-    vtkFieldData* const fields = FieldsOf(data)[about[0]];
-    vtkDataArray* const wide = fields->GetArray(name.c_str());
-    if (!wide)
+    ArrayMark mark;
+    std::string name;
+    TakeFrom(marks, &mark, 1);
+    TakeList(marks, name);
+    vtkFieldData* const fields = FieldsOf(data)[mark.Field];
+    int index = -1;
+    vtkAbstractArray* const array = fields->GetAbstractArray(name.c_str(), index);
+    if (!array || array->GetDataType() != mark.Type)
     {
-      throw Error("The array '" + name + "' has not come from another rank (process).");
+      index = Replace(fields, name, mark.Type, mark.Components);
     }
-    Replace<vtkIdTypeArray>(fields, wide);
-    if (about[1] >= 0)
+    for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)
     {
-      vtkDataSetAttributes::SafeDownCast(fields)->SetActiveAttribute(name.c_str(), about[1]);
+      if (mark.Attributes & (1 << type))
+      {
+        vtkDataSetAttributes::SafeDownCast(fields)->SetActiveAttribute(index, type);
+      }
     }
   }
 }
@@ -94,16 +117,14 @@ Bytes PackData(vtkPolyData* data)
 {
   vtkNew<vtkPolyData> copy;
   copy->ShallowCopy(data);
-  const Bytes known = ReplaceIds(copy);
+  const Bytes marks = MarkArrays(copy);
   vtkNew<vtkCharArray> buffer;
   if (!vtkCommunicator::MarshalDataObject(copy, buffer))
   {
     throw Error("A part of the mesh cannot be sent to another rank (process).");
   }
   Bytes bytes;
-  const std::size_t size = known.size();
-  AppendTo(bytes, &size, 1);
-  AppendTo(bytes, known.data(), size);
+  AppendList(bytes, marks);
   AppendTo(bytes, buffer->GetPointer(0), static_cast<std::size_t>(buffer->GetNumberOfValues()));
   return bytes;
 }
@@ -111,10 +132,10 @@ Bytes PackData(vtkPolyData* data)
 vtkSmartPointer<vtkPolyData> UnpackData(const char* from, std::size_t size)
 {
   const char* const end = from + size;
-  std::size_t sizeOfKnown = 0;
-  TakeFrom(from, &sizeOfKnown, 1);
-  const char* const known = from;
-  from += sizeOfKnown;
+  std::size_t sizeOfMarks = 0;
+  TakeFrom(from, &sizeOfMarks, 1);
+  const char* const marks = from;
+  from += sizeOfMarks;
   vtkNew<vtkCharArray> buffer;
   buffer->SetArray(
     const_cast<char*>(from), static_cast<vtkIdType>(end - from), 1); // it stays the caller's
@@ -123,7 +144,7 @@ vtkSmartPointer<vtkPolyData> UnpackData(const char* from, std::size_t size)
   {
     throw Error("A part of the mesh has not come from another rank (process).");
   }
-  RestoreIds(known, from, data);
+  RestoreArrays(marks, from, data);
   return data;
 }
 

@@ -19,8 +19,8 @@ namespace elevation
 {
 
 /**
- * A data set as bytes, and back. Values of type vtkIdType keep their 64 bits, which VTK's own
- * communicators cut to 32.
+ * A data set as bytes, and back, by VTK's communicator. What that changes stays: the order of arrays
+ * with names, their types, all their attributes, and the 64 bits of a vtkIdType.
  * @throws Error
  */
 Bytes PackData(vtkPolyData* data);

@@ -227,6 +227,14 @@ void PartStore::MakeWhole(int part, const Progress& progress)
   }
 }
 
+void PartStore::Forget(int part)
+{
+  for (std::size_t box = 0; box < NamesOfBoxes().size(); ++box)
+  {
+    this->Crew.At(part, static_cast<int>(box)).Clear();
+  }
+}
+
 SurfacePart PartStore::TakeWhole(int part, const Progress& progress)
 {
   if (!this->Crew.IsInFiles())

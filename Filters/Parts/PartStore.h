@@ -158,6 +158,8 @@ public:
     const SurfacePart read = this->ReadWhole(part, progress);
     step(read);
   }
+  /** Removes what there is of a part. */
+  void Forget(int part);
   /** The same part; from memory it can be taken once. */
   SurfacePart TakeWhole(int part, const Progress& progress);
 

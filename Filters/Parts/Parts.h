@@ -12,6 +12,7 @@
 #include "Joining.h"
 #include "PointRows.h"
 #include "Ranks.h"
+#include "ReconstructParts.h"
 #include "TriangulateParts.h"
 #include "TrimParts.h"
 

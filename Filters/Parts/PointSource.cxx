@@ -3,7 +3,7 @@
 /*
  * Points come in two ways, which differ until they are sent. At once: the arrays stay VTK's until rows
  * of them are packed, global ids may be given, and ranks may have different arrays, of which those are
- * kept that all have. In slices: rows are packed into a file; as no rank can look at its points again,
+ * kept that all have. In slices: rows are packed into files, which go as they are sent; as no rank can look at its points again,
  * all slices need the same arrays, and global ids are places.
  *
  * The samples differ too. At once, the number of points is known, and one point of each stretch of
@@ -37,7 +37,7 @@ namespace elevation
 namespace
 {
 constexpr const char* NameOfIds = "GlobalPointIds";
-constexpr vtkIdType PointsInStretch = 1 << 20; // of the file of slices
+constexpr vtkIdType PointsInStretch = 1 << 20; // of slices, and in a file
 constexpr std::size_t MostSampled = 1 << 19;   // of slices
 constexpr vtkIdType SamplePerPart = 1000;      // of points that come at once
 
@@ -113,7 +113,7 @@ PointSource::PointSource(const Ranks& ranks, const std::string& folder)
   {
     throw Error("Folder '" + folder + "' is not an empty folder, which temporary files need.");
   }
-  this->File = std::make_unique<SpoolFile>(folder + "/points");
+  this->Folder = folder;
 }
 
 PointSource::~PointSource() = default;
@@ -153,7 +153,7 @@ void PointSource::TakeKinds(vtkPointSet* points)
   }
 }
 
-// A slice is written in stretches, which are read one at a time in the last pass.
+// A slice is written in stretches, which go one at a time in the last pass.
 void PointSource::Add(vtkPointSet* points, const Progress& progress)
 {
   if (!points || points->GetNumberOfPoints() == 0)
@@ -176,7 +176,15 @@ void PointSource::Add(vtkPointSet* points, const Progress& progress)
     std::vector<vtkIdType> places(std::min(PointsInStretch, count - first));
     std::iota(places.begin(), places.end(), first);
     const Bytes packed = rows.Pack(places);
-    this->File->Append(packed.data(), packed.size());
+    if (this->InLastStretch + static_cast<vtkIdType>(places.size()) > PointsInStretch ||
+      this->Stretches.empty())
+    {
+      this->Stretches.emplace_back(
+        this->Folder + "/added-points-" + std::to_string(this->Stretches.size()));
+      this->InLastStretch = 0;
+    }
+    this->Stretches.back().Append(packed.data(), packed.size());
+    this->InLastStretch += static_cast<vtkIdType>(places.size());
     this->SampleStretch(rows, first, first + static_cast<vtkIdType>(places.size()));
   }
   this->CountOfOwn += count;
@@ -391,11 +399,7 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
   this->NumberPoints(Part(progress, 0.0, 0.4), common);
   Cuts plane = this->CutPlane(engine.CountOfParts());
   counts.assign(engine.CountOfParts(), 0);
-  std::unique_ptr<SpoolFile::Reader> reader;
-  if (this->IsInFile())
-  {
-    reader = std::make_unique<SpoolFile::Reader>(*this->File);
-  }
+  auto next = this->Stretches.begin();
   const Progress sending = Part(progress, 0.4, 1.0);
   bool isMore = true;
   while (isMore)
@@ -404,17 +408,16 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
       Progress ofSlice = this->All.Watched(sending);
       double begin = 0.0, end = 1.0;
       // A rank whose slices are all sent sends nothing, but delivers.
-      if (reader && !reader->IsAtEnd())
+      if (next != this->Stretches.end())
       {
-        const Bytes stretch = reader->Next();
         this->Rows = PointRows(common.Kinds);
-        this->Rows.Unpack(&stretch, 1);
+        this->Rows.Unpack((next++)->Take());
         const double all = static_cast<double>(this->CountOfOwn);
         begin = static_cast<double>(this->Rows.Ids[0]) / all;
         end = begin + static_cast<double>(this->Rows.Count()) / all;
         this->Kept.resize(this->Rows.Count());
         std::iota(this->Kept.begin(), this->Kept.end(), vtkIdType(0));
-        // In the file, ids are places among the points of this rank.
+        // In files, ids are places among the points of this rank.
         for (vtkIdType& id : this->Rows.Ids)
         {
           id += this->First;
@@ -423,9 +426,8 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
       this->SendSlice(plane, engine, box, Part(ofSlice, begin, end), counts);
     });
     engine.Deliver();
-    isMore = IsOnAny(this->All, reader && !reader->IsAtEnd());
+    isMore = IsOnAny(this->All, next != this->Stretches.end());
   }
-  this->File.reset();
   return plane;
 }
 

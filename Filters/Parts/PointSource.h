@@ -74,7 +74,7 @@ private:
     Point2 At;
   };
 
-  bool IsInFile() const { return this->File != nullptr; }
+  bool IsInFile() const { return !this->Folder.empty(); }
   void TakeKinds(vtkPointSet* points);
   void SampleStretch(const PointRows& rows, vtkIdType first, vtkIdType last);
   void KeepSample();
@@ -91,7 +91,9 @@ private:
   // Points that come at once:
   vtkPointSet* Input = nullptr; // nullptr: no points
   // Those that come in slices:
-  std::unique_ptr<SpoolFile> File;
+  std::string Folder;           // empty: they come at once
+  std::vector<Inbox> Stretches; // each in a file of its own
+  vtkIdType InLastStretch = 0;  // points
   vtkNew<vtkPointData> Arrays; // those of the slices, without values
   std::vector<ArrayKind> Kinds;
   std::vector<SampledPoint> Sample;

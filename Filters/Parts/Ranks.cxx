@@ -3,7 +3,6 @@
 #include "Ranks.h"
 
 #include "Adapt/Adapt.h"
-#include "Kernel/Messages/Messages.h"
 #include "PackedData.h"
 
 #include "vtkCellArray.h"
@@ -63,9 +62,9 @@ bool AreEqual(vtkPolyData* one, vtkPolyData* other)
     AreEqual(one->GetVerts(), other->GetVerts()) && AreEqual(one->GetLines(), other->GetLines()) &&
     AreEqual(one->GetPolys(), other->GetPolys()) && AreEqual(one->GetStrips(), other->GetStrips());
 }
-} // namespace
 
-Ranks::Ranks(
+/** Whether an output is asked for in pieces. @throws Error if these are too many */
+bool IsInPieces(
   vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs)
 {
   const int port = request ? request->Get(vtkExecutive::FROM_OUTPUT_PORT()) : 0;
@@ -79,11 +78,23 @@ Ranks::Ranks(
       " on it, each of which makes one. Ask for as many pieces as there are processes, which "
       "SetController() names.");
   }
-  if (pieces > 1)
+  return pieces > 1;
+}
+} // namespace
+
+Ranks::Ranks(vtkMultiProcessController* controller)
+{
+  if (controller && controller->GetNumberOfProcesses() > 1)
   {
     this->Controller = controller;
     this->Notes = std::make_unique<FailureNotes>(controller);
   }
+}
+
+Ranks::Ranks(
+  vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs)
+  : Ranks(IsInPieces(controller, request, outputs) ? controller : nullptr)
+{
 }
 
 int Ranks::Own() const
@@ -356,6 +367,19 @@ bool IsOnAny(const Ranks& ranks, bool isOnThis)
   std::vector<vtkIdType> count = { isOnThis ? 1 : 0 };
   ranks.Sum(count);
   return count[0] > 0;
+}
+
+std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& ranks)
+{
+  std::vector<Message> all;
+  for (const Message& message : ranks.Collect(messages))
+  {
+    if (ranks.Own() == 0 && std::find(all.begin(), all.end(), message) == all.end())
+    {
+      all.push_back(message);
+    }
+  }
+  return all;
 }
 
 Box BoxOfAll(const Ranks& ranks, const Box& own)

@@ -10,6 +10,7 @@
 #include "Bytes.h"
 #include "FailureNotes.h"
 #include "Kernel/Base/Base.h"
+#include "Kernel/Messages/Messages.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
@@ -41,6 +42,8 @@ class Ranks
 public:
   /** One alone. */
   Ranks() = default;
+  /** All processes of a controller, whatever is asked for; nullptr: one alone. */
+  explicit Ranks(vtkMultiProcessController* controller);
   /**
    * @param[in] controller  may be nullptr
    * @throws Error if more pieces are asked for than there are ranks
@@ -137,6 +140,9 @@ private:
 bool CanAll(const Ranks& ranks, const std::function<bool()>& step);
 
 bool IsOnAny(const Ranks& ranks, bool isOnThis);
+
+/** The messages of all ranks, on the first, each once. */
+std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& ranks);
 
 /** The box of the boxes of all ranks. */
 Box BoxOfAll(const Ranks& ranks, const Box& own);

@@ -67,37 +67,22 @@ void SpoolFile::Append(const void* stretch, std::size_t size)
   ++this->Count;
 }
 
-SpoolFile::Reader::Reader(const SpoolFile& file)
-  : Path(file.Path)
-  , Left(file.Count)
-{
-}
-
-Bytes SpoolFile::Reader::Next()
-{
-  if (!this->File)
-  {
-    this->File.reset(Open(this->Path, "rb", "read").release());
-  }
-  std::size_t size = 0;
-  Bytes stretch;
-  if (std::fread(&size, sizeof(size), 1, this->File.get()) == 1)
-  {
-    stretch.Resize(size);
-  }
-  if (stretch.empty() || std::fread(stretch.data(), 1, size, this->File.get()) != size)
-  {
-    throw Failed("read", this->Path);
-  }
-  --this->Left;
-  return stretch;
-}
-
 void SpoolFile::ForEach(const std::function<void(Bytes&&)>& visit) const
 {
-  for (Reader reader(*this); !reader.IsAtEnd();)
+  const OpenFile file = this->IsEmpty() ? OpenFile() : Open(this->Path, "rb", "read");
+  for (std::size_t i = 0; i < this->Count; ++i)
   {
-    visit(reader.Next());
+    std::size_t size = 0;
+    Bytes stretch;
+    if (std::fread(&size, sizeof(size), 1, file.get()) == 1)
+    {
+      stretch.Resize(size);
+    }
+    if (stretch.empty() || std::fread(stretch.data(), 1, size, file.get()) != size)
+    {
+      throw Failed("read", this->Path);
+    }
+    visit(std::move(stretch));
   }
 }
 

@@ -9,9 +9,7 @@
 
 #include "Bytes.h"
 
-#include <cstdio>
 #include <functional>
-#include <memory>
 #include <string>
 
 namespace elevation
@@ -31,25 +29,7 @@ public:
 
   bool IsEmpty() const { return this->Count == 0; }
 
-  /** Hands over the stretches in their order. */
-  class Reader
-  {
-  public:
-    explicit Reader(const SpoolFile& file);
-    bool IsAtEnd() const { return this->Left == 0; }
-    /** @throws Error if the file is not as it was written */
-    Bytes Next();
-
-  private:
-    struct Closer
-    {
-      void operator()(std::FILE* file) const { std::fclose(file); }
-    };
-    std::string Path;
-    std::size_t Left;
-    std::unique_ptr<std::FILE, Closer> File;
-  };
-
+  /** Hands over the stretches in their order. @throws Error if the file is not as it was written */
   void ForEach(const std::function<void(Bytes&&)>& visit) const;
 
   /** From here on there are no stretches. */

@@ -110,6 +110,9 @@ public:
   /** A part of this rank, with its unused points. From memory it can be taken once. */
   SurfacePart Take(int part, const Progress& progress);
 
+  /** Removes the files of a part that is not needed again. */
+  void Forget(int part) { this->Store->Forget(part); }
+
 private:
   Progress Fraction(double begin, double end) const
   {

@@ -231,7 +231,7 @@ void TrimParts::SendBack(const BoundaryZone& zone)
   this->OfRank.RecoveredEdges = result.NumberOfRecoveredEdges;
   this->OfRank.PointsLeftOut = result.NumberOfPointsLeftOut;
   this->OfRank.GapTolerance = result.GapTolerance;
-  this->LossOfAll = result.Loss;
+  this->WarningOfAll = result.Warning;
   this->Outline->GetPointData()->CopyAllOn();
   PassRings(result.Boundary, this->Given ? this->Given : zone.Joined(), progress, this->Outline);
 }

@@ -69,7 +69,7 @@ public:
   vtkIdType CountOfKept() const { return this->Kept; }     ///< triangles, of all
   vtkIdType CountOfRings() const { return this->Rings; }   ///< of all
   vtkPolyData* Boundary() const { return this->Outline; }  ///< as lines; on one rank, else empty
-  const Message& Loss() const { return this->LossOfAll; }  ///< as of Trimmed; on the same rank
+  const Message& Warning() const { return this->WarningOfAll; } ///< as of Trimmed; on the same rank
   vtkIdType CountOfOwn() const { return this->Triangles; } ///< of this rank, in memory
   vtkIdType CountOfNear() const { return this->Near; }     ///< of them
 
@@ -107,7 +107,7 @@ private:
   vtkIdType Kept = 0, Rings = 0;
   bool AreMarked = false; // points that another part owns
   vtkNew<vtkPolyData> Outline;
-  Message LossOfAll;
+  Message WarningOfAll;
 };
 
 } // namespace elevation

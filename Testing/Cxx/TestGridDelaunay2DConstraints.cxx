@@ -370,7 +370,9 @@ void TestLinesOutside()
                       { 40, 9, 0 } } }), 2).empty(),
     "nor are two of five");
   Check(warningOf(MakeLines({ { { -0.5, -0.5, 0 }, { 8.5, -0.5, 0 }, { 8.5, 8.5, 0 },
-                      { -0.5, 8.5, 0 } } }, true), 4).empty(),
+                    { -0.5, 8.5, 0 }, { -0.5, -0.5, 0 } } }),
+          4)
+          .empty(),
     "nor is an outline around the points");
 }
 

@@ -606,7 +606,8 @@ void TestErrors()
     "The boundary encloses no triangle of the mesh. It is at x 10 to 19, y 10 to 20, the mesh at "
     "x 0 to 8, y 0 to 8: are both in the same coordinates?");
   ExpectError(mesh,
-    MakeRings({ { { 1, 1 }, { 4, 1 }, { 1, 5 } }, { { 1, 1 }, { 4, 1 }, { 1, 5 } } }), true,
+    MakeRings({ { { 1, 1 }, { 4, 1 }, { 1, 5 } }, { { 1, 1 }, { 2.5, 1 }, { 4, 1 }, { 1, 5 } } }),
+    true,
     "Its first ring begins at (1, 1); of rings in each other, what lies between two is enclosed.");
   ExpectError(mesh,
     MakeRings({ { { 0.5, 0.5 }, { 5, 1 }, { 4, 5 } }, { { 3, 0.5 }, { 7, 3 }, { 2, 4 } } }), true,

@@ -74,7 +74,7 @@ def in_one_process(row):
     expected = outcomes.joined([modes.in_memory(row, case)])
     for mode, count in (("1 piece", 1), ("4 pieces", 4)):
         found[mode] = "none", ""
-        if modes.has_pieces(row, case):
+        if modes.has_pieces(case):
             parts = modes.in_pieces(row, case, [(i, 3) for i in range(3)], range(count), count)
             found[mode] = word_for(row, case, parts, expected)
             if found[mode][0] == "gathers":
@@ -102,23 +102,15 @@ def on_ranks(row):
     parts = gather(modes.on_rank(row, case, RANK, COUNT))
     made = {"%d ranks" % COUNT: parts}
     mode = "%d ranks, 2 pieces each" % COUNT
-    found, is_apart = {}, False
-    if mode in features.MODES and modes.has_pieces(row, case):
-        pieces = modes.in_pieces(row, case, [(RANK, COUNT)], range(2 * COUNT), 2 * COUNT)
-        alone = outcomes.joined([modes.in_memory(row, case, 1, (RANK, COUNT))])
-        messages = pieces[0]["messages"]
-        why = outcomes.difference({**outcomes.joined(pieces), "messages": alone["messages"]}, alone)
-        own = pieces[2 * RANK : 2 * RANK + 2] or pieces[:1]
-        own[0]["messages"] = messages
-        made[mode] = sum(gather(own), [])
-        is_apart = not any(gather(why))
+    found = {}
+    if mode in features.MODES and modes.has_pieces(case):
+        own = range(2 * RANK, 2 * RANK + 2)
+        made[mode] = sum(gather(modes.in_pieces(row, case, [(RANK, COUNT)], own, 2 * COUNT)), [])
     elif mode in features.MODES:
         found[mode] = "none", ""
     if RANK == 0:
         expected = outcomes.joined([modes.in_memory(row, case)])
-        found = {**{name: word_for(row, case, parts, expected) for name, parts in made.items()}, **found}
-        if is_apart and found[mode][0].startswith("differs"):
-            found[mode] = "apart", ""
+        found.update((name, word_for(row, case, parts, expected)) for name, parts in made.items())
     return found
 
 
@@ -160,7 +152,8 @@ def check_properties(rows):
             shown = {row.properties[one] for row in mine if one in row.properties}
             check(len(shown) == wanted, "%s: of %d values of %s, rows have %s" % (name, wanted, one, shown))
     has = outcomes.own_names(vtkReconstructPieces(), "Set")
-    check(has == {"Folder", "FillHoles", "MemoryOfHole"}, "modes.in_pieces() sets all of vtkReconstructPieces: %s" % has)
+    known = {"Controller", "Folder", "KeepFiles", "TrimOutward", "FillHoles", "MemoryOfHole"}
+    check(has == known, "modes.in_pieces() sets all of vtkReconstructPieces: %s" % has)
 
 
 def check_page():

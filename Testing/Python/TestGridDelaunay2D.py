@@ -307,6 +307,27 @@ class TestGridDelaunay2D(unittest.TestCase):
         self.assertEqual(fields.GetArray("NumberOfAddedPoints").GetValue(0), 3)
         self.assertIsNone(fields.GetArray("Lattice"))
 
+    def test_polygons_among_constraints_are_lines_and_a_warning(self):
+        lines = cloud(numpy.array([[0.2, 0.2, 0.0], [0.8, 0.2, 0.0], [0.5, 0.8, 0.0]]))
+        cells = vtkCellArray()
+        cells.InsertNextCell(3, [0, 1, 2])
+        lines.SetPolys(cells)
+        delaunay = vtkGridDelaunay2D()
+        delaunay.SetInputData(cloud(numpy.random.RandomState(4).rand(100, 3)))
+        delaunay.SetSourceData(lines)
+        with Messages(delaunay) as messages:
+            delaunay.Update()
+        self.assertEqual([one.code for one in messages.warnings], ["PolygonsAreLines"])
+        self.assertEqual(messages.warnings[0].values, {"count": "1"})
+        self.assertIn("vtkTrimOutwardTriangles", messages.warnings[0])
+        hull = delaunay.GetOutput().GetNumberOfCells()
+        lines.SetLines(cells)
+        lines.SetPolys(vtkCellArray())
+        with Messages(delaunay) as messages:
+            delaunay.Update()
+        self.assertEqual(messages.warnings, [])
+        self.assertLessEqual(delaunay.GetOutput().GetNumberOfCells(), hull)
+
 
 if __name__ == "__main__":
     unittest.main(argv=["TestGridDelaunay2D"])

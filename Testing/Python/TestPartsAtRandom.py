@@ -35,9 +35,10 @@ UNLIMITED = resource.getrlimit(resource.RLIMIT_FSIZE)
 # The words of the table, which say what is compared in a mode.
 WORDS = {(row.filter, row.feature): row.cells for row in features.rows()}
 WITH_PIECES = "2 ranks, 2 pieces each" if COUNT > 1 else "4 pieces"
-# Messages of pieces that say less than those of memory: no better limit of edges, and not where things are.
-WITHOUT_MORE = ("are left without a triangle", "The boundary encloses no triangle of the mesh.")
-REFUSED_IN_PIECES = "The boundary is too small or too large for pieces"  # in memory it can be trimmed
+# A message of pieces that says less than that of memory: no better limit of edges.
+WITHOUT_MORE = "are left without a triangle"
+# In memory it can be trimmed.
+REFUSED_IN_PIECES = ("The boundary is too small or too large for pieces", "What is near the borders of pieces does not")
 LATTICES = ((612000.0, 6073000.0, 25.0, 0.0, 0.0, 12.5), (612000.0, 6073000.0, 20.0, 15.0, -9.0, 12.0))
 # What properties may be set to, which are the same in all modes; lengths are shares of an even distance.
 NUMBERS = {
@@ -111,14 +112,16 @@ def is_same(row, case, mode):
 
 def pass_known_messages(found, expected, case, mode):
     """Makes messages equal where these differ in what is known to: numbers of points, which are global ids on
-    ranks and of parts in pieces, and in pieces what comes after a sentence.
+    ranks and of parts in pieces; in pieces the extent of the mesh, which in memory has points without a triangle
+    too, and what comes after a sentence.
     """
-    if "piece" in mode or "GlobalIds" in case.roles.values():
-        for made in (found, expected):
-            made["messages"] = [(event, re.sub(r"\b([Pp]oint) \d+", r"\1", text)) for event, text in made["messages"]]
-    begins = WITHOUT_MORE if "piece" in mode else ()
+    varying = [r"(?<=\b[Pp]oint) \d+"] if "piece" in mode or "GlobalIds" in case.roles.values() else []
+    varying += [r"(?<=the mesh at) .*(?=: are both)"] * ("piece" in mode)
+    for made in (found, expected):
+        for pattern in varying:
+            made["messages"] = [(event, re.sub(pattern, "", text)) for event, text in made["messages"]]
     for i, ((event, told), (_, right)) in enumerate(zip(found["messages"], expected["messages"])):
-        if any(begin in told for begin in begins) and right.startswith(told):
+        if "piece" in mode and WITHOUT_MORE in told and right.startswith(told):
             found["messages"][i] = event, right
 
 
@@ -132,8 +135,6 @@ def why_another(parts, whole, row, case, mode):
     pass_known_messages(found, expected, case, mode)
     if "piece" in mode and any(text.startswith(REFUSED_IN_PIECES) for _, text in found["messages"]):
         return ""
-    if "piece" in mode and row.filter == "Fill" and not any(len(block["triangles"]) for block in expected["ports"][0]):
-        found["ports"] = expected["ports"] = []  # without the arrays of filling
     if modes.has_error(expected["messages"]):
         if any(len(block["points"]) for port in found["ports"] for block in port):
             return "there are points after an error"
@@ -150,15 +151,15 @@ def compare(number, seed):
     case.dealt.setdefault(slices, numpy.sort(random.integers(slices, size=len(case.xyz))))
     made = {("2 ranks", "%d ranks" % COUNT): gather(modes.on_rank(row, case, RANK, COUNT))}
     own = {}
-    if modes.has_pieces(row, case) and is_same(row, case, WITH_PIECES):
+    if modes.has_pieces(case) and is_same(row, case, WITH_PIECES):
         of_each = int(random.integers(1, 4))
         asked = range(RANK * of_each, (RANK + 1) * of_each)
         made[WITH_PIECES, "%d ranks, %d pieces each" % (COUNT, of_each)] = sum(
             gather(modes.in_pieces(row, case, [(RANK, COUNT)], asked, COUNT * of_each)), [])
-    if RANK == LAST and modes.has_pieces(row, case) and is_same(row, case, "4 pieces"):
+    if RANK == LAST and modes.has_pieces(case) and is_same(row, case, "4 pieces"):
         of_slices = [(i, slices) for i in range(slices)]
         own["4 pieces", "%d slices, %d pieces" % (slices, pieces)] = modes.in_pieces(
-            row, case, of_slices, range(pieces), pieces)
+            row, case, of_slices, range(pieces), pieces, True)
     if RANK == 0:
         own["memory"] = [modes.in_memory(row, case)]
     for one in gather(own):
@@ -279,6 +280,10 @@ def draw_to_fail(random):
     return types.SimpleNamespace(filter=name, feature="", properties=properties), case
 
 
+def counts_of_points(part):
+    return [len(block["points"]) for block in sum(part["ports"], [])]
+
+
 def check_failure(number, seed):
     """A surface is made; again, where something fails at a moment; and once more. @return whether it failed"""
     random = numpy.random.default_rng((seed, number, COUNT, 0))
@@ -289,8 +294,8 @@ def check_failure(number, seed):
     kind, culprit = maker.KINDS[random.integers(len(maker.KINDS))], random.integers(COUNT)
     claim = "%s on rank %d of %d, %s, failure %d (--seed %d --first %d --clouds 0 --aborts 1): " % (
         kind, culprit, COUNT, way if way == "memory" else "%d pieces each" % way, number, seed, number)
-    parts, reports = make_with_failure(random, maker, kind, 0)
-    right = outcomes.joined(sum(gather(parts), []))
+    usual, reports = make_with_failure(random, maker, kind, 0)
+    right = outcomes.joined(sum(gather(usual), []))
     at = 1 + int(random.integers(max(1, gather(reports)[culprit])))
     if isinstance(maker, InPieces):
         check(maker.forget(False), claim + "the folder is empty after Reset()")
@@ -301,8 +306,10 @@ def check_failure(number, seed):
         event = "WarningEvent" if kind == "abort" else "ErrorEvent"
         is_right = len(told) == 1 and told[0][0] == event and is_failure(told)
         check(is_right, "%s%s is all that is reported" % (claim, told))
-        points = [len(block["points"]) for block in sum(parts[-1]["ports"], [])]
-        check(not any(points), "%sthere are points: %s" % (claim, points))
+        # A piece that is passed on may be there where another rank fails to pass on its own.
+        points, others = counts_of_points(parts[-1]), counts_of_points(usual[len(parts) - 1])
+        is_passed = way != "memory" and RANK != culprit and points == others
+        check(is_passed or not any(points), "%sthere are points: %s" % (claim, points))
     else:
         why = outcomes.difference(outcomes.joined(sum(gather(parts), [])), right)
         check(not why, "%snothing is reported, and %s" % (claim, why))

@@ -254,6 +254,33 @@ class InPieces(WithFilter):
         errors = self.errors_of(source, lambda: self.assertFalse(source.AddPoints(extra)))
         self.assertIn("Points cannot be added", errors[0])
 
+    def test_files_take_56_bytes_a_point_and_go_with_their_pieces(self):
+        points = numpy.random.default_rng(8).random((60000, 3))
+        expected = [all_triangles([part]) for part in self.parts(self.source(points), 5)]
+        source = self.source(points, at_once=7000)
+        source.KeepFilesOff()
+        folder, sizes = source.GetFolder(), []
+
+        def look(*_):
+            sizes.append(sum(entry.stat().st_size for entry in os.scandir(folder)))
+
+        tag = source.AddObserver("ProgressEvent", look)
+        look()
+        for i in range(5):
+            source.UpdatePiece(i, 5, 0)
+            numpy.testing.assert_array_equal(all_triangles([source.GetOutput()]), expected[i])
+            look()
+        source.RemoveObserver(tag)
+        self.assertGreater(len(sizes), 20)
+        self.assertGreater(sizes[0], 32 * len(points))
+        self.assertLess(max(sizes), 62 * len(points))  # the rest is that of seams
+        self.assertLess(sizes[-1], 0.02 * max(sizes))
+        errors = self.errors_of(source, lambda: source.UpdatePiece(0, 5, 0))
+        self.assertEqual(len(errors), 1)
+        self.assertIn("Piece 0 has been made and its files removed", errors[0])
+        source.Reset()
+        self.assertEqual(os.listdir(folder), [])
+
     def test_reset_removes_the_files_and_begins_again(self):
         source = self.source(clouds()["random"])
         self.parts(source, 3)

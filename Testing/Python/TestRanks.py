@@ -7,8 +7,9 @@ import TestExchanges
 import TestManyRanks
 import TestManyRanksConstraints
 import TestManyRanksFill
+import TestManyRanksPieces
 import TestManyRanksTrim
 
 OPTIONS = on_ranks.options_of()
-TESTS = TestManyRanks, TestManyRanksConstraints, TestManyRanksFill, TestManyRanksTrim
+TESTS = TestManyRanks, TestManyRanksConstraints, TestManyRanksFill, TestManyRanksPieces, TestManyRanksTrim
 on_ranks.end("; ".join([TestExchanges.main(), *(test.main(OPTIONS) for test in TESTS)]))

@@ -10,8 +10,10 @@ import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkFiltersSources import vtkRegularPolygonSource
 
 from vtkelevationsurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
+from vtkelevationsurface.messages import Messages
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from mesh_rules import findings  # noqa: E402
@@ -131,6 +133,23 @@ class TestTrimOutwardTriangles(unittest.TestCase):
         self.assertAlmostEqual(area(trim.GetOutput(0)), expected, places=12)
         self.check_parts(trim)
         self.assertGreater(trim.GetNumberOfRecoveredEdges(), 20)
+
+    def test_a_ring_that_is_there_as_polygon_and_as_line_counts_once(self):
+        ring = vtkRegularPolygonSource()  # makes both
+        ring.SetRadius(0.3)
+        ring.SetCenter(0.5, 0.5, 0.0)
+        trim = vtkTrimOutwardTriangles()
+        trim.SetInputData(triangulate(numpy.random.RandomState(3).rand(500, 2)))
+        trim.SetBoundaryConnection(ring.GetOutputPort())
+        with Messages(trim) as messages:
+            trim.Update()
+        self.assertEqual(messages.errors, [])
+        self.assertEqual([one.code for one in messages.warnings], ["RingsRepeated"])
+        self.assertAlmostEqual(area(trim.GetOutput(0)), 3 * 0.3**2 * math.sin(math.pi / 3))
+        ring.GeneratePolylineOff()
+        with Messages(trim) as messages:
+            trim.Update()
+        self.assertEqual(messages.warnings, [])
 
     def test_a_boundary_on_a_map_cuts_the_surface_as_it_is(self):
         # A plane, so that every inserted elevation is known; the boundary reaches beyond the points.

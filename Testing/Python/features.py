@@ -12,8 +12,7 @@ import types
 
 MODES = ("1 thread", "2 threads", "2 ranks", "4 ranks", "1 piece", "4 pieces", "2 ranks, 2 pieces each")
 WORDS = {
-    "s": "same", "g": "gathers", "r": "refused", "a": "apart",
-    "d": "differs", "-": "none",
+    "s": "same", "g": "gathers", "r": "refused", "d": "differs", "-": "none",
 }
 CLASSES = {
     "Delaunay": "vtkGridDelaunay2D", "Trim": "vtkTrimOutwardTriangles", "Fill": "vtkFillElevationHoles",
@@ -24,67 +23,67 @@ CLASSES = {
 # Documentation/Features.md, which explains the words.
 TABLE = """
 Delaunay
-points                            |                            | points                       | s  s  s  s  s  s  a
-points of floats                  |                            | points + float               | s  s  s  s  s  s  a
-search by voxel traversal         | SearchStrategy=0           | points                       | s  s  s  s  s  s  a
-search for compactness            | SearchStrategy=1           | points                       | s  s  s  s  s  s  a
-lattice found                     | LatticeMode=0              | lattice                      | s  s  s  s  s  s  a
-lattice given                     | Lattice=(600000.0, 6000000.0, 2.0, 1.5, -0.9, 1.2) | sparse lattice               | s  s  s  s  s  s  a
-lattice off                       | LatticeMode=1              | lattice                      | s  s  s  s  s  s  a
-lattice within a tolerance        | LatticeTolerance=0.1       | loose lattice                | s  s  s  s  s  s  a
-edge limit                        | MaximumEdgeLength=2.0      | points                       | s  s  s  s  s  s  a
-edge limit that leaves most out   | MaximumEdgeLength=0.3      | points                       | s  s  s  s  d1 d1 a
+points                            |                            | points                       | s  s  s  s  s  s  s
+points of floats                  |                            | points + float               | s  s  s  s  s  s  s
+search by voxel traversal         | SearchStrategy=0           | points                       | s  s  s  s  s  s  s
+search for compactness            | SearchStrategy=1           | points                       | s  s  s  s  s  s  s
+lattice found                     | LatticeMode=0              | lattice                      | s  s  s  s  s  s  s
+lattice given                     | Lattice=(600000.0, 6000000.0, 2.0, 1.5, -0.9, 1.2) | sparse lattice               | s  s  s  s  s  s  s
+lattice off                       | LatticeMode=1              | lattice                      | s  s  s  s  s  s  s
+lattice within a tolerance        | LatticeTolerance=0.1       | loose lattice                | s  s  s  s  s  s  s
+edge limit                        | MaximumEdgeLength=2.0      | points                       | s  s  s  s  s  s  s
+edge limit that leaves most out   | MaximumEdgeLength=0.3      | points                       | s  s  s  s  d1 d1 d1
 elevation error                   | MaximumElevationError=0.03  | points                       | s  s  g  g  r  r  r
 the same, edges by their data     | MaximumElevationError=0.03, DataDependentEdges=True | points                       | s  s  g  g  r  r  r
 the same, with constraints        | MaximumElevationError=0.03  | straight line                | s  s  g  g  r  r  r
 the same, constraints simplified  | MaximumElevationError=0.03, SimplifyConstraints=True | straight line                | s  s  g  g  r  r  r
-constraints                       |                            | breaklines                   | s  s  s  s  s  s  a
-constraints that one rank has     |                            | breaklines + on one          | s  s  s  s  s  s  a
-constraints, values of points     |                            | breaklines + strings + integers | s  s  s  s  s  s  a
+constraints                       |                            | breaklines                   | s  s  s  s  s  s  s
+constraints that one rank has     |                            | breaklines + on one          | s  s  s  s  s  s  s
+constraints, values of points     |                            | breaklines + strings + integers | s  s  s  s  s  s  s
 constraints draped                | DrapeConstraints=True      | breaklines                   | s  s  g  g  r  r  r
-duplicates, keep the first        | DuplicatePolicy=0          | duplicates                   | s  s  s  s  s  s  a
-duplicates, keep the last         | DuplicatePolicy=1          | duplicates                   | s  s  s  s  s  s  a
-duplicates, keep the lowest       | DuplicatePolicy=2          | duplicates                   | s  s  s  s  s  s  a
-duplicates, keep the highest      | DuplicatePolicy=3          | duplicates                   | s  s  s  s  s  s  a
-points that are not finite        |                            | not finite                   | s  s  s  s  s  s  a
-two points                        |                            | two points                   | s  s  s  s  s  s  a
-no points                         |                            | no points                    | s  s  s  s  s  s  a
-points of another kind of data set|                            | points + unstructured        | s  s  s  s  s  s  a
-point data: float                 |                            | points + float array         | s  s  s  s  s  s  a
-point data: double                |                            | points + double array        | s  s  s  s  s  s  a
-point data: integers of all sizes |                            | points + integers            | s  s  s  s  s  s  a
-point data: strings               |                            | points + strings             | s  s  s  s  s  s  a
-point data: vectors               |                            | points + vectors             | s  s  s  s  s  s  a
-point data: normals               |                            | points + normals             | s  s  s  s  s  s  a
-point data: pedigree ids          |                            | points + pedigree ids        | s  s  s  s  s  s  a
+duplicates, keep the first        | DuplicatePolicy=0          | duplicates                   | s  s  s  s  s  s  s
+duplicates, keep the last         | DuplicatePolicy=1          | duplicates                   | s  s  s  s  s  s  s
+duplicates, keep the lowest       | DuplicatePolicy=2          | duplicates                   | s  s  s  s  s  s  s
+duplicates, keep the highest      | DuplicatePolicy=3          | duplicates                   | s  s  s  s  s  s  s
+points that are not finite        |                            | not finite                   | s  s  s  s  s  s  s
+two points                        |                            | two points                   | s  s  s  s  s  s  s
+no points                         |                            | no points                    | s  s  s  s  s  s  s
+points of another kind of data set|                            | points + unstructured        | s  s  s  s  s  s  s
+point data: float                 |                            | points + float array         | s  s  s  s  s  s  s
+point data: double                |                            | points + double array        | s  s  s  s  s  s  s
+point data: integers of all sizes |                            | points + integers            | s  s  s  s  s  s  s
+point data: strings               |                            | points + strings             | s  s  s  s  s  s  s
+point data: vectors               |                            | points + vectors             | s  s  s  s  s  s  s
+point data: normals               |                            | points + normals             | s  s  s  s  s  s  s
+point data: pedigree ids          |                            | points + pedigree ids        | s  s  s  s  s  s  s
 point data: global ids            |                            | points + global ids          | s  s  s  s  r  r  r
-copies of points, marked as ghosts|                            | points + copies              | s  s  s  s  d4 d4 a
+copies of points, marked as ghosts|                            | points + copies              | s  s  s  s  d4 d4 d4
 composite: multiblock             |                            | points + multiblock          | s  s  s  s  -  -  -
 composite: collection             |                            | points + collection          | s  s  s  s  -  -  -
 composite: partitions             |                            | points + partitions          | s  s  d3 d3 -  -  -
 
 Trim
-boundary given                    |                            | coast                        | s  s  s  s  s  s  a
-boundary that one rank has        |                            | coast + on one               | s  s  s  s  s  s  a
-boundary with lakes and an island |                            | coast and lakes              | s  s  s  s  s  s  a
-test exact                        | OutwardTest=0              | coast                        | s  s  s  s  s  s  a
+boundary given                    |                            | coast                        | s  s  s  s  s  s  s
+boundary that one rank has        |                            | coast + on one               | s  s  s  s  s  s  s
+boundary with lakes and an island |                            | coast and lakes              | s  s  s  s  s  s  s
+test exact                        | OutwardTest=0              | coast                        | s  s  s  s  s  s  s
 test by inward normals            | OutwardTest=1              | coast                        | s  s  g  g  r  r  r
-edges not recovered, they are there     | RecoverBoundary=False      | coast along edges            | s  s  s  s  s  s  a
-edges not recovered, they are missing   | RecoverBoundary=False      | coast                        | s  s  s  s  s  s  a
-edges follow the surface, also of a lattice | BoundaryEdges=0        | lattice and lakes            | s  s  s  s  s  s  a
-edges straight                    | BoundaryEdges=1            | coast                        | s  s  s  s  s  s  a
-edges straight, own elevations    | BoundaryEdges=2            | coast                        | s  s  s  s  s  s  a
-boundary found                    |                            | gaps                         | s  s  s  s  -  -  -
-boundary found along tracks       |                            | tracks                       | s  s  s  s  -  -  -
-boundary found by inward normals  | OutwardTest=1              | gaps                         | s  s  g  g  -  -  -
-gap tolerance                     | GapTolerance=2.5           | gaps                         | s  s  s  s  -  -  -
-steps of a grid                   | GridSteps=(2.0, 1.5, -0.9, 1.2) | lattice                      | s  s  s  s  -  -  -
-points of floats                  |                            | coast + float                | s  s  s  s  s  s  a
-point data: float, double         |                            | coast + float array + double array | s  s  s  s  s  s  a
-point data: integers, strings     |                            | coast + integers + strings   | s  s  s  s  s  s  a
-point data: vectors               |                            | coast + vectors              | s  s  s  s  s  s  a
-point data: normals               |                            | coast + normals              | s  s  s  s  s  s  a
-point data: pedigree ids          |                            | coast + pedigree ids         | s  s  s  s  s  s  a
+edges not recovered, they are there     | RecoverBoundary=False      | coast along edges            | s  s  s  s  s  s  s
+edges not recovered, they are missing   | RecoverBoundary=False      | coast                        | s  s  s  s  s  s  s
+edges follow the surface, also of a lattice | BoundaryEdges=0        | lattice and lakes            | s  s  s  s  s  s  s
+edges straight                    | BoundaryEdges=1            | coast                        | s  s  s  s  s  s  s
+edges straight, own elevations    | BoundaryEdges=2            | coast                        | s  s  s  s  s  s  s
+boundary found                    |                            | gaps                         | s  s  s  s  s  s  s
+boundary found along tracks       |                            | tracks                       | s  s  s  s  s  s  s
+boundary found by inward normals  | OutwardTest=1              | gaps                         | s  s  g  g  r  r  r
+gap tolerance                     | GapTolerance=2.5           | gaps                         | s  s  s  s  s  s  s
+steps of a grid                   | GridSteps=(2.0, 1.5, -0.9, 1.2) | lattice                      | s  s  s  s  s  s  s
+points of floats                  |                            | coast + float                | s  s  s  s  s  s  s
+point data: float, double         |                            | coast + float array + double array | s  s  s  s  s  s  s
+point data: integers, strings     |                            | coast + integers + strings   | s  s  s  s  s  s  s
+point data: vectors               |                            | coast + vectors              | s  s  s  s  s  s  s
+point data: normals               |                            | coast + normals              | s  s  s  s  s  s  s
+point data: pedigree ids          |                            | coast + pedigree ids         | s  s  s  s  s  s  s
 point data: global ids            |                            | coast + global ids           | s  s  s  s  r  r  r
 composite: multiblock             |                            | coast + multiblock           | s  s  s  s  -  -  -
 triangles from elsewhere, cell data|                            | surface and coast            | s  s  s  s  -  -  -
@@ -94,28 +93,28 @@ the same, with marked copies      |                            | surface and coa
 the same, boundary found          |                            | surface                      | s  s  s  s  -  -  -
 
 Fill
-interpolation: mean of neighbours | Interpolation=0            | coast and lakes              | s  s  s  s  s  s  a
-interpolation: membrane           | Interpolation=1            | coast and lakes              | s  s  s  s  s  s  a
-interpolation: thin plate         | Interpolation=2            | coast and lakes              | s  s  s  s  s  s  a
-interpolation: adaptive           | Interpolation=3            | coast and lakes              | s  s  s  s  s  s  a
-interpolation: cubic spline       | Interpolation=4            | coast and lakes              | s  s  s  s  s  s  a
-on the nodes of a lattice         |                            | lattice and lakes            | s  s  s  s  s  s  a
+interpolation: mean of neighbours | Interpolation=0            | coast and lakes              | s  s  s  s  s  s  s
+interpolation: membrane           | Interpolation=1            | coast and lakes              | s  s  s  s  s  s  s
+interpolation: thin plate         | Interpolation=2            | coast and lakes              | s  s  s  s  s  s  s
+interpolation: adaptive           | Interpolation=3            | coast and lakes              | s  s  s  s  s  s  s
+interpolation: cubic spline       | Interpolation=4            | coast and lakes              | s  s  s  s  s  s  s
+on the nodes of a lattice         |                            | lattice and lakes            | s  s  s  s  s  s  s
 long triangles opened             | MaximumEdgeLength=2.5      | coast and lakes              | s  s  g  g  r  r  r
-largest hole                      | MaximumHoleSize=4.0        | coast and lakes              | s  s  s  s  s  s  a
-most edges of a hole              | MaximumHoleEdges=13        | coast and lakes              | s  s  s  s  s  s  a
-what the boundary cut out, open   |                            | coast and lakes              | s  s  s  s  s  s  a
-what the boundary cut out, filled | FillCutOuts=True           | coast and lakes              | s  s  s  s  s  s  a
-most points inserted              | MaximumNumberOfInsertedPoints=50, Trim.BoundaryEdges=1 | coast and lakes              | s  s  s  s  s  s  a
-most points expected              | MaximumNumberOfExpectedPoints=20 | coast and lakes              | s  s  s  s  s  s  a
-spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  a
-point data not interpolated       | InterpolatePointData=False | coast and lakes              | s  s  s  s  s  s  a
-holes of an edge limit            | Delaunay.MaximumEdgeLength=2.2 | points                       | s  s  s  s  s  s  a
-points of floats                  |                            | coast and lakes + float      | s  s  s  s  s  s  a
-point data: float, double         |                            | coast and lakes + float array + double array | s  s  s  s  s  s  a
-point data: integers, strings     |                            | coast and lakes + integers + strings | s  s  s  s  s  s  a
-point data: vectors               |                            | coast and lakes + vectors    | s  s  s  s  s  s  a
-point data: normals               |                            | coast and lakes + normals    | s  s  s  s  s  s  a
-point data: pedigree ids          |                            | coast and lakes + pedigree ids | s  s  s  s  s  s  a
+largest hole                      | MaximumHoleSize=4.0        | coast and lakes              | s  s  s  s  s  s  s
+most edges of a hole              | MaximumHoleEdges=13        | coast and lakes              | s  s  s  s  s  s  s
+what the boundary cut out, open   |                            | coast and lakes              | s  s  s  s  s  s  s
+what the boundary cut out, filled | FillCutOuts=True           | coast and lakes              | s  s  s  s  s  s  s
+most points inserted              | MaximumNumberOfInsertedPoints=50, Trim.BoundaryEdges=1 | coast and lakes              | s  s  s  s  s  s  s
+most points expected              | MaximumNumberOfExpectedPoints=20 | coast and lakes              | s  s  s  s  s  s  s
+spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  s
+point data not interpolated       | InterpolatePointData=False | coast and lakes              | s  s  s  s  s  s  s
+holes of an edge limit            | Delaunay.MaximumEdgeLength=2.2 | points                       | s  s  s  s  s  s  s
+points of floats                  |                            | coast and lakes + float      | s  s  s  s  s  s  s
+point data: float, double         |                            | coast and lakes + float array + double array | s  s  s  s  s  s  s
+point data: integers, strings     |                            | coast and lakes + integers + strings | s  s  s  s  s  s  s
+point data: vectors               |                            | coast and lakes + vectors    | s  s  s  s  s  s  s
+point data: normals               |                            | coast and lakes + normals    | s  s  s  s  s  s  s
+point data: pedigree ids          |                            | coast and lakes + pedigree ids | s  s  s  s  s  s  s
 point data: global ids            |                            | coast and lakes + global ids | s  s  s  d2 r  r  r
 composite: multiblock             |                            | coast and lakes + multiblock | s  s  s  s  -  -  -
 triangles from elsewhere, cell data|                            | surface                      | s  s  s  s  -  -  -

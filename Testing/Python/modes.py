@@ -428,14 +428,16 @@ def on_rank(row, case, rank, count):
     return made_by(steps, messages)
 
 
-def has_pieces(row, case):
-    """Whether vtkReconstructPieces can be asked for it: it takes points, and no outline is extracted."""
-    return case.triangles is None and not case.composite and (row.filter != "Trim" or bool(case.rings))
+def has_pieces(case):
+    """Whether vtkReconstructPieces can be asked for it: it takes points, in one block."""
+    return case.triangles is None and not case.composite
 
 
-def source_of_pieces(row, case, folder):
-    """A source without points, whose files go to a folder."""
+def source_of_pieces(row, case, folder, is_alone=False):
+    """A source without points, whose files go to a folder; of all ranks together, or of this one alone."""
     source = vtkReconstructPieces()
+    if is_alone:
+        source.SetController(None)
     source.SetFolder(folder)
     of = {name: getattr(source, "Get" + name)() for name in FILTERS}
     for algorithm in of.values():
@@ -444,6 +446,7 @@ def source_of_pieces(row, case, folder):
         of["Delaunay"].SetSourceData(meshes.lines(*case.lines))
     if case.rings:
         of["Trim"].SetBoundaryData(meshes.rings(case.rings))
+    source.SetTrimOutward(row.filter == "Trim")
     source.SetFillHoles(row.filter == "Fill")
     source.SetMemoryOfHole(1e9)
     set_properties(row, of.get)
@@ -473,10 +476,10 @@ def has_error(messages):
     return any(event == "ErrorEvent" for event, _ in messages)
 
 
-def in_pieces(row, case, parts, pieces, count):
+def in_pieces(row, case, parts, pieces, count, is_alone=False):
     """The same, of a source in a folder of its own."""
     with tempfile.TemporaryDirectory() as folder:
-        source = source_of_pieces(row, case, folder)
+        source = source_of_pieces(row, case, folder, is_alone)
         made = pieces_made(source, row, case, parts, pieces, count, has_error)
         source.Reset()
     return made

@@ -144,9 +144,11 @@ def made_by(algorithms, messages, ids=None, without=()):
 
 
 def take_gathering(messages):
-    """Takes those away that tell of a surface on one rank, and returns them."""
-    told = [message for message in messages if "is made on one rank" in message[1]]
-    messages[:] = [message for message in messages if message not in told]
+    """Takes the lines away that report a surface on one rank, and returns them."""
+    lines = [(event, line) for event, text in messages for line in text.splitlines()]
+    told = [line for line in lines if "is made on one rank" in line[1]]
+    if told:
+        messages[:] = [line for line in lines if line not in told]
     return told
 
 

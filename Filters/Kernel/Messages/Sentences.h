@@ -67,6 +67,10 @@ ELEVATION_SENTENCE(TooManyPointsInLines, "The lines of the {input} have more tha
 ELEVATION_SENTENCE(NoSuchPointOfLine, "Point {point} of the {owner} cell {cell} does not exist.");
 ELEVATION_SENTENCE(NonFinitePointOfLine,
   "Point {point} of the {owner} cell {cell} has a coordinate that is not finite.");
+ELEVATION_SENTENCE(PolygonsAreLines,
+  "Polygons of the constraints ({count}) are taken as lines: their edges become edges of the "
+  "surface, and nothing is cut away. To cut along polygons, give them to vtkTrimOutwardTriangles "
+  "as its boundary.");
 ELEVATION_SENTENCE(LinesElsewhere,
   "The {input} do not overlap the points. The {input} are at {box}, the points at {extent}: are "
   "both in the same coordinates?");
@@ -118,6 +122,9 @@ ELEVATION_SENTENCE(BoundaryLeavesOutAll,
   "The extracted boundary leaves out every point: at a gap tolerance of {tolerance} spacings, "
   "that is no surface. A {property:GapTolerance} of {better} would keep {kept}. Or give the "
   "boundary.");
+ELEVATION_SENTENCE(RingsRepeated,
+  "Rings of the boundary that are there more than once ({count} more, the first of them the "
+  "{first}) count once.");
 ELEVATION_SENTENCE(
   BoundaryEnclosesNothing, "The boundary encloses no triangle of the mesh. {reason}");
 /** @} */

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <unordered_map>
 
 namespace elevation
@@ -56,6 +57,11 @@ bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) co
 
 namespace
 {
+
+bool IsBefore(const Ends& one, const Ends& other)
+{
+  return one[0] != other[0] ? IsLower(one[0], other[0]) : IsLower(one[1], other[1]);
+}
 
 std::string NameOfLine(const BoundaryLines& lines, Index line)
 {
@@ -110,6 +116,49 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines)
     pieces.push_back(std::move(piece));
   }
   return pieces;
+}
+
+/** The edges of a closed piece, whatever its first point and direction. */
+std::vector<Ends> SortedEdges(const BoundaryLines& lines, const Piece& piece)
+{
+  std::vector<Ends> edges;
+  for (std::size_t i = 0, before = piece.Points.size() - 1; i < piece.Points.size(); before = i++)
+  {
+    const Point2 p = lines.Points[piece.Points[before]], q = lines.Points[piece.Points[i]];
+    edges.push_back(IsLower(p, q) ? Ends{ p, q } : Ends{ q, p });
+  }
+  std::sort(edges.begin(), edges.end(), IsBefore);
+  return edges;
+}
+
+/**
+ * Leaves out closed pieces with the same edges as one before, as they would cancel out.
+ * @return the first line of these, and how many there are; none: an empty message
+ */
+Message DropRepeated(const BoundaryLines& lines, std::vector<Piece>& pieces)
+{
+  const auto comesBefore = [](const std::vector<Ends>& one, const std::vector<Ends>& other) {
+    return std::lexicographical_compare(
+      one.begin(), one.end(), other.begin(), other.end(), IsBefore);
+  };
+  std::set<std::vector<Ends>, decltype(comesBefore)> known(comesBefore);
+  std::vector<Piece> kept;
+  Index firstLine = None;
+  for (Piece& piece : pieces)
+  {
+    if (!piece.IsClosed || known.insert(SortedEdges(lines, piece)).second)
+    {
+      kept.push_back(std::move(piece));
+    }
+    else if (firstLine == None)
+    {
+      firstLine = piece.Line;
+    }
+  }
+  const std::size_t count = pieces.size() - kept.size();
+  pieces = std::move(kept);
+  return count == 0 ? Message()
+                    : MakeMessage<sentences::RingsRepeated>(count, NameOfLine(lines, firstLine));
 }
 
 /** Chains open pieces at their ends: the front of piece i is end 2 i, its back is end 2 i + 1. */
@@ -238,9 +287,14 @@ void TakePoints(const PointView& points, BoundaryLines& lines)
   }
 }
 
-Rings JoinLines(const BoundaryLines& lines)
+Rings JoinLines(const BoundaryLines& lines, Message* repeated)
 {
-  const std::vector<Piece> pieces = MakePieces(lines);
+  std::vector<Piece> pieces = MakePieces(lines);
+  const Message ofRepeated = DropRepeated(lines, pieces);
+  if (repeated)
+  {
+    *repeated = ofRepeated;
+  }
   if (pieces.empty())
   {
     throw Error("The boundary has no line and no polygon.");

@@ -13,6 +13,7 @@
 
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "Kernel/Messages/Messages.h"
 
 #include <vector>
 
@@ -61,13 +62,15 @@ void TakePoints(const PointView& points, BoundaryLines& lines);
 /**
  * Joins lines to rings. A line is a ring if it returns to its first point (the same id or the same
  * x,y). Other lines are chained where their ends meet; where more than two meet, so that the rings
- * do not cross. Two lines along the same edge, which form a ring of two points, cancel out.
- * Linear, plus a sort of the lines that end at the same place.
+ * do not cross. Two lines along the same edge, which form a ring of two points, cancel out. Of lines
+ * that are the same ring, from whatever point and in whatever direction, the first counts.
+ * Linear, plus a sort of the edges of closed lines, and of the lines that end at the same place.
+ * @param[out] repeated  a warning of rings that are there more than once; else empty
  * @return rings of numbers of the lines' points; consecutive points differ in x,y
  * @throws Error naming the line and the point: a point not finite; an end that cannot be joined; a
  *         ring of fewer than three points; no line at all, or only lines that cancel out
  */
-Rings JoinLines(const BoundaryLines& lines);
+Rings JoinLines(const BoundaryLines& lines, Message* repeated = nullptr);
 
 } // namespace elevation
 

@@ -256,7 +256,7 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
 {
   const int threads = options.NumberOfThreads;
   const bool areLines = follow == Following::Lines;
-  result.Boundary = areLines ? ThereAndBack(lines) : JoinLines(lines);
+  result.Boundary = areLines ? ThereAndBack(lines) : JoinLines(lines, &result.Warning);
   NearTriangles near;
   std::vector<BorderEdge> border;
   if (ofWhole)
@@ -362,7 +362,7 @@ void TakeOutline(ExtractedBoundary&& found, Trimmed& result)
   result.Boundary = std::move(found.Vertices);
   result.GapTolerance = found.GapTolerance;
   result.NumberOfPointsLeftOut = found.NumberOfPointsLeftOut;
-  result.Loss = found.LeavesOutMuch() ? LossOf(found, false) : Message();
+  result.Warning = found.LeavesOutMuch() ? LossOf(found, false) : Message();
 }
 
 /** Trims along the extracted outline. */
@@ -393,7 +393,7 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   std::vector<char> isOutward = OutwardOf(std::move(found.IsSurface));
   if (!isExact)
   {
-    result.Loss = Message();
+    result.Warning = Message();
     OutwardTriangles outward =
       FindOutward(mesh, result.Boundary, options.RecoverBoundary, Part(progress, 0.9, 0.95));
     isOutward = std::move(outward.IsOutward);

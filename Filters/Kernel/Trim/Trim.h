@@ -92,8 +92,11 @@ struct Trimmed
   Index NumberOfOutwardTriangles = 0;
   Index NumberOfRecoveredEdges = 0; ///< edges of the boundary that were missing
   Index NumberOfPointsLeftOut = 0;  ///< as in ExtractedBoundary; 0 with InwardNormal
-  /** Of an extracted boundary that leaves out much: what, and what would keep it; else none. */
-  Message Loss;
+  /**
+   * Of lines: that rings are there more than once. Of an extracted boundary that leaves out much: what,
+   * and what would keep it. Else none.
+   */
+  Message Warning;
 };
 
 /**

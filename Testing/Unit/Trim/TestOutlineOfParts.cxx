@@ -199,7 +199,7 @@ TEST(OutlineOfParts, IsThatOfTheWhole)
     EXPECT_EQ(trimmed->GapTolerance, expected.GapTolerance);
     EXPECT_EQ(trimmed->NumberOfPointsLeftOut, expected.NumberOfPointsLeftOut);
     EXPECT_EQ(trimmed->NumberOfOutwardTriangles, expected.NumberOfOutwardTriangles);
-    EXPECT_EQ(trimmed->Loss, expected.Loss);
+    EXPECT_EQ(trimmed->Warning, expected.Warning);
     std::vector<Index> outward(expected.Outward.Parents.begin(), expected.Outward.Parents.end());
     std::vector<Index> ofParts;
     for (const Index parent : trimmed->Outward.Parents)

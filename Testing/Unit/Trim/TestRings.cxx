@@ -176,6 +176,31 @@ TEST(JoinLines, TakesClosedLinesPolygonsAndChains)
   EXPECT_EQ(joined.Vertices.size(), 6u);
 }
 
+TEST(JoinLines, TakesARingThatIsThereTwiceOnce)
+{
+  std::vector<Point2> points = Lattice4().Points;
+  points.push_back({ 3.0, -0.0 }); // again, as point 16
+  Message repeated;
+  Rings joined =
+    JoinLines(MakeLines(points, { { 0, 3, 15, 12, 0 }, { 5, 6, 10 } }, true), &repeated);
+  EXPECT_EQ(joined.Count(), 2);
+  EXPECT_TRUE(repeated.IsEmpty());
+  // From another point, in the other direction, by a point of the same place; a lake, too.
+  joined = JoinLines(
+    MakeLines(points,
+      { { 0, 3, 15, 12 }, { 5, 6, 10 }, { 15, 16, 0, 12 }, { 10, 5, 6 }, { 12, 15, 3, 0 } }, true),
+    &repeated);
+  EXPECT_EQ(joined.Vertices, (std::vector<Index>{ 0, 3, 15, 12, 5, 6, 10 }));
+  EXPECT_EQ(repeated.Words(),
+    "Rings of the boundary that are there more than once (3 more, the first of them the polygon "
+    "(cell 12)) count once.");
+  // The same points in another order are another ring.
+  joined =
+    JoinLines(MakeLines(points, { { 0, 3, 15, 12, 6 }, { 0, 3, 15, 6, 12 } }, true), &repeated);
+  EXPECT_EQ(joined.Count(), 2);
+  EXPECT_TRUE(repeated.IsEmpty());
+}
+
 TEST(JoinLines, TakesLooseEdgesOfParcelsInAnyOrder)
 {
   // Two parcels side by side, cut into edges, so that the one they share is there twice.

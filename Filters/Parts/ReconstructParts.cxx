@@ -1,0 +1,336 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ReconstructParts.h"
+
+#include "Gathering.h"
+#include "Kernel/Lattice/Lattice.h"
+
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace elevation
+{
+
+ReconstructParts::ReconstructParts() = default;
+
+ReconstructParts::~ReconstructParts() = default;
+
+void ReconstructParts::Open(vtkMultiProcessController* controller)
+{
+  if (!this->IsOpen())
+  {
+    this->Everybody = std::make_unique<Ranks>(controller);
+  }
+}
+
+// Each step uses those before it.
+void ReconstructParts::Close()
+{
+  this->Filled.reset();
+  this->Trimmed.reset();
+  this->Work.reset();
+  this->Everybody.reset();
+  this->Refusal.reset();
+  this->NumberOfParts = 0;
+  this->Gone.clear();
+  this->IsLost = this->IsOfAll = false;
+}
+
+void ReconstructParts::CheckIsComplete() const
+{
+  if (this->IsLost)
+  {
+    throw Error("The points are not complete after the error before: begin again with Reset().");
+  }
+}
+
+/** Does what cannot be done again: if it fails, points are lost. */
+template <typename Step>
+void ReconstructParts::Do(bool withAll, const Step& step)
+{
+  this->CheckIsComplete();
+  this->IsOfAll = withAll;
+  this->IsLost = true;
+  step();
+  this->IsLost = false;
+}
+
+void ReconstructParts::Add(vtkPointSet* points, const std::string& folder, const Progress& progress)
+{
+  this->Do(false, [&]() {
+    if (!this->Work)
+    {
+      this->Work = std::make_unique<TriangulateParts>(*this->Everybody, folder);
+    }
+    this->Work->Add(points, progress);
+  });
+}
+
+void ReconstructParts::CheckPart(int part, int count) const
+{
+  if (this->NumberOfParts > 0 && this->NumberOfParts != count)
+  {
+    throw Error("There are " + std::to_string(this->NumberOfParts) +
+      " pieces; another number of pieces needs Reset().");
+  }
+  const int ranks = this->Everybody->Count(), ofEach = count / ranks;
+  if (count % ranks != 0)
+  {
+    throw Error("The number of pieces is " + std::to_string(count) + ", but " +
+      std::to_string(ranks) + " processes work on them, each on as many: ask for a multiple of " +
+      std::to_string(ranks) + " pieces, or name other processes by SetController().");
+  }
+  const int first = ofEach * this->Everybody->Own();
+  if (part < first || part >= first + ofEach)
+  {
+    throw Error("Piece " + std::to_string(part) + " of " + std::to_string(count) +
+      " is made by another process; this one makes " +
+      (ofEach == 1
+          ? "piece " + std::to_string(first)
+          : "pieces " + std::to_string(first) + " to " + std::to_string(first + ofEach - 1)) +
+      ".");
+  }
+  if (this->Gone.count(part) > 0)
+  {
+    throw Error("Piece " + std::to_string(part) +
+      " has been made and its files removed; to make pieces again needs KeepFiles and Reset().");
+  }
+}
+
+void ReconstructParts::Begin(int count, const std::string& folder,
+  const std::function<Settings()>& settings, vtkMTimeType time)
+{
+  if (this->Refusal && this->TimeOfRefusal == time && this->RefusedParts == count)
+  {
+    throw CodedError(*this->Refusal);
+  }
+  this->IsOfAll = true;
+  try
+  {
+    this->Everybody->Agree([&]() { this->Prepare(folder, settings); });
+    const std::vector<vtkIdType> counts = this->Everybody->Collect(std::vector<vtkIdType>{ count });
+    if (std::count(counts.begin(), counts.end(), count) != this->Everybody->Count())
+    {
+      throw Error("Processes ask for different numbers of pieces, " +
+        std::to_string(counts.front()) + " and others: all have to ask for the same number.");
+    }
+    this->Constraints = ShareLines(this->Set.Constraints, "constraints", *this->Everybody);
+    this->Boundary = ShareLines(this->Set.Boundary, "boundary", *this->Everybody);
+    this->Everybody->Agree([this]() { this->Check(); });
+  }
+  catch (const Error& error)
+  {
+    this->Refusal = std::make_unique<CodedError>(MessageOf(error));
+    this->TimeOfRefusal = time;
+    this->RefusedParts = count;
+    throw;
+  }
+  this->NumberOfParts = count;
+}
+
+/** What this rank has for all of them. One without points needs a folder, too. */
+void ReconstructParts::Prepare(const std::string& folder, const std::function<Settings()>& settings)
+{
+  try
+  {
+    this->CheckIsComplete();
+    if (folder.empty())
+    {
+      throw Error("Folder is not set.");
+    }
+    if (!this->Work)
+    {
+      this->Work = std::make_unique<TriangulateParts>(*this->Everybody, folder);
+    }
+    this->Set = settings();
+  }
+  catch (const Error& error)
+  {
+    if (this->IsAlone())
+    {
+      throw;
+    }
+    throw Error("On rank " + std::to_string(this->Everybody->Own()) + ": " + error.what());
+  }
+}
+
+/** @throws Error where properties are wrong */
+void ReconstructParts::Check() const
+{
+  const DelaunayOptions& options = this->Set.Delaunay;
+  CheckLimits(options);
+  if (options.GivenLattice.IsSet() && options.UseLattice == LatticeMode::Automatic &&
+    !this->Constraints)
+  {
+    StepsOfGiven(options.GivenLattice);
+  }
+  if (options.MaximumElevationError > 0.0)
+  {
+    throw MakeError<sentences::ErrorNotInPieces>();
+  }
+  if (this->Constraints && this->Set.DrapeConstraints)
+  {
+    throw MakeError<sentences::ConstraintsNotInPieces>();
+  }
+  if (this->IsTrimmed() && this->Set.Trim.Test != OutwardTest::Exact)
+  {
+    throw MakeError<sentences::InwardNormalNotInPieces>();
+  }
+  if (this->Set.FillHoles && this->Set.OpenLongTriangles)
+  {
+    throw MakeError<sentences::EdgeLengthNotInPieces>();
+  }
+}
+
+std::vector<Message> ReconstructParts::Triangulate(const Progress& progress)
+{
+  std::vector<Message> warnings;
+  this->Do(true, [&]() {
+    DelaunayOptions& options = this->Set.Delaunay;
+    options.Monitor = progress;
+    this->Work->Triangulate(
+      this->NumberOfParts / this->Everybody->Count(), this->Constraints, options, warnings);
+    const TriangulateParts::Totals& all = this->Work->All();
+    if (all.Settled == 0)
+    {
+      warnings.push_back(MakeMessage<sentences::NoTriangle>(all.Points));
+    }
+    else if (all.Effect.AreMostMissing())
+    {
+      warnings.push_back(AdviceOnLimit(options.MaximumEdgeLength, all.Effect));
+    }
+    warnings = OnFirst(warnings, *this->Everybody);
+  });
+  return warnings;
+}
+
+std::vector<Message> ReconstructParts::Trim(const Progress& progress)
+{
+  std::vector<Message> warnings;
+  if (this->Work->All().Triangles == 0)
+  {
+    return warnings; // that has been told
+  }
+  this->Do(true, [&]() {
+    this->Set.Trim.Monitor = progress;
+    const auto make = [this](
+                        int part, const Progress& ofPart) { return this->MakePart(part, ofPart); };
+    this->Trimmed = std::make_unique<TrimParts>(SurfaceParts{ this->Work->Holders(), make },
+      this->Work->All().Triangles, this->Boundary, this->Set.Trim);
+    this->Trimmed->Trim();
+    if (!this->Trimmed->Warning().IsEmpty())
+    {
+      warnings.push_back(this->Trimmed->Warning());
+    }
+    warnings = OnFirst(warnings, *this->Everybody);
+  });
+  return warnings;
+}
+
+std::vector<Message> ReconstructParts::Fill(const Progress& progress)
+{
+  std::vector<Message> warnings;
+  this->Do(true, [&]() {
+    this->Set.Fill.Monitor = progress;
+    const auto make = [this](int part, const Progress& ofPart) {
+      return this->MakeTrimmed(part, ofPart);
+    };
+    auto filled = std::make_unique<FillParts>(
+      SurfaceParts{ this->Work->Holders(), make }, this->Set.Fill, this->Set.InterpolatePointData);
+    filled->FindHoles(0);
+    filled->Fill();
+    this->Filled = std::move(filled);
+    warnings = OnFirst(WarningsOf(this->Filled->Result()), *this->Everybody);
+  });
+  return warnings;
+}
+
+/** A part of the triangulation; nullptr: it has no points. */
+vtkSmartPointer<vtkPolyData> ReconstructParts::MakePart(int part, const Progress& progress)
+{
+  SurfacePart taken = this->Work->Take(part, progress);
+  if (taken.Own.Count() == 0)
+  {
+    return nullptr;
+  }
+  auto made = vtkSmartPointer<vtkPolyData>::New();
+  PassPart(taken, ResolveNumberOfThreads(this->Set.Delaunay.NumberOfThreads), made);
+  ConstrainedTriangulation counts;
+  counts.Added.resize(static_cast<std::size_t>(taken.AddedPoints));
+  counts.NumberOfCrossings = this->Work->All().Crossings;
+  counts.Result = std::move(taken.Result);
+  AddReport(counts, progress, made->GetFieldData());
+  return made;
+}
+
+/** The same, trimmed if it is to be. */
+vtkSmartPointer<vtkPolyData> ReconstructParts::MakeTrimmed(int part, const Progress& progress)
+{
+  if (!this->Trimmed)
+  {
+    return this->MakePart(part, progress);
+  }
+  auto trimmed = vtkSmartPointer<vtkPolyData>::New();
+  this->Trimmed->Write(part, progress, trimmed, nullptr);
+  return trimmed->GetNumberOfPoints() > 0 ? trimmed : nullptr;
+}
+
+void ReconstructParts::Pass(
+  int part, const Progress& progress, vtkPolyData* output, vtkPolyData* rims)
+{
+  this->Do(false, [&]() {
+    if (this->Filled)
+    {
+      this->Filled->Pass(part, progress, output);
+    }
+    else if (const vtkSmartPointer<vtkPolyData> made = this->MakeTrimmed(part, progress))
+    {
+      output->ShallowCopy(made);
+    }
+    if (this->Filled && part == 0)
+    {
+      this->Filled->PassRims(Progress(), rims);
+      AddHoleCounts(this->Filled->Result(), { rims });
+    }
+  });
+}
+
+void ReconstructParts::Forget(int part)
+{
+  this->Work->Forget(part);
+  this->Gone.insert(part);
+}
+
+ReconstructParts::Counts ReconstructParts::All() const
+{
+  Counts counts;
+  if (this->Work)
+  {
+    const TriangulateParts::Totals& all = this->Work->All();
+    counts.Points = this->Work->CountOfParts() > 0 ? all.Points : this->Work->CountOfPoints();
+    counts.Triangles = all.Triangles;
+    counts.Duplicates = all.Duplicates;
+    counts.NotFinite = all.NotFinite;
+    counts.Crossings = static_cast<vtkIdType>(all.Crossings);
+    counts.AddedPoints = all.AddedPoints;
+    counts.LatticeFound = all.LatticeFound;
+  }
+  if (this->Trimmed)
+  {
+    counts.Trim = this->Trimmed->All();
+    counts.TrimmedTriangles = this->Trimmed->CountOfKept();
+    counts.BoundaryRings = this->Trimmed->CountOfRings();
+  }
+  if (this->Filled)
+  {
+    counts.Holes = this->Filled->Result().Found.Count();
+    counts.FilledHoles = CountOfFilled(this->Filled->Result());
+    counts.FilledTriangles = this->Filled->CountOfNewTriangles() +
+      (this->Trimmed ? counts.TrimmedTriangles : counts.Triangles);
+  }
+  return counts;
+}
+
+} // namespace elevation
