@@ -10,7 +10,7 @@ import meshes
 from on_ranks import COUNT, LAST, RANK, check, check_equal, end, gather
 from outcomes import noted, numbers_of
 from vtkelevationsurface.algorithms import ReconstructElevationSurface
-from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import (
     vtkImageData, vtkPartitionedDataSet, vtkPolyData, vtkRectilinearGrid, vtkTable, vtkUnstructuredGrid)
@@ -129,7 +129,10 @@ INPUTS = {
     "no filling": (spread(ORDER, cloud), {"FillHoles": 0}, None, None, [], []),
     "an edge limit": (spread(ORDER, cloud), {"MaximumEdgeLength": 1.6}, None, None, None, []),
     "holes that stay": (spread(ORDER, cloud), {"MaximumHoleEdges": 3}, None, None, [], []),
-    "opened triangles": (spread(ORDER, cloud), {"OpenEdgeLength": 3.0}, None, None, [], ["filling holes"]),
+    "opened triangles": (slices_of(TWICE), {"OpenEdgeLength": 3.0}, None, None, ["4 places have several"],
+                         ["filling holes"]),
+    "long triangles that stay": (spread(ORDER, cloud), {"OpenEdgeLength": 2.0, "MaximumHoleEdges": 5}, None, None,
+                                 None, ["filling holes"]),
     "several heights": (slices_of(TWICE), {"Duplicates": "keep-highest"}, None, None, ["4 places have several"], []),
     "hidden points": (spread(ORDER, cloud, marks=HIDDEN), {}, None, None, [], []),
     "another array": (spread(ORDER, cloud), {"ElevationArray": "Amplitude", "Depth": 1}, None, None, [], []),
@@ -182,11 +185,9 @@ def rows_of(data, names):
 
 def edges_of(data):
     """The edges of lines by places of their ends, in one order."""
-    ids = [data.GetCell(i).GetPointIds() for i in range(data.GetNumberOfCells())]
-    xyz = meshes.points_of(data)
-    ends = [sorted((tuple(xyz[a.GetId(i)]), tuple(xyz[a.GetId(i + 1)])))
-            for a in ids for i in range(a.GetNumberOfIds() - 1)]
-    return sorted(ends)
+    ids, ends = (vtk_to_numpy(a) for a in (data.GetLines().GetConnectivityArray(), data.GetLines().GetOffsetsArray()))
+    xyz = [tuple(place) for place in meshes.points_of(data)[ids].tolist()]
+    return sorted(sorted(xyz[i : i + 2]) for begin, end in zip(ends, ends[1:]) for i in range(begin, end - 1))
 
 
 def check_same(name):
