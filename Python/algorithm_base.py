@@ -9,9 +9,10 @@ from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkOutputWindow, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
+from .clouds import coordinates_of
 from .messages import Aborted, ElevationSurfaceError
 from .names import PANEL, written_for
-from .ranks import is_of_all_ranks
+from .ranks import is_of_all_ranks, total
 
 ELEVATION = "Elevation"
 STOPPED = (
@@ -20,14 +21,15 @@ STOPPED = (
 )
 
 
-def set_elevation(data):
+def set_elevation(data, ranks=None):
     """Adds z as the point array to colour by. Another array of this name gets another name."""
-    z = numpy.ascontiguousarray(vtk_to_numpy(data.GetPoints().GetData())[:, 2])
+    z = numpy.ascontiguousarray(coordinates_of(data)[:, 2])
     attributes = data.GetPointData()
     old = attributes.GetAbstractArray(ELEVATION)
+    differs = total(ranks, old is not None and not is_same(old, z))
     if old is not None:
         attributes.RemoveArray(ELEVATION)
-        if not is_same(old, z):
+        if differs:
             kept = old.NewInstance()
             kept.DeepCopy(old)
             kept.SetName(f"{ELEVATION} of the input")
@@ -37,11 +39,14 @@ def set_elevation(data):
     attributes.SetScalars(array)
 
 
-def drop_elevation(points):
-    """Takes the array Elevation away where it is nothing but z; set_elevation() makes it anew."""
-    array = points.GetPointData().GetArray(ELEVATION)
-    z = vtk_to_numpy(points.GetPoints().GetData())[:, 2]
-    if array is not None and is_same(array, z):
+def drop_elevation(points, ranks=None):
+    """Takes the array Elevation away where it is nothing but z; set_elevation() makes it anew.
+
+    ranks  the controller of those that have some of the points each, or None
+    """
+    array = points.GetPointData().GetAbstractArray(ELEVATION)
+    differs = array is not None and not is_same(array, coordinates_of(points)[:, 2])
+    if not total(ranks, differs):
         points.GetPointData().RemoveArray(ELEVATION)
 
 

@@ -7,7 +7,6 @@ reconstruct() makes of it. Both tell what they have done as text, and an error i
 """
 
 import dataclasses
-import warnings
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -19,7 +18,7 @@ from vtkmodules.vtkCommonDataModel import (
 )
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
 
-from .accounts import (
+from .block_reports import (
     CONTENTS,
     RECOGNISED,
     account_of,
@@ -41,21 +40,25 @@ from .algorithm_base import (
     set_words,
     words_of,
 )
-from .blocks import is_empty, number_of_points, parts_of, put_parts
-from .clouds import ReadOptions, cells_of, keep_points, notes_on, set_crs
+from .blocks import parts_of, put_parts, surfaces_of
+from .clouds import ReadOptions, cells_of, joined, keep_points, notes_on, set_crs
 from .description import DESCRIBED
-from .gathering import gathered
-from .inputs import cloud_of, joined, lines_of
-from .messages import ElevationSurfaceError, ElevationSurfaceWarning, Reason, counted, of_reason
+from .inputs import cloud_of, lines_of
+from .messages import ElevationSurfaceError, Reason, counted, of_reason
 from .names import argument, option
 from .progress import share
 from .properties import PROPERTIES, checked
-from .ranks import agreed, controller_of, is_to_speak, shared, together
+from .ranks import agreed, controller_of, shared, together
 from .reading import read, read_boundary, read_faults
-from .reconstruction import reconstruct
+from .reconstruction import NAMES, reconstruct_cloud
 from .report import crs_name
+from .spreading import gather_points
 
 NOTHING = "nothing was read"
+ERROR_NEEDS_ALL = (
+    "The surface is made on one rank (process), which needs memory for all of it. {} chooses few points "
+    "out of all; 0 leaves the surface spread."
+)
 
 
 class ElevationPoints(ReportingAlgorithm):
@@ -237,67 +240,68 @@ class ReconstructElevationSurface(ReportingAlgorithm):
 
     def work_on(self, controller, inputs, outputs):
         data = vtkDataObject.GetData(inputs[0])
-        parts, is_here = parts_of(data), True
-        if controller:
-            parts = gathered(controller, parts, self.warn)
-            is_here = is_to_speak(controller, [p for p in parts if number_of_points(p.data) > 0])
         lines = {}
         for name, given in (("boundary", inputs[1]), ("faults", inputs[2])):
             if given.GetNumberOfInformationObjects():
                 given = vtkDataObject.GetData(given)
-                lines[name] = shared(controller, lambda: lines_of(given, name))
+                lines[name] = joined(shared(controller, lambda: lines_of(given, name)))
+        parts, surfaces = surfaces_of(controller, parts_of(data))
         results = {}
-        accounts = together(
-            controller, lambda: self.reconstruct_parts(parts, lines, results) if is_here else []
-        )
+        accounts = self.reconstruct_surfaces(surfaces, lines, results)
+        accounts = once(together(controller, lambda: accounts))
         self.put(data, parts, results, outputs)
-        if controller:
-            accounts = once(accounts)
         self._text = report_text(accounts)
         if controller and controller.GetLocalProcessId() > 0:
             return []  # the first rank tells of all
         return self.tell(accounts, any(has_failed_reader(part.data) for part in parts), outputs)
 
-    def reconstruct_parts(self, parts, lines, results):
-        """Adds the Reconstruction of each part to results. Returns their accounts."""
-        lines = {name: joined(given) for name, given in lines.items()}
+    def reconstruct_surfaces(self, surfaces, lines, results):
+        """Adds the Reconstruction of each Surface to results, by the Part whose place it takes. Returns
+        their accounts."""
         accounts = []
-        parts = [part for part in parts if not is_empty(part.data)]
-        for i, part in enumerate(parts):
-            self._share = (i / len(parts), 1.0 / len(parts))
+        for i, surface in enumerate(surfaces):
+            self._share = (i / len(surfaces), 1.0 / len(surfaces))
             try:
-                results[part] = self.result_of(part.data, lines)
-                accounts.append(account_of(part, results[part]))
+                result, told = agreed(surface.ranks, lambda: self.result_of(surface, lines))
+                if result:
+                    results[surface.part] = result
+                    accounts.append(account_of(surface, result, told))
             except (ElevationSurfaceError, ValueError) as error:
-                accounts.append(account_of_error(part, getattr(error, "message", str(error))))
+                accounts.append(account_of_error(surface, getattr(error, "message", str(error))))
             except MemoryError:
-                accounts.append(account_of_error(part, "there is not enough memory"))
+                accounts.append(account_of_error(surface, "there is not enough memory"))
         return accounts
 
-    def result_of(self, part, lines):
-        """The Reconstruction of one data set, with notes on what looks wrong."""
-        if words_of(part, CONTENTS)[:1] == ["boundary"]:
+    def result_of(self, surface, lines):
+        """(the Reconstruction of a Surface, what its reader has found out). The Reconstruction is None on
+        a rank that has none because another makes the whole."""
+        given, ranks = dict(self._given), surface.ranks
+        properties = {name: given[name] for name in given if name in PROPERTIES}
+        properties = checked(properties, argument)
+        options = ReadOptions(**read_options(given))
+        if any(words_of(data, CONTENTS)[:1] == ["boundary"] for data in surface.data):
             raise ElevationSurfaceError(
                 "the input is a boundary, which has no elevations; choose it as Boundary, or set "
                 "Contents to Points where the file was opened"
             )
-        given = dict(self._given)
-        checked({name: given[name] for name in given if name in PROPERTIES}, argument)
-        options = ReadOptions(**read_options(given))
-        cloud = cloud_of(part, given.get("elevation_array") or "", options)
-        drop_elevation(cloud.points)
-        cloud.notes += recognised(cloud.points)
-        cloud.notes += notes_on(cloud, lines)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ElevationSurfaceWarning)  # told by warn()
-            result = reconstruct(
-                cloud,
-                progress=self.step,
-                **lines,
-                **{n: value for n, value in given.items() if DESCRIBED[n].step != "read"},
-            )
-        result.report  # pylint: disable=pointless-statement
-        return result
+        cloud = cloud_of(surface.data, given.get("elevation_array") or "", options, ranks)
+        drop_elevation(cloud.points, ranks)
+        told = recognised(cloud.points, ranks)
+        cloud.notes += told + notes_on(cloud, lines, ranks)
+        gathered = []
+        if ranks and properties.get("maximum_elevation_error"):
+            gathered.append(ERROR_NEEDS_ALL.format(option("maximum_elevation_error")))
+            cloud.points, ranks = gather_points(ranks, cloud.points), None
+            if not cloud.points.GetNumberOfPoints():
+                return None, told
+        steps = {name: given[name] for name in ("trim", "fill") if name in given}
+        result = reconstruct_cloud(
+            cloud, lines, NAMES, properties, ranks=ranks, progress=self.step, **steps
+        )
+        result.gathered += gathered
+        result.report  # pylint: disable=pointless-statement  (all ranks make it)
+        set_elevation(result.surface, ranks)
+        return result, told
 
     def step(self, words, fraction):
         first, last = self.STEPS[words]
@@ -311,8 +315,6 @@ class ReconstructElevationSurface(ReportingAlgorithm):
             for part, one in zip(parts, made):
                 if part in results:
                     one.ShallowCopy(getattr(results[part], name) or vtkPolyData())
-                    if port == 0:
-                        set_elevation(one)
             put_parts(vtkDataObject.GetData(outputs, port), data, parts, made)
 
     def tell(self, accounts, reader_has_told, outputs):
@@ -320,7 +322,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         errors = [account for account in accounts if "error" in account]
         made = [account for account in accounts if "error" not in account]
         for account in made:
-            for note in account["notes"]:
+            for note in account["warnings"]:
                 self.warn(in_block(account, note))
         if errors:
             self.error(joined_errors(errors, len(made)))

@@ -12,8 +12,11 @@ from vtkmodules.vtkCommonDataModel import (
     vtkDataSet,
     vtkMultiBlockDataSet,
     vtkPartitionedDataSet,
+    vtkPolyData,
     vtkTable,
 )
+
+from .ranks import together
 
 
 @dataclasses.dataclass(frozen=True)
@@ -31,6 +34,48 @@ class Part:
     name: str = ""
     surface: tuple = ()
     block: str = ""
+
+
+@dataclasses.dataclass
+class Surface:
+    """What becomes one surface: a Part, or on ranks all partitions of a block.
+
+    data   the data sets that this rank has of it
+    part   the Part whose place its surface takes
+    place, name  as those of a Part
+    ranks  the controller of those that make it together, or None
+    """
+
+    data: list
+    part: Part
+    place: tuple
+    name: str
+    ranks: Any = None
+
+
+def surfaces_of(controller, parts):
+    """(parts, Surfaces): those of all ranks that make a surface together, in the order of their places,
+    then those that are made on this rank alone. Parts may be new where a rank has none of a surface."""
+    full = [part for part in parts if number_of_points(part.data) > 0]
+    known = {}
+    if controller:
+        own = controller.GetLocalProcessId()
+        rows = [[part.surface, part.place, part.block, own] for part in full]
+        for surface, place, block, rank in together(controller, lambda: rows):
+            known.setdefault(tuple(surface), []).append((tuple(place), block, rank))
+    parts, surfaces = list(parts), []
+    for place in sorted(known):
+        first, block, _ = known[place][0]
+        if len({rank for *_, rank in known[place]}) > 1:
+            mine = [part for part in full if part.surface == place]
+            here = mine + [part for part in parts if part.surface == place]
+            if not here:
+                here = [Part(vtkPolyData(), first, block, place, block)]
+                parts += here
+            surfaces.append(Surface([p.data for p in mine], here[0], place, block, controller))
+    spread = {surface.place for surface in surfaces}
+    alone = [part for part in parts if part.surface not in spread and not is_empty(part.data)]
+    return parts, surfaces + [Surface([p.data], p, p.place, p.name) for p in alone]
 
 
 def parts_of(data):

@@ -8,12 +8,13 @@ import math
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkBitArray, vtkDataArray, vtkPoints, vtkStringArray
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 from .messages import counted
 from .names import argument, option
 from .progress import no_progress
+from .ranks import extremes
 from .selecting import Words, conditions_of, joined_words
 
 AT_ONCE = 2_000_000  # rows worked on at a time: what bounds the memory taken
@@ -33,6 +34,7 @@ class Cloud:
     words    {name: Words} of columns of text
     files    of merged files, Words with the file of each point, else None
     grid     the PixelGrid of points from a raster, or None
+    pixels   pixels_of() its pixels, where ranks may have others of the same raster
     """
 
     def __init__(self, points, notes=(), left_out=None, lines=None, crs=None):
@@ -44,7 +46,7 @@ class Cloud:
         self.largest_cell = 0.0
         self.z_name, self.is_horizon = "", False
         self.words, self.files = {}, None
-        self.grid = None
+        self.grid = self.pixels = None
 
     def copy(self):
         """One that can be changed; the points themselves are shared, as nothing changes them."""
@@ -75,26 +77,41 @@ class PixelGrid:
         )
 
 
-def pixel_grid(valid, row, column):
-    """The PixelGrid of a raster; None where most pixels lack neighbours, as of a thinned one.
+def pixels_of(valid, row, column):
+    """What grid_of() wants to know of the pixels of a raster, or of a rectangle of them, as plain values:
+    [triangles of half a cell, pixels, x and y of one, [longest step, its length, shortest length] along
+    a row, the same along a column, or None].
 
     valid        (rows, columns) of bool
     row, column  (n, 2) x and y of the pixels of the first row and column
     """
-    if min(valid.shape) < 2:
-        return None
     by_row = valid[1:].astype("u1") + valid[:-1]
     corners = by_row[:, 1:] + by_row[:, :-1]
-    # Of about two triangles a pixel, those of half a cell are at least half.
-    if 2 * (corners == 4).sum() + (corners == 3).sum() < valid.sum():
-        return None
-    steps, even = [], True
+    halves = 2 * int((corners == 4).sum()) + int((corners == 3).sum())
+    lines = []
     for line in (row, column):
         away = numpy.diff(line, axis=0)
         lengths = numpy.hypot(*away.T)
-        steps += away[lengths.argmax()].tolist()
-        even = even and numpy.ptp(lengths) <= 1e-6 * lengths.max()
-    return PixelGrid(tuple(row[0]) if even else None, tuple(steps))
+        longest = away[lengths.argmax()].tolist() if len(away) else None
+        lines.append(longest and [longest, float(lengths.max()), float(lengths.min())])
+    return [halves, int(valid.sum()), [float(one) for one in row[0]], *lines]
+
+
+def grid_of(parts):
+    """The PixelGrid of a raster, of pixels_of() its parts; None where most pixels lack neighbours, as of a
+    thinned one."""
+    parts = [part for part in parts if part]
+    # Of about two triangles a pixel, those of half a cell are at least half.
+    if not parts or sum(part[0] for part in parts) < sum(part[1] for part in parts):
+        return None
+    steps, even = [], True
+    for lines in ([part[axis] for part in parts if part[axis]] for axis in (3, 4)):
+        if not lines:
+            return None
+        step, longest, _ = max(lines, key=lambda line: line[1])
+        steps += step
+        even = even and longest - min(line[2] for line in lines) <= 1e-6 * longest
+    return PixelGrid(tuple(parts[0][2]) if even else None, tuple(steps))
 
 
 def three_columns(columns):
@@ -142,6 +159,12 @@ class ReadOptions:
             raise ValueError(f"{argument('band')} takes a number from 1, not {self.band}")
         if self.where is not None:
             self.where = conditions_of(self.where)
+
+
+def coordinates_of(data):
+    """(n, 3) coordinates of the points of a data set."""
+    points = data.GetPoints()
+    return vtk_to_numpy(points.GetData()) if points else numpy.zeros((0, 3))
 
 
 def make_points(coordinates, copy=True):
@@ -287,6 +310,18 @@ def some_points(data, keep):
     return result
 
 
+def joined(parts):
+    """Several vtkPolyData as one."""
+    if len(parts) == 1:
+        return parts[0]
+    append = vtkAppendPolyData()
+    append.SetOutputPointsPrecision(append.DOUBLE_PRECISION)
+    for part in parts:
+        append.AddInputData(part)
+    append.Update()
+    return append.GetOutput()
+
+
 def merged(names, clouds):
     """The points of several clouds as one Cloud. Point arrays that not all of them have are left out.
 
@@ -333,14 +368,15 @@ def system_of(names, clouds):
     return crs, [note for name, other in known for note in check_system(name, other, first, crs)]
 
 
-def notes_on(cloud, lines):
+def notes_on(cloud, lines, ranks=None):
     """What looks wrong with points and the lines beside them, one line each.
 
     lines   {"boundary": vtkPolyData, "faults": vtkPolyData}, of these what there is
+    ranks   the controller of those that have a Cloud of some of the points each, or None
     """
-    notes = [antimeridian_note(cloud.points)]
+    notes = [antimeridian_note(cloud.points, ranks)]
     if "faults" in lines:
-        notes.append(faults_note(heights_of(cloud.points), lines["faults"]))
+        notes.append(faults_note(heights_of(cloud.points, ranks), lines["faults"]))
     return [note for note in notes if note]
 
 
@@ -351,11 +387,19 @@ def check_system(*pair):
     return check(*pair)
 
 
-def heights_of(data):
+def marked_points(data, mark):
+    """(n,) of bool: the points with a mark of vtkDataSetAttributes in vtkGhostType."""
+    ghosts = data.GetPointData().GetArray(vtkDataSetAttributes.GhostArrayName())
+    if ghosts is None:
+        return numpy.zeros(data.GetNumberOfPoints(), dtype=bool)
+    return vtk_to_numpy(ghosts) & mark != 0
+
+
+def heights_of(data, ranks=None):
     """(lowest, highest) finite z, or None."""
-    z = vtk_to_numpy(data.GetPoints().GetData())[:, 2].astype("f8")
-    z = z[numpy.isfinite(z)]
-    return (float(z.min()), float(z.max())) if len(z) else None
+    z = coordinates_of(data)[:, 2]
+    low, high = extremes(ranks, z[numpy.isfinite(z)])
+    return (low, high) if low <= high else None
 
 
 def faults_note(heights, faults):
@@ -374,14 +418,14 @@ def faults_note(heights, faults):
     )
 
 
-def antimeridian_note(points):
+def antimeridian_note(points, ranks=None):
     """A line for the user when longitudes lie on both sides of 180 degrees, else None."""
-    xyz = vtk_to_numpy(points.GetPoints().GetData())
-    x, y = (axis[numpy.isfinite(axis)] for axis in (xyz[:, 0], xyz[:, 1]))
-    if not len(x) or not len(y) or numpy.abs(x).max() > 180 or numpy.abs(y).max() > 90:
+    x, y = (axis[numpy.isfinite(axis)] for axis in coordinates_of(points)[:, :2].T)
+    south, north = extremes(ranks, y)
+    (first, west), (east, last) = (extremes(ranks, some) for some in (x[x < 0], x[x >= 0]))
+    if not (-180 <= first <= west and east <= last <= 180 and -90 <= south <= north <= 90):
         return None
-    west, east = x[x < 0], x[x >= 0]
-    if not len(west) or not len(east) or east.min() - west.max() < 180:
+    if east - west < 180:
         return None
     return (
         "x looks like degrees on both sides of the antimeridian, so the surface runs around the "
@@ -400,7 +444,7 @@ def keep_points(cloud, keep):
 
 def turn_over(cloud):
     """Turns the sign of z: depths become elevations."""
-    coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData()).astype("f8")
+    coordinates = coordinates_of(cloud.points).astype("f8")
     coordinates[:, 2] *= -1.0
     points = make_points(coordinates).GetPoints()
     turned = cloud.points.NewInstance()

@@ -14,6 +14,7 @@ from . import reading
 from .clouds import Cloud, ReadOptions, bare_lines, merged, notes_on
 from .gdal_common import name_of, reference_of
 from .given_lines import fitted
+from .heights import check_heights
 from .messages import ElevationSurfaceError, PictureError, counted
 from .options import (
     about,
@@ -31,7 +32,7 @@ from .reconstruction import check_spacing, least_reach, run_chain
 from .report import picture_subtitle, print_report
 from .results import Failure, NoPicture, Progress, Results, WrongOption, write_report
 from .selecting import NothingChosen, columns_in, none_chosen, values_to_make
-from .spreading import can_be_dealt
+from .spreading import can_be_scattered, gather_surface, scatter
 from .supervisor import allow_stops
 from .writing.grids import write_prj
 from .writing.outputs import beside, write_output
@@ -176,14 +177,17 @@ class Run:
 
     def reconstruct(self, cloud, boundary, faults):
         options = self.options
-        ranks = self.ranks if total(self.ranks, not can_be_dealt(cloud.points)) == 0 else None
+        ranks = self.ranks if total(self.ranks, not can_be_scattered(cloud.points)) == 0 else None
         if options.given.get("maximum_elevation_error"):
             ranks = None  # points are chosen on one rank
         if not self.is_first and not ranks:
             return None  # the first does it alone
+        part = cloud.copy()
         try:
+            heights = agreed(ranks, lambda: check_heights(cloud, options.given.get("duplicates")))
+            part.points = scatter(ranks, cloud.points)
             result = run_chain(
-                cloud,
+                part,
                 boundary,
                 faults,
                 options.given,
@@ -192,11 +196,15 @@ class Run:
                 progress=self.progress,
                 strict=options.strict,
                 ranks=ranks,
+                heights=heights,
             )
         except ElevationSurfaceError as error:
             path = {"boundary": options.boundary, "faults": options.faults}.get(error.about)
             raise Failure(f"{path or options.file}: {error}") from None
         result.boundary_name, result.faults_name = options.boundary, options.faults
+        self.progress("measuring", 0.0)
+        result.report  # pylint: disable=pointless-statement  (all ranks make it)
+        gather_surface(ranks, result)
         self.times.update(result.times)
         result.times = self.times
         return result
@@ -240,7 +248,6 @@ class Run:
     def write_all(self, result):
         """Writes the results, which do not appear yet. Returns the report."""
         options = self.options
-        self.progress("measuring", 0.0)
         report = {"file": options.file, **about(options), **result.report}
         result.report = report
         for path, output in files_of(options):

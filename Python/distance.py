@@ -10,7 +10,9 @@ from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkCommonDataModel import vtkStaticPointLocator
 from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
 
-from .clouds import cells_of, corner_flags, make_points, slices
+from .clouds import cells_of, coordinates_of, corner_flags, make_points, slices
+from .ranks import all_values, collected, extremes, total
+from .spreading import used_points
 
 MOST_MEASURED = 1_000_000
 AT_ONCE = 20_000  # points between two reports of progress
@@ -18,30 +20,35 @@ FEW = 0.01  # so many points for each triangle: then only triangles near them ar
 BINS = 1024  # side by side, where triangles near points are looked for
 
 
-def distance_to(surface, coordinates, chosen, progress=None):
+def distance_to(surface, coordinates, chosen, progress=None, ranks=None, ids=None):
     """Distance of input points from a surface: max, mean and root mean square, as Metro tells them.
 
     coordinates  (n, 3), the input points; those that are points of the surface come first there too
     chosen       (n,) of bool: which of them are measured
     progress     None, or a function that is called with the fraction done
+    ranks        the controller of those that have a part of the points and of the surface each, or None
+    ids          of the points of this rank
 
     A point that is a corner of a triangle, with all three coordinates the same, has distance 0. For
     all others vtkImplicitPolyDataDistance finds the closest place of the surface; that takes some 10
     to 40 microseconds a point. Of more than MOST_MEASURED others, every k-th is measured and stands
     for k; "measured" tells how many were.
     """
-    corners = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8", copy=False)
+    corners = coordinates_of(surface).astype("f8", copy=False)
     triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    is_corner = corner_flags(triangles, len(corners))
     away = chosen.copy()
-    first, flags = corners[: len(coordinates)], is_corner[: len(coordinates)]
+    first, flags = corners[: len(coordinates)], used_points(ranks, surface)[: len(coordinates)]
     for rows in slices(len(coordinates)):
         away[rows] &= ~(flags[rows] & (first[rows] == coordinates[rows]).all(axis=1))
     away = numpy.flatnonzero(away)
-    others = len(away)
-    away = coordinates[away[:: max(1, -(-others // MOST_MEASURED))]].astype("f8")
-    distance = distances(corners, is_corner, triangles, away, progress) if others else away[:, 0]
-    count = int(numpy.count_nonzero(chosen))
+    others = total(ranks, len(away))
+    away = away[:: max(1, -(-others // MOST_MEASURED))]
+    if ranks:
+        order = numpy.argsort(all_values(ranks, ids[away]), kind="stable")
+    away = all_values(ranks, coordinates[away].ravel(), "f8").reshape(-1, 3)
+    away = away[order] if ranks else away
+    distance = distances(corners, triangles, away, progress, ranks) if others else away[:, 0]
+    count = total(ranks, numpy.count_nonzero(chosen))
     share = others / max(len(away), 1) / count
     maximum = float(distance.max(initial=0.0))
     unit = maximum if maximum > 1e100 else 1.0  # squares of larger ones would be infinite
@@ -55,14 +62,22 @@ def distance_to(surface, coordinates, chosen, progress=None):
     }
 
 
-def distances(corners, is_corner, triangles, away, progress=None):
-    """(n,) distances of the points `away` from triangles."""
-    low = numpy.array([corners[is_corner, i].min() for i in range(3)])
-    high = numpy.array([corners[is_corner, i].max() for i in range(3)])
+def distances(corners, triangles, away, progress=None, ranks=None):
+    """(n,) distances of the points `away` from the triangles of all ranks."""
+    is_corner = corner_flags(triangles, len(corners))
+    low, high = numpy.transpose([extremes(ranks, corners[is_corner, i]) for i in range(3)])
     # Near the origin, where doubles are finest; beyond 1e100 squares would be infinite.
     middle = 0.5 * low + 0.5 * high
     size = max(float(abs(low).max()), float(abs(high).max()), float(abs(away).max()))
     unit = 2.0 ** math.floor(math.log2(size)) if size > 1e100 else 1.0
+    result = numpy.full(len(away), numpy.inf)
+    if len(triangles):
+        result = distances_here(corners, is_corner, triangles, away, middle, unit, progress)
+    return numpy.min(collected(ranks, result, "f8"), axis=0)
+
+
+def distances_here(corners, is_corner, triangles, away, middle, unit, progress):
+    """(n,) distances of points from triangles of this rank, measured from the middle in units."""
     if unit == 1.0 and len(away) < FEW * len(triangles):
         triangles = triangles[near(corners, is_corner, triangles, away, progress)]
         is_corner = corner_flags(triangles, len(corners))

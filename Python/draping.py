@@ -8,24 +8,29 @@ Each gets a vertex where it crosses an edge of that surface, as the surface bend
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import bare_lines, heights_of, make_lines, mark_bare, parts_of_lines
+from .clouds import (
+    bare_lines, coordinates_of, heights_of, make_lines, mark_bare, parts_of_lines,
+)
 from .messages import ElevationSurfaceError, Messages, counted
 from .names import option
 from .outline import between, places_of
 from .properties import FAULTS_Z
+from .ranks import agreed, all_values, total
+from .spreading import update
 from .vtkElevationSurface import vtkGridDelaunay2D
 
 ROUNDING = 1e-9  # of an edge: vertices no farther beside it are on it
 
 
-def draped(cloud, faults, name, given, strict=False):
+def draped(cloud, faults, name, given, strict=False, ranks=None):
     """(faults, notes), those without z being draped on the surface of the points of a Cloud.
 
     name    how messages call the faults
     given   properties, see checked(): faults_z and duplicates count
     strict  True: faults without z are an error
+    ranks   see fitted()
     """
-    names, parts, bare, words = without_z(faults, name, given, heights_of(cloud.points))
+    names, parts, bare, words = without_z(faults, name, given, heights_of(cloud.points, ranks))
     if not words:
         return faults, []
     wanted = FAULTS_Z[given.get("faults_z", 0)]
@@ -33,7 +38,7 @@ def draped(cloud, faults, name, given, strict=False):
         advice = f"; {option('faults_z')} drape takes z of the surface of the points"
         raise ElevationSurfaceError(words + advice, "faults")
     laid = [part for part, is_bare in zip(parts, bare) if is_bare]
-    surface = Surface(cloud.points, laid, given.get("duplicates", 0), name)
+    surface = Surface(cloud.points, laid, given.get("duplicates", 0), name, ranks)
     if surface.is_empty:
         return faults, []
     result, outside, vertices = [], [], 0
@@ -106,7 +111,7 @@ def is_zero_beside(parts, bare, heights):
 class Surface:
     """The vertices of the surface of points onto which lines are laid, to drape these."""
 
-    def __init__(self, points, lines, duplicates, name):
+    def __init__(self, points, lines, duplicates, name, ranks=None):
         mesh = vtkGridDelaunay2D()
         mesh.SetLatticeMode(mesh.OFF)  # as with faults
         mesh.SetDuplicatePolicy(duplicates)
@@ -114,31 +119,40 @@ class Surface:
         mesh.SetSourceData(make_lines(lines))
         mesh.DrapeConstraintsOn()
         with Messages(mesh, mesh.GetExecutive()) as messages:
-            mesh.Update()
+            update(mesh, ranks)
         cells = mesh.GetOutput().GetPolys()
-        self.is_empty = not cells.GetNumberOfCells()
+        self.is_empty = total(ranks, cells.GetNumberOfCells()) == 0
         if self.is_empty:
             # Lines that are elsewhere are refused by the filter that is to have them.
-            if not messages.errors:
-                why = messages.warnings or ["the points make no surface"]
-                raise ElevationSurfaceError(f"{name}: cannot be draped: {why[0]}", "faults")
+            if not total(ranks, len(messages.errors)):
+                agreed(ranks, lambda: self.refuse(name, messages))  # by the first, who has warnings
             return
-        xyz = vtk_to_numpy(mesh.GetOutput().GetPoints().GetData()).astype("f8")
+        xyz = coordinates_of(mesh.GetOutput()).astype("f8")
         used = numpy.unique(vtk_to_numpy(cells.GetConnectivityArray()))
         self.vertices = xyz[used[numpy.argsort(xyz[used, 1], kind="stable")]]
-        ends = numpy.isin(places_of(self.vertices), places_of(numpy.concatenate(lines)))
-        ends = self.vertices[ends]
+        ends = self.vertices[self.are_ends(lines)]
+        if ranks:  # what is on lines is enough
+            edges = [edge for line in lines for edge in edges_with_reach(line)]
+            beside = [between(p, q, self.vertices, reach) for p, q, _, reach in edges]
+            found = all_values(ranks, numpy.concatenate([ends, *beside]).ravel(), "f8").reshape(-1, 3)
+            found = numpy.unique(found, axis=0)
+            self.vertices = found[numpy.argsort(found[:, 1], kind="stable")]
+            ends = self.vertices[self.are_ends(lines)]
         self.at = dict(zip(places_of(ends).tolist(), ends))
+
+    @staticmethod
+    def refuse(name, messages):
+        why = messages.warnings or ["the points make no surface"]
+        raise ElevationSurfaceError(f"{name}: cannot be draped: {why[0]}", "faults")
+
+    def are_ends(self, lines):
+        return numpy.isin(places_of(self.vertices), places_of(numpy.concatenate(lines)))
 
     def drape(self, line):
         """([(n, 3) parts of a line that lie within the points], the length of what does not, the
         first place of that)."""
         parts, lost, first = [], 0.0, None
-        for p, q in zip(line[:-1], line[1:]):
-            length = float(numpy.hypot(*(q - p)[:2]))
-            if length == 0.0:
-                continue
-            reach = max(ROUNDING * length, 16 * float(numpy.spacing(abs(line[:, :2]).max())))
+        for p, q, length, reach in edges_with_reach(line):
             begin, end = ([self.at[place] for place in places_of(one[None]).tolist() if place in self.at]
                           for one in (p, q))
             on = [*begin, *between(p, q, self.vertices, reach), *end]
@@ -151,3 +165,11 @@ class Surface:
             elif on:
                 parts.append(on)
         return [numpy.array(part) for part in parts if len(part) > 1], lost, first
+
+
+def edges_with_reach(line):
+    """Yields both ends of each edge of a line, its length, and how far beside it a vertex is on it."""
+    for p, q in zip(line[:-1], line[1:]):
+        length = float(numpy.hypot(*(q - p)[:2]))
+        if length > 0.0:
+            yield p, q, length, max(ROUNDING * length, 16 * float(numpy.spacing(abs(line[:, :2]).max())))

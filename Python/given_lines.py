@@ -5,15 +5,16 @@
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import crs_of, make_points, parts_of_lines, set_crs
+from .clouds import coordinates_of, crs_of, make_points, parts_of_lines, set_crs
 from .draping import draped
 from .gdal_common import check_system, flat, is_near, name_of, quiet, reference_of, same_system
 from .mending import mended
 from .messages import FileError
 from .names import option
+from .ranks import extremes
 
 
-def fitted(cloud, lines, names, given, strict=False):
+def fitted(cloud, lines, names, given, strict=False, ranks=None):
     """(lines, notes): in the coordinate reference system of the points, closed, valid, with z.
 
     cloud   the points
@@ -21,6 +22,7 @@ def fitted(cloud, lines, names, given, strict=False):
     names   how messages call the "points" and each of the lines
     given   properties, see checked()
     strict  True: what would be changed is an error
+    ranks   the controller of those that have some of the points each, and all lines, or None
 
     Raises ElevationSurfaceError.
     """
@@ -28,15 +30,15 @@ def fitted(cloud, lines, names, given, strict=False):
     if "boundary" in lines:  # while places are still those of its file
         lines["boundary"], notes = mended(lines["boundary"], names["boundary"], strict)
     for name, data in lines.items():
-        lines[name], told = in_system(data, names[name], cloud, names["points"], strict)
+        lines[name], told = in_system(data, names[name], cloud, names["points"], strict, ranks)
         notes = notes + told
     if "faults" in lines:
-        lines["faults"], told = draped(cloud, lines["faults"], names["faults"], given, strict)
+        lines["faults"], told = draped(cloud, lines["faults"], names["faults"], given, strict, ranks)
         notes += told
     return lines, notes
 
 
-def in_system(data, name, cloud, points_name, strict):
+def in_system(data, name, cloud, points_name, strict, ranks=None):
     """(data, notes): lines with x and y in the coordinate reference system of a Cloud."""
     crs = crs_of(data)
     _, parts = parts_of_lines(data)
@@ -64,7 +66,7 @@ def in_system(data, name, cloud, points_name, strict):
             f"{name}: cannot be reprojected from {name_of(crs)} to {name_of(cloud.crs)}: {error}"
         ) from None
     systems = f"{name} is in {name_of(crs)}, {points_name} in {name_of(cloud.crs)}: reprojected"
-    check_overlap(xy, cloud, systems)
+    check_overlap(xy, cloud, systems, ranks)
     old, new = xyz[0, :2].copy(), xy[0]
     xyz[:, :2] = xy
     moved = data.NewInstance()
@@ -78,11 +80,12 @@ def in_system(data, name, cloud, points_name, strict):
     ]
 
 
-def check_overlap(xy, cloud, words):
+def check_overlap(xy, cloud, words, ranks):
     """Refuses reprojected lines that are nowhere near the points: one of the systems is wrong."""
     if cloud.points is None:
         return
-    x0, x1, y0, y1, _, _ = cloud.points.GetBounds()
+    places = coordinates_of(cloud.points)[:, :2].T
+    (x0, x1), (y0, y1) = (extremes(ranks, axis[numpy.isfinite(axis)]) for axis in places)
     (west, south), (east, north) = xy.min(axis=0), xy.max(axis=0)
     if west > x1 or east < x0 or south > y1 or north < y0:
         raise FileError(

@@ -28,9 +28,10 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from .messages import ElevationSurfaceError, counted
 from .names import option
 from .properties import DUPLICATES
-from .ranks import collected, together
+from .ranks import collected, together, total
 from .reading.nulls import body
 from .selecting import MOST_VALUES, Words, as_option, coded, columns_in, shown_values
+from .spreading import NOT_FINITE, SAME_PLACE
 
 MANY = 0.01  # of all places
 MANY_BY_NAME = 0.001
@@ -281,6 +282,17 @@ def way_out(told):
         f"{called} tells them apart: {shown_values(column)}; {option('each_value')} {shlex.quote(name)} "
         f"makes a surface of each value, {as_option(name, value)} one of this; {policies()}"
     )
+
+
+def heights_on_ranks(ranks, result, policy):
+    """As check_heights(), of a Reconstruction whose points are triangulated: then all points at a place
+    are on one rank. It looks at no columns."""
+    heights, xyz = HeightsOfPieces(ranks), result.coordinates
+    heights.see(xyz)
+    heights.take_sample()
+    heights.add(xyz)
+    is_vertex = ~numpy.isin(result.reasons, (SAME_PLACE, NOT_FINITE))
+    return heights.check(total(ranks, numpy.count_nonzero(is_vertex)), policy)
 
 
 class HeightsOfPieces:

@@ -5,9 +5,11 @@
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
+from .clouds import coordinates_of
 from .messages import counted
 from .names import option
 from .properties import INTERPOLATIONS
+from .ranks import together, total
 
 STATUS = {
     0: "filled", 1: "too large", 2: "too many edges", 3: "failed", 4: "replaced", 5: "cut out",
@@ -16,28 +18,31 @@ STATUS = {
 
 def holes_of(result):
     """The part of the report on holes."""
-    return report_of_holes(result.holes, are_bridged(result), result.fill, result.why_opened)
+    report = report_of_holes(
+        result.holes, result.bridged, result.fill, result.why_opened, result.ranks
+    )
+    return {**report, "open_edge_length": result.open_edge_length}
 
 
-def report_of_holes(outlines, bridged, fill, why_opened=None):
+def report_of_holes(outlines, bridged, fill, why_opened=None, ranks=None):
     """The part of the report on holes.
 
     outlines    vtkPolyData, with the report of the filter as cell data
     bridged     see are_bridged()
     fill        the filter
     why_opened  where the length from that of the filter is from
+    ranks       the controller of those that have some outlines each, or None
 
     found, filled  counts of holes, and of voids that triangles bridged and that were filled; a hole
                    that the boundary has cut out is found only if it is filled
     cut_out        count of those that stay open
     bridged_left   count of voids whose triangles are left as they are
     """
-    cells = outlines.GetCellData()
     names = ("HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints",
              "Interpolation")
-    columns = [vtk_to_numpy(cells.GetArray(name)).tolist() for name in names]
-    places = hole_places(outlines)
-    rows = zip(*columns, bridged.tolist(), *places)
+    columns = [column_of(outlines, name).tolist() for name in names]
+    rows = zip(*columns, bridged.tolist(), *hole_places(outlines))
+    rows = together(ranks, lambda: list(rows))
     holes = [
         {
             "hole": hole,
@@ -72,21 +77,27 @@ def report_of_holes(outlines, bridged, fill, why_opened=None):
     }
 
 
-def hole_counts(result):
+def column_of(outlines, name):
+    """The values of the filter's report on holes; none on a rank that has no outline."""
+    column = outlines.GetCellData().GetArray(name)
+    return vtk_to_numpy(column) if column else numpy.zeros(0, dtype="i8")
+
+
+def hole_counts(ranks, result):
     """(found, filled) of holes. A void that triangles bridge, and that stays so, is no hole; nor is
     what the boundary has cut out and stays open."""
-    status = vtk_to_numpy(result.holes.GetCellData().GetArray("Status"))
-    left = int(numpy.count_nonzero((are_bridged(result) & (status != 4)) | (status == 5)))
+    status = column_of(result.holes, "Status")
+    left = total(ranks, numpy.count_nonzero((result.bridged & (status != 4)) | (status == 5)))
     return result.fill.GetNumberOfHoles() - left, result.fill.GetNumberOfFilledHoles()
 
 
-def are_bridged(result):
+def are_bridged(surface, outlines):
     """Which outlines are of voids that triangles bridge, or did until they were filled: (n,) bool.
 
-    A hole is on the left of its outline. Where a triangle is there, it bridges a void.
+    A hole is on the left of its outline. Where a triangle is there, it bridges a void. On ranks, both are
+    on one: the filter gathers a surface whose long triangles it is to open.
     """
-    surface, outlines = result.surface, result.holes
-    status = vtk_to_numpy(outlines.GetCellData().GetArray("Status"))
+    status = column_of(outlines, "Status")
     bridged = status == 4
     left = numpy.flatnonzero((status != 0) & ~bridged)
     if not len(left):
@@ -107,7 +118,7 @@ def are_bridged(result):
 
 def complex_places(data):
     """x + iy of the points of a data set."""
-    x, y = vtk_to_numpy(data.GetPoints().GetData())[:, :2].astype("f8").T
+    x, y = coordinates_of(data)[:, :2].astype("f8").T
     return x + 1j * y
 
 

@@ -7,7 +7,8 @@ import math
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .ranks import collected, together, total
+from .clouds import coordinates_of
+from .ranks import all_values, extremes, together, total
 from .spreading import ids_of
 
 # Above this multiple, edges bridge missing nodes of a grid, or the space between survey lines.
@@ -67,18 +68,27 @@ def measured(ranks, surface):
     every = 1 + total(ranks, len(triangles)) // MOST_SAMPLES
     if every > 1:
         # All triangles with the same least corner: the order of triangles does not matter.
-        least = ids_of(surface)[triangles].min(axis=1).astype("u8")
+        least = ids_of(ranks, surface)[triangles].min(axis=1).astype("u8")
         triangles = triangles[(least * numpy.uint64(0x9E3779B97F4A7C15) >> numpy.uint64(32)) % every == 0]
-    rows = numpy.zeros((3, 0))
-    if len(triangles):
-        xy = vtk_to_numpy(surface.GetPoints().GetData())[:, :2]
-        a, b, c = (xy[triangles[:, i]].astype("f8") for i in range(3))
-        area = 0.5 * numpy.abs(
-            (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-        )
-        lengths = numpy.array([numpy.hypot(*(q - p).T) for p, q in ((a, b), (b, c), (c, a))])
-        rows = numpy.array([area, lengths.min(axis=0), lengths.max(axis=0)])
-    return [numpy.concatenate(collected(ranks, row, "f8")) for row in rows]
+    corners = coordinates_of(surface)[:, :2][triangles].astype("f8")
+    a, b, c = (corners[:, i] for i in range(3))
+    area = 0.5 * numpy.abs(
+        (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    )
+    lengths = lengths_of(corners)
+    rows = area, lengths.min(axis=0), lengths.max(axis=0)
+    return [all_values(ranks, row, "f8") for row in rows]
+
+
+def lengths_of(corners):
+    """(3, n) lengths of the edges of triangles, by x and y of their corners, (n, 3, 2)."""
+    return numpy.array([numpy.hypot(*(corners[:, i - 2] - corners[:, i]).T) for i in range(3)])
+
+
+def longest_edge(ranks, surface):
+    """The length in x,y of the longest edge of the triangles of all ranks."""
+    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    return extremes(ranks, lengths_of(coordinates_of(surface)[:, :2][triangles].astype("f8")))[1]
 
 
 def length_of(area, shortest, longest, lattice):

@@ -9,7 +9,6 @@ exchange that the others come to next, with its error, and all ranks raise that.
 """
 
 import ctypes
-import hashlib
 import json
 import pickle
 import time
@@ -193,23 +192,43 @@ def by_first(controller, work, other=None):
     return agreed(controller, of_others if controller.GetLocalProcessId() else of_first)
 
 
+def all_values(controller, values, kind="i8"):
+    """The numbers of all ranks in one array; kind as of collected()."""
+    return numpy.concatenate(collected(controller, values, kind))
+
+
 def total(controller, count):
     """The sum of the counts of all ranks."""
-    return sum(together(controller, lambda: [int(count)]))
+    return int(all_values(controller, [count]).sum())
 
 
-def number_of(place):
-    """A place as a number that is the same on all ranks."""
-    return int.from_bytes(hashlib.blake2b(repr(place).encode(), digest_size=7).digest(), "big")
+def before(controller, count):
+    """The sum of the counts of the ranks before this one."""
+    counts = collected(controller, [count])
+    return int(numpy.sum(counts[: controller.GetLocalProcessId()])) if controller else 0
 
 
-def is_to_speak(controller, parts):
-    """Whether this rank is to speak of the result: it has points, or is the first if none has.
+def summed(controller, numbers):
+    """The sums of the numbers of all ranks, doubles at the same places of arrays as long."""
+    collected(controller, ())
+    if controller is None:
+        return numbers
+    own = numpy_to_vtk(numbers)
+    result = own.NewInstance()
+    result.SetNumberOfValues(len(numbers))
+    controller.AllReduce(own, result, 2)  # vtkCommunicator.SUM_OP, which ParaView's Python may lack
+    return vtk_to_numpy(result).copy()
 
-    parts  those of the input (Part) that hold points here
-    """
-    counts = together(controller, lambda: [len(parts)])
-    return bool(parts) or not any(counts) and controller.GetLocalProcessId() == 0
+
+def widest(controller, low, high):
+    """The least low and the greatest high of all ranks."""
+    low, high = numpy.min(collected(controller, [low, -high], "f8"), axis=0).tolist()
+    return low, -high
+
+
+def extremes(controller, values):
+    """The least and the greatest value of all ranks; infinity and -infinity where there is none."""
+    return widest(controller, values.min(initial=numpy.inf), values.max(initial=-numpy.inf))
 
 
 def shared(controller, work):
@@ -223,19 +242,20 @@ def shared(controller, work):
 
     def size():
         own.append(work())
+        own.append(packed(own[0]))
         return [own[0].GetNumberOfPoints()]
 
     everywhere, parts = [], []
     for rank, count in enumerate(together(controller, size)):
         if count:
             is_own = rank == controller.GetLocalProcessId()
-            part = packed(own[0]) if is_own else vtkPolyData()
+            part = own[1] if is_own else vtkPolyData()
             controller.Broadcast(part, rank)
             everywhere.append(own[0] if is_own else unpacked(part))
     for part in everywhere:
         if not any(are_equal(part, other) for other in parts):
             parts.append(part)
-    return parts or own
+    return parts or own[:1]
 
 
 def packed(data):

@@ -19,18 +19,19 @@ from vtkmodules.vtkCommonDataModel import (
     vtkRectilinearGrid,
 )
 
-from .clouds import Cloud, make_lines, make_points
+from .clouds import Cloud, coordinates_of, make_lines, make_points
 from .description import KINDS, listing, view_angles
 from .given_lines import fitted
-from .heights import check_heights
+from .heights import check_heights, heights_on_ranks
+from .holes import are_bridged, hole_counts
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .names import argument
-from .opening import length_to_open
+from .opening import length_to_open, longest_edge
 from .paths import check_suffix
 from .properties import COLOURS, PROPERTIES, checked
-from .ranks import agreed, total
+from .ranks import extremes, total
 from .reading.facing import faces_of, notes_on_faces
-from .spreading import whole_lines, whole_surface
+from .spreading import followed
 from .steps import Step, triangulate, trim_along, trim_few
 from .vtkElevationSurface import vtkFillElevationHoles
 
@@ -120,6 +121,8 @@ AS_GIVEN = "as given"  # the length of edges above which triangles are opened
 class Reconstruction:
     """A surface, and all that is known of how it came about.
 
+    ranks     the controller of those that have a part of it each, or None. Counts and the report are
+              those of all
     surface   vtkPolyData with triangles
     boundary  vtkPolyData, the rings that bound the surface; None without trimming
     holes     vtkPolyData, the outline of each hole, filled or not; None without filling
@@ -130,27 +133,38 @@ class Reconstruction:
     triangles {"delaunay": count, "trimmed": count, "filled": count} after each step
     several   {"places", "of", "largest"}: how many of all places have several heights, and the
               largest difference; None where none has
-    reasons   (n,) numbers: 0 for points in triangles of the triangulation, or why they are in none,
-              as vtkGridDelaunay2D counts reasons; IN_NO_TRIANGLE where it has none
+    number_of_points   of the input
+    points    the output of a filter in which points of the input come first
+    reasons   (n,) numbers of these: 0 for points in triangles of the triangulation, or why they are in
+              none, as vtkGridDelaunay2D counts reasons; IN_NO_TRIANGLE where it has none
+    bridged   which of the holes are voids that triangles bridge, see are_bridged()
+    hole_counts        (found, filled)
     lattice   that of the triangulation, see lattice_of(), or None
     times     {step: seconds}
     notes     what filters warned of, one line each
     warnings  the same as Messages, as the filters make them
     decided   notes on what the user has decided
+    gathered  why a filter has brought all points to one rank, one line each
     """
 
-    def __init__(self, cloud):
-        self.cloud = cloud
+    def __init__(self, cloud, ranks=None):
+        self.cloud, self.ranks = cloud, ranks
         self.times = {}
-        self.notes, self.decided, self.warnings = [], [], []
+        self.notes, self.decided, self.warnings, self.gathered = [], [], [], []
         self.delaunay = self.trim = self.fill = self.outlined = None
         self.surface = self.boundary = self.holes = None
-        self.triangles, self.reasons, self.lattice = {}, None, None
+        self.triangles, self.points, self.reasons, self.lattice = {}, None, None, None
+        self.number_of_points, self.bridged, self.hole_counts = 0, None, (0, 0)
         self.progress = None  # what run_chain() was given
         self.boundary_name = None  # where a given boundary is from
         self.faults_name = None
-        self.why_opened = None
+        self.open_edge_length, self.why_opened = 0.0, None  # above which triangles are opened
         self.several = None
+
+    @property
+    def coordinates(self) -> numpy.ndarray:
+        """(n, 3), the points that reasons are of."""
+        return coordinates_of(self.points)[: len(self.reasons)]
 
     @property
     def crs(self) -> Optional[str]:
@@ -161,7 +175,7 @@ class Reconstruction:
     def report(self) -> dict:
         """All that reconstruct tells of a run, as a dictionary of numbers and words.
 
-        Made when first asked for: measuring the distance of the points takes time.
+        Made when first asked for, by all ranks: measuring the distance of the points takes time.
         """
         from .report import make_report
 
@@ -253,19 +267,22 @@ class Reconstruction:
 
 
 def run_chain(
-    cloud, boundary, faults, given, *, trim=True, fill=True, progress=None, strict=False, ranks=None
+    cloud, boundary, faults, given, *, trim=True, fill=True, progress=None, strict=False, ranks=None,
+    heights=None,
 ):
     """reconstruct() on what has been checked: a Cloud, vtkPolyData or None, and checked().
 
-    ranks  the controller of those that run it together, or None. The first has the points, boundary
-           and faults, and gets the result; the others have none, and get its counts
+    ranks  the controller of those that run it together, or None. Each has some of the points; boundary
+           and faults may be on one or on all, but are None on none or on all. Each gets its part
+    heights  what check_heights() has given where one rank had all points
     """
-    result = Reconstruction(cloud)
+    result = Reconstruction(cloud, ranks)
     result.progress = progress
     result.boundary_name = "given" if boundary is not None else None
     result.faults_name = "given" if faults is not None else None
-    note, result.several = agreed(ranks, lambda: check_heights(cloud, given.get("duplicates")))
-    (result.decided if "duplicates" in given else result.notes).extend([note] if note else [])
+    policy = given.get("duplicates")
+    if heights is None and not ranks:
+        heights = check_heights(cloud, policy)
     run = Step(result, given, progress, strict, ranks)
     if given.get("maximum_elevation_error") and trim:
         trim_few(run, boundary, faults)
@@ -273,7 +290,10 @@ def run_chain(
         triangulate(run, faults, given.get("maximum_elevation_error", 0.0))
         if trim:
             trim_along(run, boundary)
-            result.boundary = whole_lines(ranks, result.trim.GetOutput(2))
+            result.boundary = result.trim.GetOutput(2)
+    note, result.several = heights or heights_on_ranks(ranks, result, policy)
+    if note:
+        (result.decided if "duplicates" in given else result.notes).insert(0, note)
     last = result.trim or result.delaunay
     if fill:
         filling = run.made("fill", vtkFillElevationHoles())
@@ -281,15 +301,34 @@ def run_chain(
         if boundary is None:
             filling.FillCutOutsOn()  # an outline of few points is no boundary that is given
         if "open_edge_length" in given:
-            result.why_opened = AS_GIVEN
+            result.open_edge_length, result.why_opened = given["open_edge_length"], AS_GIVEN
         elif not given.get("maximum_elevation_error"):  # else long edges are no voids
             length, result.why_opened = length_to_open(ranks, last.GetOutput(), result)
-            filling.SetMaximumEdgeLength(length)
+            if not ranks or longest_edge(ranks, last.GetOutput()) > length:  # else it stays spread
+                filling.SetMaximumEdgeLength(length)
+            result.open_edge_length = length
         result.fill = last = run("fill", filling)
         result.triangles["filled"] = total(ranks, last.GetOutput().GetNumberOfPolys())
-        result.holes = whole_lines(ranks, filling.GetOutput(1))
-    filters = (result.delaunay, result.trim, result.fill)
-    result.surface = whole_surface(ranks, last.GetOutput(), result.reasons, filters)
+        result.holes = filling.GetOutput(1)
+        result.bridged = are_bridged(last.GetOutput(), result.holes)
+        result.hole_counts = hole_counts(ranks, result)
+    result.surface = last.GetOutput()
+    result.points, result.reasons = followed(
+        ranks, result.points, result.reasons, result.surface, cloud.points
+    )
+    return result
+
+
+def reconstruct_cloud(cloud, lines, names, given, *, strict=False, ranks=None, **options):
+    """run_chain() on points and lines as they come.
+
+    lines, names  as fitted() takes them
+    """
+    check_spacing(least_reach(cloud.points, ranks), given.get("spacing", 0.0))
+    lines, notes = fitted(cloud, lines, names, given, strict, ranks)
+    boundary, faults = lines.get("boundary"), lines.get("faults")
+    result = run_chain(cloud, boundary, faults, given, strict=strict, ranks=ranks, **options)
+    result.notes[:0] = notes
     return result
 
 
@@ -342,25 +381,21 @@ def reconstruct(
         boundary = as_lines(boundary, "boundary", True)
     if faults is not None:
         faults = as_lines(faults, "faults", False)
-    check_spacing(least_reach(cloud.points), given.get("spacing", 0.0))
     lines = {"boundary": boundary, "faults": faults}
     lines = {name: data for name, data in lines.items() if data is not None}
-    lines, notes = fitted(cloud, lines, NAMES, given, strict)
-    result = run_chain(
-        cloud, lines.get("boundary"), lines.get("faults"), given,
-        trim=trim, fill=fill, progress=progress, strict=strict,
+    result = reconstruct_cloud(
+        cloud, lines, NAMES, given, strict=strict, trim=trim, fill=fill, progress=progress
     )
-    result.notes[:0] = notes
     for note in result.notes:
         warnings.warn(note, ElevationSurfaceWarning, stacklevel=2)
     return result
 
 
-def least_reach(points):
+def least_reach(points, ranks=None):
     """The larger of |x| and |y| of the point where that is least; infinity without points."""
-    xy = vtk_to_numpy(points.GetPoints().GetData())[:, :2]
+    xy = coordinates_of(points)[:, :2]
     xy = xy[numpy.isfinite(xy).all(axis=1)]
-    return numpy.abs(xy).max(axis=1).min(initial=numpy.inf)
+    return extremes(ranks, numpy.abs(xy).max(axis=1))[0]
 
 
 def check_spacing(reach, spacing):

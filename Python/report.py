@@ -6,21 +6,29 @@ as a dictionary."""
 import time
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
-
-from .clouds import corner_flags
+from .clouds import coordinates_of
 from .distance import distance_to
-from .holes import hole_counts, hole_lines, holes_of
+from .holes import hole_lines, holes_of
 from .messages import counted, of_reason
 from .names import option
 from .properties import LATTICE_MODES
-from .spreading import IN_NO_TRIANGLE, OUT_OF_OUTLINE, WITHIN_ERROR
+from .ranks import all_values, extremes, total
+from .spreading import (
+    IN_NO_TRIANGLE,
+    NOT_FINITE,
+    OUT_OF_OUTLINE,
+    SAME_PLACE,
+    WITHIN_ERROR,
+    ids_of,
+    places_of,
+    used_points,
+)
 
 OUTSIDE = "outside the boundary"
-# Why a point is not used, by number: the first three are those of vtkGridDelaunay2D.
+# Why a point is not used, by number.
 REASONS = {
-    1: "same x,y as another point",
-    2: "not finite",
+    SAME_PLACE: "same x,y as another point",
+    NOT_FINITE: "not finite",
     WITHIN_ERROR: "within the elevation error",
     OUT_OF_OUTLINE: OUTSIDE,
     IN_NO_TRIANGLE: "in no triangle below the edge limit",
@@ -30,14 +38,14 @@ FOUND = "found from the points"
 
 
 def make_report(result):
-    """Everything the user may want to know of a Reconstruction, as plain numbers and words."""
-    cloud, delaunay, trim = result.cloud, result.delaunay, result.trim
-    coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData())
+    """Everything the user may want to know of a Reconstruction, as plain numbers and words. Where it is
+    spread over ranks, all of them make it together."""
+    cloud, delaunay, trim, ranks = result.cloud, result.delaunay, result.trim, result.ranks
+    ids = ids_of(ranks, result.points)[: len(result.reasons)]
     reasons = reasons_unused(result)
-    unused = {number: numpy.flatnonzero(reasons == number) for number in REASONS}
-    unused = {REASONS[number]: (len(ids), ids[:MOST_LISTED]) for number, ids in unused.items()}
-    notes, limits = result.decided + result.notes, limits_of(result.surface)
-    report = facts_of(result, len(coordinates), notes, limits, unused)
+    unused = list_unused(ranks, reasons, ids)
+    notes, limits = result.decided + result.notes, limits_of(ranks, result.surface)
+    report = facts_of(result, result.number_of_points, notes, limits, unused)
     if delaunay.GetMaximumElevationError():
         report["simplified"] = {
             "maximum_elevation_error": delaunay.GetMaximumElevationError(),
@@ -53,11 +61,11 @@ def make_report(result):
             trim.GetNumberOfOutwardTriangles(),
             result.outlined[1] if result.outlined else trim,
             result.boundary_name,
-            result.boundary.GetNumberOfLines(),
+            total(ranks, result.boundary.GetNumberOfLines()),
         )
     if result.fill:
         report["holes"] = holes_of(result)
-    report["distance"] = distance_of(result, coordinates, reasons)
+    report["distance"] = distance_of(result, reasons, ids)
     return report
 
 
@@ -125,30 +133,46 @@ def report_of_trimming(outward, trim, boundary_name, rings):
     return report
 
 
-def distance_of(result, coordinates, reasons):
+def distance_of(result, reasons, ids):
     """The distance of all points that the user wants in the surface, used or not."""
+    coordinates = result.coordinates
     measured = numpy.isfinite(coordinates).all(axis=1)
     if result.boundary_name:
         measured &= reasons != OUT_OF_OUTLINE
     began = time.perf_counter()
-    distance = distance_to(result.surface, coordinates, measured, result.measuring)
+    distance = distance_to(
+        result.surface, coordinates, measured, result.measuring, result.ranks, ids
+    )
     result.times["measure"] = time.perf_counter() - began
     return distance
 
 
 def reasons_unused(result):
-    """(n,) numbers of REASONS, or 0, for the points of the cloud."""
-    corners = vtk_to_numpy(result.surface.GetPolys().GetConnectivityArray())
-    used = corner_flags(corners, result.surface.GetNumberOfPoints())[: len(result.reasons)]
+    """(n,) numbers of REASONS, or 0, for the points that Reconstruction.reasons are of."""
+    used = used_points(result.ranks, result.surface)[: len(result.reasons)]
     return numpy.where((result.reasons == 0) & ~used, OUT_OF_OUTLINE, result.reasons)
 
 
-def limits_of(surface):
+def list_unused(ranks, reasons, ids):
+    """{reason: (how many points are not used, the places of the first MOST_LISTED of them)}.
+
+    ids  of the points of this rank
+    """
+    found = {}
+    for number, words in REASONS.items():
+        places = numpy.sort(ids[reasons == number])
+        count = total(ranks, len(places))
+        if count:
+            places = numpy.sort(all_values(ranks, places[:MOST_LISTED]))[:MOST_LISTED]
+            places = places_of(ranks, places, ids)
+        found[words] = (count, places)
+    return found
+
+
+def limits_of(ranks, surface):
     """The lowest x, y and z of the points in triangles, and the highest."""
-    points = vtk_to_numpy(surface.GetPoints().GetData())
-    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
-    used = points[corner_flags(corners, len(points))]
-    return used.min(axis=0).tolist(), used.max(axis=0).tolist()
+    points = coordinates_of(surface)[used_points(ranks, surface)]
+    return tuple(zip(*(extremes(ranks, points[:, i]) for i in range(3))))
 
 
 def crs_name(crs):
@@ -288,10 +312,10 @@ def distance_lines(report, line):
 def main_counts(result):
     """What one wants to know first: how many points, triangles and holes, as a list of words."""
     parts = [
-        counted(result.cloud.points.GetNumberOfPoints(), "point"),
-        counted(result.surface.GetNumberOfPolys(), "triangle"),
+        counted(result.number_of_points, "point"),
+        counted(list(result.triangles.values())[-1], "triangle"),
     ]
-    found, filled = hole_counts(result) if result.fill else (0, 0)
+    found, filled = result.hole_counts
     if filled < found:
         parts.append(f"{filled:,} of {found:,} holes filled")
     elif found:

@@ -1,30 +1,30 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The chain on several ranks: points go from the first to all, a surface comes from all to the first.
+"""A surface that is spread over ranks, of which each has its part: what the parts say together, and how
+the program's first rank scatters points and gathers the surface.
 
-Without a controller there is one rank, and all stays as it is.
+In the output of a filter, points that belong to this rank come first, those of its input before others;
+then come copies of points of other ranks. Without a controller there is one rank, and all points are
+its own.
 """
 
 import numpy
-from vtkmodules.util.numpy_support import (
-    numpy_to_vtk,
-    numpy_to_vtkIdTypeArray,
-    vtk_to_numpy,
-)
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints, vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
-from .clouds import cells_of, corner_flags, some_points
-from .inputs import joined
-from .ranks import collected, packed, shared, together, unpacked
+from .clouds import cells_of, corner_flags, joined, marked_points, some_points
+from .messages import ElevationSurfaceError, Messages
+from .ranks import agreed, all_values, before, collected, packed, shared, together, total, unpacked
+from .vtkElevationSurface import vtkTrimOutwardTriangles
 
-IDS = "PlaceInInput"  # the global ids that points have on the way
+IDS = "PlaceInInput"  # made for the way, where points have no global ids
 GHOSTS = vtkDataSetAttributes.GhostArrayName()
 OF_A_RANK = ("WorkOfRank", "WorkOfTrim")  # field data
 TAG = 20
-# Why a point is in no triangle, by number; others are those of vtkGridDelaunay2D.
-WITHIN_ERROR, OUT_OF_OUTLINE, IN_NO_TRIANGLE = 3, 4, 5
+# Why a point is in no triangle, by number; the first three are those of vtkGridDelaunay2D.
+SAME_PLACE, NOT_FINITE, WITHIN_ERROR, OUT_OF_OUTLINE, IN_NO_TRIANGLE = 1, 2, 3, 4, 5
 
 
 def update(algorithm, ranks):
@@ -36,40 +36,136 @@ def update(algorithm, ranks):
         algorithm.UpdatePiece(ranks.GetLocalProcessId(), ranks.GetNumberOfProcesses(), 0)
 
 
-# ---- to all -----------------------------------------------------------------------------------
+# ---- parts ------------------------------------------------------------------------------------
 
 
-def can_be_dealt(points):
+def ids_of(ranks, output):
+    """The places in the input of the points of an output; on ranks their global ids."""
+    ids = output.GetPointData().GetGlobalIds() if ranks else None
+    return numpy.arange(output.GetNumberOfPoints()) if ids is None else vtk_to_numpy(ids)
+
+
+def own_points(output):
+    """Which points are not another rank's, (n,) of bool."""
+    return ~marked_points(output, vtkDataSetAttributes.DUPLICATEPOINT)
+
+
+def number_of_own(ranks, triangulation, points):
+    """How many of the points that all ranks have given belong to this rank now; points: its input."""
+    if ranks is None:
+        return points.GetNumberOfPoints()
+    ids, count = points.GetPointData().GetGlobalIds(), points.GetNumberOfPoints()
+    have_ids = not total(ranks, count > 0 and ids is None)
+    last = vtk_to_numpy(ids).max(initial=-1) if ids and have_ids else count - 1
+    last = all_values(ranks, [last])
+    last = last.max() if have_ids else (last + 1).sum() - 1  # the filter numbers them, rank after rank
+    return int(numpy.count_nonzero(own_points(triangulation) & (ids_of(ranks, triangulation) <= last)))
+
+
+def used_points(ranks, surface):
+    """(n,) of bool: the points that are corners of triangles, on any rank."""
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
+    used = corner_flags(corners, surface.GetNumberOfPoints())
+    if ranks is None:
+        return used
+    ids = ids_of(ranks, surface)
+    return used | numpy.isin(ids, all_values(ranks, ids[used & ~own_points(surface)]))
+
+
+def reasons_of(ranks, triangulation, count):
+    """(count,) numbers of the first points: 0 for those in triangles, or why they are in none, see
+    Reconstruction."""
+    used = used_points(ranks, triangulation)[:count]
+    reasons = numpy.where(used, 0, IN_NO_TRIANGLE).astype("u1")
+    fields = triangulation.GetFieldData()
+    unused, why = fields.GetArray("UnusedPointIds"), fields.GetArray("UnusedPointReasons")
+    if unused:
+        unused, why = vtk_to_numpy(unused), vtk_to_numpy(why)
+        reasons[unused[unused < count]] = why[unused < count]  # lines may have added others
+    return reasons
+
+
+def followed(ranks, earlier, reasons, later, points):
+    """(output, reasons_of() its first points): those of an earlier filter, or, where a later one has
+    brought points to other ranks, those of that; points: as of number_of_own()."""
+    if ranks is None:
+        return earlier, reasons
+    old = ids_of(ranks, earlier)[: len(reasons)]
+    new = ids_of(ranks, later)[: number_of_own(ranks, later, points)]
+    if not total(ranks, not numpy.array_equal(old, new)):
+        return earlier, reasons
+    unused = reasons != 0
+    reasons = dict(zip(*(all_values(ranks, one[unused]).tolist() for one in (old, reasons))))
+    return later, numpy.array([reasons.get(one, 0) for one in new.tolist()], dtype="u1")
+
+
+def places_of(ranks, wanted, ids):
+    """The places of points among those of all ranks by their ids; ids: those of this rank."""
+    ids = numpy.sort(ids, kind="stable")
+    return numpy.sum(collected(ranks, numpy.searchsorted(ids, wanted)), axis=0)
+
+
+def gather_points(ranks, points):
+    """The points of all ranks on the rank with most of them, in the order of their ids, or rank after
+    rank; the others have none. A filter that is given no triangle does it, by the rules of all filters."""
+    gatherer, given = vtkTrimOutwardTriangles(), points.NewInstance()
+    given.ShallowCopy(points)
+    # The filter takes it for what was triangulated, and does not report that there are no triangles.
+    unused = vtkIdTypeArray()
+    unused.SetName("UnusedPointIds")
+    given.GetFieldData().AddArray(unused)
+    are_numbered = points.GetPointData().GetGlobalIds() or not points.GetNumberOfPoints()
+    if total(ranks, not are_numbered):  # else points at one place would count once
+        count = points.GetNumberOfPoints()
+        ids = numpy_to_vtkIdTypeArray(before(ranks, count) + numpy.arange(count), deep=True)
+        ids.SetName(IDS)
+        given.GetPointData().SetGlobalIds(ids)
+    gatherer.SetInputData(given)
+    with Messages(gatherer, gatherer.GetExecutive()) as messages:
+        update(gatherer, ranks)
+
+    def check():
+        if messages.errors:  # of all ranks, on the first
+            raise ElevationSurfaceError(messages.errors[0])
+
+    agreed(ranks, check)
+    gatherer.GetOutput().GetPointData().RemoveArray(IDS)
+    return gatherer.GetOutput()
+
+
+# ---- from the first rank and to it ------------------------------------------------------------
+
+
+def can_be_scattered(points):
     """Whether ranks do with points what one does: these have no ids or ghosts, which ranks go by."""
     data = points.GetPointData()
-    return data.GetGlobalIds() is None and not data.HasArray(GHOSTS) and not data.HasArray(IDS)
+    return data.GetGlobalIds() is None and not data.HasArray(GHOSTS)
 
 
-def dealt(ranks, points):
+def scatter(ranks, points):
     """The points that each rank has of those of the first: one slice after the other."""
     if ranks is None:
         return points
     own, count = ranks.GetLocalProcessId(), ranks.GetNumberOfProcesses()
-    if own:
-        mine = vtkPolyData()
-        ranks.Receive(mine, 0, TAG)
-        return unpacked(mine)
-    ends = points.GetNumberOfPoints() * numpy.arange(count + 1) // count
-    for rank in range(1, count):
-        ranks.Send(packed(slice_of(points, ends[rank], ends[rank + 1])), rank, TAG)
-    mine = slice_of(points, 0, ends[1])
-    mine.GetFieldData().ShallowCopy(points.GetFieldData())
+    for rank in range(count):
+        part = agreed(ranks, lambda: None if own else packed(slice_of(points, rank, count)))
+        if rank == own == 0:
+            mine = unpacked(part)
+            mine.GetFieldData().ShallowCopy(points.GetFieldData())
+        elif own == 0:
+            ranks.Send(part, rank, TAG)
+        elif rank == own:
+            mine = vtkPolyData()
+            ranks.Receive(mine, 0, TAG)
+            unpacked(mine)
     return mine
 
 
-def slice_of(points, first, last):
-    """Some points with their data and their places as global ids."""
-    rows = numpy.arange(first, last)
-    some = some_points(points, rows)
+def slice_of(points, rank, ranks):
+    """The points of a rank of so many, with their data."""
+    first, last = (points.GetNumberOfPoints() * i // ranks for i in (rank, rank + 1))
+    some = some_points(points, numpy.arange(first, last))
     set_places(some, vtk_to_numpy(points.GetPoints().GetData())[first:last])
-    ids = numpy_to_vtkIdTypeArray(rows, deep=True)
-    ids.SetName(IDS)
-    some.GetPointData().SetGlobalIds(ids)
     return some
 
 
@@ -80,82 +176,50 @@ def set_places(data, coordinates):
     data.SetPoints(points)
 
 
-# ---- to the first -----------------------------------------------------------------------------
-
-
-def ids_of(output):
-    """The places in the input of the points of an output, as far as they were there."""
-    ids = output.GetPointData().GetArray(IDS)
-    return numpy.arange(output.GetNumberOfPoints()) if ids is None else vtk_to_numpy(ids)
-
-
-def own_points(output):
-    """Which points are not another rank's, (n,) of bool."""
-    ghosts = output.GetPointData().GetArray(GHOSTS)
-    if ghosts is None:
-        return numpy.ones(output.GetNumberOfPoints(), dtype=bool)
-    return vtk_to_numpy(ghosts) & vtkDataSetAttributes.DUPLICATEPOINT == 0
-
-
-def reasons_of(ranks, triangulation, count):
-    """(count,) numbers: 0 for points in triangles, or why they are in none, see Reconstruction."""
-    ids, is_own = ids_of(triangulation), own_points(triangulation)
-    corners = vtk_to_numpy(triangulation.GetPolys().GetConnectivityArray())
-    used = corner_flags(corners, len(ids))
-    fields = triangulation.GetFieldData()
-    unused, why = fields.GetArray("UnusedPointIds"), fields.GetArray("UnusedPointReasons")
-    unused, why = (vtk_to_numpy(a) if a else numpy.zeros(0, "i8") for a in (unused, why))
-    tables = (ids[is_own & ~used], ids[~is_own & used], ids[unused], why)
-    here_not, elsewhere, told, why = (numpy.concatenate(collected(ranks, t)) for t in tables)
-    reasons = numpy.zeros(count, dtype="u1")
-    if count:
-        reasons[here_not[here_not < count]] = IN_NO_TRIANGLE
-        reasons[elsewhere[elsewhere < count]] = 0
-        reasons[told[told < count]] = why[told < count]  # lines may have added others
-    return reasons
-
-
-def whole_surface(ranks, output, reasons, filters):
-    """The surface of all ranks on the first of them, as one rank makes it; empty on the others.
-
-    reasons  those of reasons_of()
-    filters  those that have run, or None
-    """
+def gather_surface(ranks, result):
+    """Brings the parts of a Reconstruction to the first rank, as one rank makes it; others have none."""
     if ranks is None:
-        return output
-    own = ranks.GetLocalProcessId()
-    having = together(ranks, lambda: [own] if output.GetNumberOfPoints() else [])
+        return
+    for name in ("boundary", "holes"):
+        lines = getattr(result, name)
+        if lines is not None:
+            setattr(result, name, joined(shared(ranks, lambda: lines)))
+    own, part = ranks.GetLocalProcessId(), result.surface
+    having = together(ranks, lambda: [own] if part.GetNumberOfPoints() else [])
+    result.surface = vtkPolyData()
     if own:
         if own in having:
-            ranks.Send(packed(output), 0, TAG)
-        return vtkPolyData()
+            ranks.Send(packed(part), 0, TAG)
+        return
     parts = []
     for rank in having:
         parts.append(vtkPolyData())
         if rank:
             ranks.Receive(parts[-1], rank, TAG)
-            parts[-1] = unpacked(parts[-1])
+            unpacked(parts[-1])
         else:
-            parts[-1].ShallowCopy(output)
-    surface = parts[0] if len(parts) == 1 else joined_by_ids(parts)
-    set_unused(surface, reasons)
-    set_counts(surface, filters)
-    for name in (IDS, GHOSTS):
-        surface.GetPointData().RemoveArray(name)
+            parts[-1].ShallowCopy(part)
+    ids = parts[0].GetPointData().GetGlobalIds()  # none where a filter has made the whole on one rank
+    result.surface = joined_by_ids(ranks, parts)
+    for name in (ids.GetName() if ids else "", GHOSTS):
+        result.surface.GetPointData().RemoveArray(name)
     for name in OF_A_RANK:
-        surface.GetFieldData().RemoveArray(name)
-    return surface
+        result.surface.GetFieldData().RemoveArray(name)
+    set_counts(result.surface, (result.delaunay, result.trim, result.fill))
 
 
-def joined_by_ids(parts):
+def joined_by_ids(ranks, parts):
     """Parts of a surface as one, with the points in the order of their ids."""
-    append = vtkAppendPolyData()
+    append, unused = vtkAppendPolyData(), [numpy.zeros((2, 0), dtype="i8")]
+    ids = numpy.concatenate([ids_of(ranks, part) for part in parts])
     for part in parts:
+        rows, why = (part.GetFieldData().GetArray(f"UnusedPoint{what}") for what in ("Ids", "Reasons"))
+        if rows:  # empty ones are lost on the way
+            unused.append([ids_of(ranks, part)[vtk_to_numpy(rows)], vtk_to_numpy(why)])
         part.GetPointData().SetActiveAttribute(-1, vtkDataSetAttributes.GLOBALIDS)
         append.AddInputData(part)
     append.Update()
     every = append.GetOutput()
-    ids = ids_of(every)
     rows = numpy.flatnonzero(own_points(every))
     rows = rows[numpy.argsort(ids[rows], kind="stable")]
     surface = some_points(every, rows)
@@ -164,15 +228,17 @@ def joined_by_ids(parts):
     surface.SetPolys(cells_of(numpy.searchsorted(ids[rows], ids[corners]).reshape(-1, 3)))
     surface.GetCellData().ShallowCopy(every.GetCellData())
     surface.GetFieldData().ShallowCopy(parts[0].GetFieldData())
+    unused, why = numpy.concatenate(unused, axis=1)
+    order = numpy.argsort(unused, kind="stable")
+    set_unused(surface, numpy.searchsorted(ids[rows], unused[order]), why[order])
     return surface
 
 
-def set_unused(surface, reasons):
-    """Sets the field data of vtkGridDelaunay2D that tell of unused points."""
-    unused = numpy.flatnonzero((reasons != 0) & (reasons != IN_NO_TRIANGLE))
+def set_unused(surface, unused, reasons):
+    """Sets the field data of vtkGridDelaunay2D on unused points."""
     for name, values, array in (
         ("UnusedPointIds", unused, vtkIdTypeArray()),
-        ("UnusedPointReasons", reasons[unused], vtkUnsignedCharArray()),
+        ("UnusedPointReasons", reasons, vtkUnsignedCharArray()),
     ):
         array.SetName(name)
         array.SetNumberOfValues(len(values))
@@ -188,10 +254,3 @@ def set_counts(surface, filters):
         for algorithm in filters:
             if name.startswith("NumberOf") and hasattr(algorithm, f"Get{name}"):
                 fields.GetArray(i).SetTuple1(0, getattr(algorithm, f"Get{name}")())
-
-
-def whole_lines(ranks, output):
-    """The lines of all ranks, on all of them; those that are the same on several count once."""
-    if ranks is None:
-        return output
-    return joined(shared(ranks, lambda: output))

@@ -7,8 +7,7 @@ import time
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import bare_lines
-from .inputs import joined
+from .clouds import bare_lines, coordinates_of, joined
 from .messages import ElevationSurfaceError, Messages
 from .names import PANEL, PYTHON, are_for, argument, option
 from .opening import lattice_of
@@ -23,8 +22,8 @@ from .outline import (
     spacing_of,
 )
 from .properties import PROPERTIES, set_properties
-from .ranks import agreed, together, total
-from .spreading import OUT_OF_OUTLINE, WITHIN_ERROR, dealt, reasons_of, update
+from .ranks import all_values, collected, extremes, together, total
+from .spreading import OUT_OF_OUTLINE, WITHIN_ERROR, number_of_own, reasons_of, update
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
 
 STEPS = {"delaunay": "triangulating", "trim": "trimming", "fill": "filling holes"}
@@ -73,14 +72,15 @@ class Step:
         def end():
             if raised:
                 raise raised[0]
-            self.report(name, messages)
+            return self.report(name, messages)
 
-        agreed(self.ranks, end)
+        for is_on_one_rank, note in together(self.ranks, end):
+            notes = self.result.gathered if is_on_one_rank else self.result.notes
+            notes += [note] if note not in notes else []
         return algorithm
 
     def report(self, name, messages):
-        """Raises the errors of a step, or makes notes of its warnings."""
-        # The first rank has all points and the surface anyway, and says so in the documents.
+        """Raises the errors of a step. Returns [whether it is OnOneRank, note] of its warnings."""
         warnings = [warning for warning in messages.warnings if warning.code != "OnOneRank"]
         problems = messages.errors or (warnings if self.strict else [])
         if problems:
@@ -91,10 +91,11 @@ class Step:
                 about = "faults"
             words = " ".join(in_our_names(one, name) for one in problems)
             raise ElevationSurfaceError(words, about, STEPS[name])
-        for warning in warnings:
-            note = f"{STEPS[name]}: {in_our_names(warning, name)}"
-            self.result.warnings.append(warning)
-            self.result.notes += [note] if note not in self.result.notes else []
+        self.result.warnings += warnings
+        return [
+            [warning.code == "OnOneRank", f"{STEPS[name]}: {in_our_names(warning, name)}"]
+            for warning in messages.warnings
+        ]
 
 
 def is_of_constraints(message):
@@ -127,9 +128,9 @@ def triangulate(run, lines, error):
     delaunay.SetMaximumElevationError(error)
     # A boundary that is given cuts the surface at all its points.
     delaunay.SetSimplifyConstraints(not result.boundary_name)
-    delaunay.SetInputData(dealt(ranks, points))
+    delaunay.SetInputData(points)
     bare = [] if lines is None or error else bare_lines(lines)
-    # Several ranks do as the first, which has the lines.
+    # A rank may have lines that others lack.
     delaunay.SetDrapeConstraints(total(ranks, len(bare) > 0 and bare.all()) > 0)
     if lines is not None:
         delaunay.SetSourceData(lines)
@@ -137,10 +138,13 @@ def triangulate(run, lines, error):
     surface = delaunay.GetOutput()
     result.triangles["delaunay"] = total(ranks, surface.GetNumberOfPolys())
     result.lattice = lattice_of(ranks, surface)
-    result.reasons = reasons_of(ranks, surface, points.GetNumberOfPoints())
+    own = number_of_own(ranks, surface, points)
+    result.points, result.reasons = surface, reasons_of(ranks, surface, own)
+    result.number_of_points = total(ranks, own)
     if result.triangles["delaunay"] == 0:
         limit = run.given.get("maximum_edge_length", 0.0)
-        agreed(ranks, lambda: refuse(points, limit, result.warnings))
+        why = why_no_triangle(ranks, coordinates_of(points), limit, result.warnings)
+        raise ElevationSurfaceError(together(ranks, lambda: [why])[0])
 
 
 def trim_along(run, boundary, edges=None):
@@ -202,36 +206,36 @@ def trim_few(run, boundary, faults):
     result.reasons[left[outside_of(outline, xyz[left], reach)]] = OUT_OF_OUTLINE
 
 
-def refuse(points, limit, warnings):
-    """Raises ElevationSurfaceError, where there are points, with the reason why no triangle is."""
-    if points.GetNumberOfPoints():
-        raise ElevationSurfaceError(why_no_triangle(points, limit, warnings))
+def why_no_triangle(ranks, xyz, limit, warnings):
+    """The reason in words when the triangulation is empty.
 
-
-def why_no_triangle(points, limit, warnings):
-    """The reason in words when the triangulation is empty; warnings: those of the filter."""
-    xyz = vtk_to_numpy(points.GetPoints().GetData())
-    count = len(xyz)
+    xyz       (n, 3) points of this rank
+    warnings  those of the filter, which the first rank has
+    """
     finite = xyz[numpy.isfinite(xyz).all(axis=1)]
-    distinct = numpy.unique(finite[:, :2], axis=0)
-    total = "the only point" if count == 1 else f"all {count:,} points"
-    if len(finite) == 0:
-        return f"no surface: {total} {'is' if count == 1 else 'are'} not finite (NaN or infinite)"
+    distinct = numpy.unique(finite[:, :2].astype("f8"), axis=0)
+    count, number_of_finite = total(ranks, len(xyz)), total(ranks, len(finite))
+    ends = numpy.vstack((distinct[:3], distinct[-1:]))  # of each rank
+    ends = numpy.unique(all_values(ranks, ends.ravel(), "f8").reshape(-1, 2), axis=0)
+    words = "the only point" if count == 1 else f"all {count:,} points"
+    if number_of_finite == 0:
+        return f"no surface: {words} {'is' if count == 1 else 'are'} not finite (NaN or infinite)"
     if count == 1:
         return "no surface: there is only one point; three not on a line are needed"
-    if len(distinct) == 1:
-        x, y = distinct[0]
+    if len(ends) == 1:
+        x, y = ends[0]
         where = f"({x:.10g}, {y:.10g})"
-        return f"no surface: all {len(finite):,} finite points have the same x,y {where}"
-    if len(distinct) == 2:
+        return f"no surface: all {number_of_finite:,} finite points have the same x,y {where}"
+    if len(ends) == 2:
         return "no surface: only two points differ in x,y; three not on a line are needed"
-    away = distinct - distinct[0]
-    far = away[numpy.argmax((away**2).sum(axis=1))]
-    offset = numpy.abs(away[:, 0] * far[1] - away[:, 1] * far[0]).max() / (far @ far)
+    a, b = ends[0], ends[-1]
+    away = distinct - a
+    far = away[numpy.argmax((away**2).sum(axis=1))] if len(away) else numpy.zeros(2)
+    far = max(collected(ranks, far, "f8"), key=lambda one: one @ one)
+    offset = extremes(ranks, numpy.abs(away[:, 0] * far[1] - away[:, 1] * far[0]))[1] / (far @ far)
     if offset < 1e-12 or not limit:
-        a, b = distinct[0], distinct[-1]
         return (
-            f"no surface: all {len(finite):,} finite points lie on one line in x,y, from "
+            f"no surface: all {number_of_finite:,} finite points lie on one line in x,y, from "
             f"({a[0]:.10g}, {a[1]:.10g}) to ({b[0]:.10g}, {b[1]:.10g})"
         )
     name = argument("maximum_edge_length")

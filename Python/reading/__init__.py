@@ -10,14 +10,14 @@ import os
 from typing import Any, Union
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from ..clouds import Cloud, ReadOptions, keep_points, make_lines, turn_over
+from ..clouds import Cloud, ReadOptions, coordinates_of, keep_points, make_lines, turn_over
 from ..description import DESCRIBED, listing
 from .formats import recognise
 from ..messages import FileError, Reason, did_you_mean
 from ..names import option
 from ..progress import no_progress, share
+from ..ranks import total
 from ..selecting import columns_in, condition_of_layer, select
 from .nulls import take_out
 from .text import read_line_table, read_table
@@ -121,13 +121,15 @@ def upright_note(points):
     ]
 
 
-def leave_out(path, cloud, no_data):
-    """Takes the points of this elevation out of a cloud."""
-    keep = vtk_to_numpy(cloud.points.GetPoints().GetData())[:, 2] != no_data
-    if not keep.any():
+def leave_out(path, cloud, no_data, ranks=None):
+    """Takes the points of this elevation out of a cloud; ranks: see take_out()."""
+    keep = coordinates_of(cloud.points)[:, 2] != no_data
+    lost = total(ranks, numpy.count_nonzero(~keep))
+    if not total(ranks, numpy.count_nonzero(keep)):
         raise FileError(f"{path}: all points have the elevation that marks missing data")
+    if lost:
+        cloud.left_out[Reason("point", "without data")] = lost
     if not keep.all():
-        cloud.left_out[Reason("point", "without data")] = int(len(keep) - numpy.count_nonzero(keep))
         keep_points(cloud, numpy.flatnonzero(keep))
 
 

@@ -8,12 +8,13 @@ ten million points take some two seconds.
 """
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from ..clouds import keep_points
+from ..clouds import coordinates_of, keep_points
 from ..messages import Reason, counted, of_reason
 from ..names import option
 from ..progress import share, told_items
+from ..ranks import all_values, before, summed, together, total, widest
+from ..spreading import ids_of, places_of
 
 FLOAT_MAX = float(numpy.finfo("f4").max)
 NULLS = (
@@ -30,14 +31,16 @@ FAR = 1e100  # no coordinate is that large, and squares of larger ones are infin
 
 
 @numpy.errstate(all="ignore")
-def take_out(cloud, options):
+def take_out(cloud, options, ranks=None):
     """Takes usual null values out of a Cloud, and names what looks like nulls or blunders.
 
     options  ReadOptions; with keep_nulls all points stay
+    ranks    the controller of those that have a Cloud of some of the points each, or None. Of more than
+             SAMPLE points, what needs a sample takes another one than one process
     Returns the cloud. What is taken out is counted in its left_out, what is doubtful is in its
     notes. A cloud of nothing but nulls stays as it is.
     """
-    coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData())
+    coordinates = coordinates_of(cloud.points)
     axes, progress = [], options.progress
     for i in range(3):
         axes.append(numpy.ascontiguousarray(coordinates[:, i], dtype="f8"))
@@ -46,47 +49,67 @@ def take_out(cloud, options):
     for done, (axis, name) in enumerate(((2, "z"), (0, "x"), (1, "y"))):
         values = axes[axis]
         progress(0.2 + 0.05 * done)
-        for value, found in usual_nulls(values, is_place=axis < 2):
+        for value, found in usual_nulls(values, axis < 2, ranks):
             found &= ~null
-            if found.any():
-                counts[Reason("null value", f"({name} = {value:.9g})")] = int(numpy.count_nonzero(found))
-                null |= found
-    found = zero_rows(*axes) & ~null
-    if found.any():
-        counts[Reason("row", "0 0 0")] = int(numpy.count_nonzero(found))
-        null |= found
+            counts[Reason("null value", f"({name} = {value:.9g})")] = number_of(ranks, found)
+            null |= found
+    found = zero_rows(*axes, ranks) & ~null
+    counts[Reason("row", "0 0 0")] = number_of(ranks, found)
+    counts, null = {reason: count for reason, count in counts.items() if count}, null | found
     progress(0.35)
-    if counts and not null.all():
+    if counts and number_of(ranks, ~null):
         if options.keep_nulls:
             words = ", ".join(of_reason(count, name) for name, count in counts.items())
             cloud.notes.append(f"kept: {words}")
         else:
-            keep_points(cloud, numpy.flatnonzero(~null))
-            axes = [values[~null] for values in axes]
+            if null.any():
+                keep_points(cloud, numpy.flatnonzero(~null))
+                axes = [values[~null] for values in axes]
             cloud.left_out.update(counts)
             cloud.notes.append(f"usual null values are left out; {option('keep_nulls')} keeps them")
     if not options.keep_nulls:
-        cloud.notes += doubts(*axes, cloud.lines, share(progress, 0.4, 1.0))
+        cloud.notes += doubts(*axes, Numbers(cloud, ranks), share(progress, 0.4, 1.0))
     return cloud
 
 
-def doubts(x, y, z, lines, progress):
+def number_of(ranks, flags):
+    """How many are set, on all ranks."""
+    return total(ranks, numpy.count_nonzero(flags))
+
+
+class Numbers:
+    """What points are called in notes: by their places among those of all ranks, or lines of the file."""
+
+    def __init__(self, cloud, ranks):
+        self.ranks, self.lines = ranks, cloud.lines
+        self.noun = "point" if self.lines is None else "line"
+        count = cloud.points.GetNumberOfPoints()
+        self.ids = ids_of(ranks, cloud.points)
+        if ranks and not cloud.points.GetPointData().GetGlobalIds():
+            self.ids = self.ids + before(ranks, count)
+
+    def of(self, ids):
+        numbers = places_of(self.ranks, ids, self.ids)
+        return (numbers if self.lines is None else numpy.asarray(self.lines)[numbers]).tolist()
+
+
+def doubts(x, y, z, numbers, progress):
     """Notes on values that may be nulls, and on single elevations far from all around them."""
-    notes = []
-    for value, count in repeated_extremes(z, share(progress, 0.0, 0.2)):
+    notes, ranks = [], numbers.ranks
+    for value, count in repeated_extremes(z, share(progress, 0.0, 0.2), ranks):
         notes.append(
             f"{count:,} points have z = {value:.9g}, far from all others; if that means no data: "
             f"{option('no_data')} {value:.9g}"
         )
         z[z == value] = numpy.nan
-    where = "point" if lines is None else "line"
-    number = range(len(z)) if lines is None else lines
-    notes += far_off(x, y, z, where, number)
-    single = blunders(x, y, z, share(progress, 0.25, 1.0))
+    notes += far_off(x, y, z, numbers)
+    single = blunders(x, y, z, numbers, share(progress, 0.25, 1.0))
     if single:
+        named = single[:NAMED]
+        places = numbers.of([point for point, *_ in named])
         words = [
-            f"{where} {number[i]} has {z[i]:.7g} where others have {low:.7g} to {high:.7g}"
-            for i, low, high in single[:NAMED]
+            f"{numbers.noun} {place} has {value:.7g} where others have {low:.7g} to {high:.7g}"
+            for place, (_, value, low, high) in zip(places, named)
         ]
         more = ", ..." if len(single) > NAMED else ""
         least = "at least " if len(single) == SUSPECTS else ""
@@ -98,70 +121,79 @@ def doubts(x, y, z, lines, progress):
     return notes
 
 
-def far_off(x, y, z, where, number):
+def far_off(x, y, z, numbers):
     """A note on points with a coordinate of FAR or more: blunders() does not look at them."""
     far = numpy.zeros(len(z), dtype=bool)
     for values in (x, y, z):
         low, high = limits(values)
         if max(-low, high) >= FAR:
             far |= (abs(values) >= FAR) & numpy.isfinite(values)
-    ids = numpy.flatnonzero(far)
-    if not len(ids):
+    count = number_of(numbers.ranks, far)
+    if not count:
         return []
-    words = []
-    for i in ids[:NAMED].tolist():
-        axis, value = max(zip("xyz", (x[i], y[i], z[i])), key=lambda pair: abs(pair[1]))
-        words.append(f"{where} {number[i]} has {axis} = {value:.7g}")
-    more = ", ..." if len(ids) > NAMED else ""
+
+    def first_ones():
+        here = numpy.flatnonzero(far)
+        here = here[numpy.argsort(numbers.ids[here], kind="stable")][:NAMED].tolist()
+        return [[int(numbers.ids[i]), float(x[i]), float(y[i]), float(z[i])] for i in here]
+
+    named, words = sorted(together(numbers.ranks, first_ones))[:NAMED], []
+    for place, (_, *xyz) in zip(numbers.of([point for point, *_ in named]), named):
+        axis, value = max(zip("xyz", xyz), key=lambda pair: abs(pair[1]))
+        words.append(f"{numbers.noun} {place} has {axis} = {value:.7g}")
+    more = ", ..." if count > NAMED else ""
     return [
-        f"{counted(len(ids), 'point')} cannot be a place on earth; take it out of the file: "
+        f"{counted(count, 'point')} cannot be a place on earth; take it out of the file: "
         f"{', '.join(words)}{more}"
     ]
 
 
-def body(values):
+def body(values, ranks=None):
     """The width of the range that holds 98 % of values, from a sample of them."""
-    if len(values) > SAMPLE:
-        values = values[numpy.random.default_rng(1).integers(0, len(values), SAMPLE)]
-    values = values[numpy.isfinite(values)]
+    count = total(ranks, len(values))
+    if count > SAMPLE:
+        wanted = SAMPLE * len(values) // count
+        values = values[numpy.random.default_rng(1).integers(0, max(len(values), 1), wanted)]
+    values = all_values(ranks, values[numpy.isfinite(values)], "f8")
     if not len(values):
         return 0.0
     low, high = numpy.percentile(values, (1, 99))
     return float(high - low)
 
 
-def limits(values):
+def limits(values, ranks=None):
     """The least and the greatest value that is finite; (inf, -inf) where none is."""
-    low, high = float(numpy.fmin.reduce(values)), float(numpy.fmax.reduce(values))
-    if numpy.isfinite(low) and numpy.isfinite(high):
-        return low, high
-    values = values[numpy.isfinite(values)]
-    return values.min(initial=numpy.inf), values.max(initial=-numpy.inf)
+    low = numpy.fmin.reduce(values, initial=numpy.inf)
+    high = numpy.fmax.reduce(values, initial=-numpy.inf)
+    if not (numpy.isfinite(low) and numpy.isfinite(high)):
+        values = values[numpy.isfinite(values)]
+        low, high = values.min(initial=numpy.inf), values.max(initial=-numpy.inf)
+    return widest(ranks, low, high)
 
 
-def stands_apart(value, count, others, width):
+def stands_apart(value, count, others, width, ranks):
     """Whether a value that occurs count times has almost no others near it.
 
     Near is half the width that most others span; a tenth where the value occurs often, as nulls do.
     """
     reach = max((0.1 if count > 2 else 0.5) * width, 0.05 * abs(value))
-    near = numpy.count_nonzero((others > value - reach) & (others < value + reach))
+    near = number_of(ranks, (others > value - reach) & (others < value + reach))
     return near <= count // 20
 
 
-def usual_nulls(values, is_place=False):
+def usual_nulls(values, is_place=False, ranks=None):
     """[(value, (n,) of bool)]: the usual null values in an array that stand apart.
 
     is_place  x or y: these are apart where they are twice as far as the others are wide
     """
-    low, high = limits(values)
+    low, high = limits(values, ranks)
     present = []
     for value in NULLS:
         # As text or single precision wrote it.
         slack = 1e-5 * abs(value) if abs(value) >= 1e20 else 0.0
         if low - slack <= value <= high + slack:
             found = numpy.abs(values - value) <= slack if slack else values == value
-            if found.any():
+            if number_of(ranks, found):
                 present.append((value, found))
     if not present:
         return []
@@ -169,9 +201,9 @@ def usual_nulls(values, is_place=False):
     for _, found in present:
         others &= ~found
     others = values[others]
-    if not len(others):
+    if not total(ranks, len(others)):
         return []
-    width = body(others)
+    width = body(others, ranks)
     if is_place:
         if width == 0:
             return []
@@ -179,32 +211,32 @@ def usual_nulls(values, is_place=False):
     return [
         (value, found)
         for value, found in present
-        if stands_apart(value, int(numpy.count_nonzero(found)), others, width)
+        if stands_apart(value, number_of(ranks, found), others, width, ranks)
     ]
 
 
-def zero_rows(x, y, z):
+def zero_rows(x, y, z, ranks=None):
     """Which rows are 0 0 0, where x,y of the others are all elsewhere."""
     zero = (x == 0.0) & (y == 0.0) & (z == 0.0)
-    if zero.any() and not zero.all():
+    if number_of(ranks, zero) and number_of(ranks, ~zero):
         near = ~zero
         for values in (x, y):
-            near &= numpy.abs(values) < max(body(values[~zero]), 1e-300)
-        if near.any():
+            near &= numpy.abs(values) < max(body(values[~zero], ranks), 1e-300)
+        if number_of(ranks, near):
             zero[:] = False
     return zero
 
 
-def repeated_extremes(z, progress):
+def repeated_extremes(z, progress, ranks):
     """[(value, count)]: the least and the greatest value, where it is repeated and stands apart."""
     result = []
-    for i, value in enumerate(limits(z)):
+    for i, value in enumerate(limits(z, ranks)):
         progress(0.5 * i)
         is_it = z == value
-        count = int(numpy.count_nonzero(is_it))
-        if 3 <= count < len(z) // 2:
+        count = number_of(ranks, is_it)
+        if 3 <= count < total(ranks, len(z)) // 2:
             others = z[~is_it]
-            if stands_apart(value, 1, others, body(others)):
+            if stands_apart(value, 1, others, body(others, ranks), ranks):
                 result.append((value, count))
     return result
 
@@ -215,17 +247,19 @@ class Cells:
     columns, count  of the cells; the last one is for points that are not finite
     """
 
-    def __init__(self, x, y):
-        step = max(1, len(x) // SAMPLE)
+    def __init__(self, x, y, ranks):
+        count = total(ranks, len(x))
+        step = max(1, count // SAMPLE)
         sample = numpy.column_stack((x[::step], y[::step]))
         sample = sample[numpy.isfinite(sample).all(axis=1)]
+        sample = all_values(ranks, sample.ravel(), "f8").reshape(-1, 2)
         low, high = numpy.percentile(sample, (0.5, 99.5), axis=0) if len(sample) else (0.0, 0.0)
         extent = numpy.asarray(high - low)
         self.low, self.count = low, 0
-        if len(x) < 20 or not (numpy.isfinite(extent).all() and extent.max() > 0):
+        if count < 20 or not (numpy.isfinite(extent).all() and extent.max() > 0):
             return
         area = max(extent[0], 1e-3 * extent[1]) * max(extent[1], 1e-3 * extent[0])
-        self.side = (area / (len(x) / 16.0)) ** 0.5
+        self.side = (area / (count / 16.0)) ** 0.5
         if self.side > 0 and numpy.isfinite(self.side):
             self.columns, self.rows = (int(length) + 3 for length in extent / self.side)
             self.count = self.columns * self.rows + 1
@@ -240,28 +274,32 @@ class Cells:
         return numpy.where(whole, parts[1] * numpy.int32(self.columns) + parts[0], self.count - 1)
 
 
-def blunders(x, y, z, progress):
-    """Single elevations far from everything around them: [(index, low, high)], the worst first.
+def blunders(x, y, z, numbers, progress):
+    """Single elevations far from everything around them: [(id, z, low, high)], the worst first.
 
+    numbers  of the points: their ids, and the ranks that have some each
     low and high are what the points around have. Each point is compared with the others of its
     cell of a grid, by their mean and deviation without it. The few that differ much are compared
     with all points of the 3 x 3 cells around.
     """
-    cells = Cells(x, y)
+    ranks = numbers.ranks
+    cells = Cells(x, y, ranks)
     if not cells.count:
         return []
     parts = [slice(start, start + CHUNK) for start in range(0, len(x), CHUNK)]
     told, count = share(progress, 0.0, 0.4), len(parts)
     cell = [cells.of(x[p], y[p], z[p]) for p in told_items(parts, told, count, 1)]
-    cell = numpy.concatenate(cell)
+    cell = numpy.concatenate([numpy.zeros(0, "i4"), *cell])
     middle = z[:SAMPLE][numpy.abs(z[:SAMPLE]) < FAR]
+    middle = all_values(ranks, middle, "f8")
     middle = float(numpy.median(middle)) if len(middle) else 0.0
     sums = numpy.zeros((3, cells.count))
     for part in told_items(parts, share(progress, 0.4, 0.7), count, 1):
         known = cell[part] != cells.count - 1
         height = numpy.where(known, z[part] - middle, 0.0)
-        for total, weights in zip(sums, (None, height, height * height)):
-            total += numpy.bincount(cell[part], weights, cells.count)
+        for row, weights in zip(sums, (None, height, height * height)):
+            row += numpy.bincount(cell[part], weights, cells.count)
+    sums = summed(ranks, sums.ravel()).reshape(3, -1)
     size = numpy.maximum(sums[0], 1.0)
     mean = sums[1] / size
     variance = numpy.maximum(sums[2] / size - mean * mean, 0.0)
@@ -269,47 +307,61 @@ def blunders(x, y, z, progress):
     # variance is (n variance - d d n / (n - 1)) / (n - 1). Five deviations of the others are:
     n = numpy.maximum(size, 4.0)
     limit = numpy.sqrt(25.0 * n * variance / (n * n / (n - 1) + 25.0 * n / (n - 1)))
-    least = 0.1 * body(z)
+    least = 0.1 * body(z, ranks)
     limit = numpy.maximum(limit, least)
     limit[size < 4] = limit[-1] = numpy.inf
     mean += middle
     suspects = numpy.concatenate(
         [
-            part.start + numpy.flatnonzero(abs(z[part] - mean[cell[part]]) > limit[cell[part]])
-            for part in told_items(parts, share(progress, 0.7, 0.9), count, 1)
+            numpy.zeros(0, "i8"),
+            *(
+                part.start + numpy.flatnonzero(abs(z[part] - mean[cell[part]]) > limit[cell[part]])
+                for part in told_items(parts, share(progress, 0.7, 0.9), count, 1)
+            ),
         ]
     )
-    if not len(suspects):
+    if not total(ranks, len(suspects)):
         return []
-    order = numpy.argsort(-abs(z[suspects] - mean[cell[suspects]]), kind="stable")
-    return compared(
-        suspects[order][:SUSPECTS], z, cell, cells, least, share(progress, 0.9, 1.0)
-    )
-
-
-def compared(suspects, z, cell, cells, least, progress):
-    """Those suspects that are far from the points of the 3 x 3 cells around them.
-
-    least  a smaller distance does not count
-    Returns [(index, low, high)] as blunders().
-    """
+    away = -abs(z[suspects] - mean[cell[suspects]])
+    suspects = suspects[numpy.lexsort((numbers.ids[suspects], away))][:SUSPECTS]
+    ids, of_cell, heights = every_row(numbers, suspects, cell, z)
+    order = numpy.lexsort((ids, -abs(heights - mean[of_cell])))[:SUSPECTS]
+    suspects = list(zip(*(one[order].tolist() for one in (ids, of_cell, heights))))
     around = numpy.add.outer(cells.columns * numpy.arange(-1, 2), numpy.arange(-1, 2)).ravel()
     wanted = numpy.zeros(cells.count, dtype=bool)
-    wanted[numpy.clip(cell[suspects][:, None] + around, 0, cells.count - 1)] = True
+    wanted[numpy.clip(of_cell[order][:, None] + around, 0, cells.count - 1)] = True
     wanted[-1] = False
-    near = numpy.flatnonzero(wanted[cell])
-    near = near[numpy.argsort(cell[near], kind="stable")]
-    starts = cell[near]
+    near = every_row(numbers, numpy.flatnonzero(wanted[cell]), cell, z)
+    return compared(suspects, near, around, least, share(progress, 0.9, 1.0))
+
+
+def every_row(numbers, rows, cell, z):
+    """Ids, cells and z of some points of each rank, of all of them."""
+    ids, cells = (all_values(numbers.ranks, one[rows]) for one in (numbers.ids, cell))
+    return ids, cells, all_values(numbers.ranks, z[rows], "f8")
+
+
+def compared(suspects, near, around, least, progress):
+    """Those suspects that are far from the points of the 3 x 3 cells around them.
+
+    suspects  [(id, cell, z)]
+    near      their arrays, of all points in these cells
+    around    how the numbers of these cells differ from that of the suspect
+    least     a smaller distance does not count
+    Returns [(id, z, low, high)] as blunders().
+    """
+    order = numpy.argsort(near[1], kind="stable")
+    ids, starts, heights = (one[order] for one in near)
     result = []
-    for i in told_items(suspects.tolist(), progress, len(suspects), 50):
-        first = numpy.searchsorted(starts, cell[i] + around)
-        last = numpy.searchsorted(starts, cell[i] + around, "right")
-        ids = numpy.concatenate([near[a:b] for a, b in zip(first, last)])
-        others = numpy.sort(z[ids[ids != i]])
+    for point, cell, z in told_items(suspects, progress, len(suspects), 50):
+        first = numpy.searchsorted(starts, cell + around)
+        last = numpy.searchsorted(starts, cell + around, "right")
+        rows = numpy.concatenate([numpy.arange(a, b) for a, b in zip(first, last)])
+        others = numpy.sort(heights[rows[ids[rows] != point]])
         if len(others) < 8:
             continue
         trim = 1 + len(others) // 50
         low, high = float(others[trim]), float(others[-1 - trim])
-        if max(low - z[i], z[i] - high) > max(5.0 * (high - low), least):
-            result.append((i, low, high))
+        if max(low - z, z - high) > max(5.0 * (high - low), least):
+            result.append((point, z, low, high))
     return result

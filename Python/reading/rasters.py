@@ -5,8 +5,9 @@
 import os
 
 import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
 
-from ..clouds import Cloud, make_points, pixel_grid
+from ..clouds import Cloud, grid_of, make_points, pixels_of
 from .column_names import direction_of
 from .formats import HEAD, is_saga_header, numbers_of
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
@@ -234,7 +235,7 @@ def read_points(path, options):
                 mask[row], column[row] = keep, (x[0], y[0])
             progress((first + len(z)) / len(points) * data.RasterXSize)
         reference = data.GetSpatialRef()
-        grid = pixel_grid(mask, numpy.column_stack(place(0)), column)
+        grid = grid_of([pixels_of(mask, numpy.column_stack(place(0)), column)])
     if count == 0:
         raise FileError(f"{path}: all {len(points):,} pixels are without data")
     cloud = Cloud(make_points(points[:count], copy=False), notes)
@@ -291,15 +292,26 @@ def blocks(path, data, band, no_data):
         yield first, z, valid
 
 
-def points_of_raster(path, x, y, z):
-    """Three (rows, columns) arrays -> Cloud of the nodes that hold an elevation."""
+def points_of_raster(path, x, y, z, ids=None):
+    """Three (rows, columns) arrays -> Cloud of the nodes that hold an elevation.
+
+    ids  (rows, columns) global ids where ranks have rectangles of the raster each; -1 for nodes that are
+         another one's
+    """
     valid = numpy.isfinite(z)
-    count = int(numpy.count_nonzero(valid))
-    if count == 0:
-        raise FileError(f"{path}: all {valid.size:,} pixels are without data")
-    cloud = Cloud(make_points(numpy.column_stack((x[valid], y[valid], z[valid]))))
-    if count < valid.size:
-        cloud.left_out[Reason("pixel", "without data")] = valid.size - count
     row, column = (numpy.column_stack(ends) for ends in ((x[0], y[0]), (x[:, 0], y[:, 0])))
-    cloud.grid = pixel_grid(valid, row, column)
+    pixels = pixels_of(valid, row, column)
+    if ids is None and not valid.any():
+        raise FileError(f"{path}: all {valid.size:,} pixels are without data")
+    is_own = numpy.ones(valid.shape, dtype=bool) if ids is None else ids >= 0
+    lost = int(numpy.count_nonzero(is_own & ~valid))
+    valid &= is_own
+    cloud = Cloud(make_points(numpy.column_stack((x[valid], y[valid], z[valid]))))
+    if lost:
+        cloud.left_out[Reason("pixel", "without data")] = lost
+    if ids is not None:
+        array = numpy_to_vtkIdTypeArray(ids[valid], deep=True)
+        array.SetName("GlobalNodeIds")
+        cloud.points.GetPointData().SetGlobalIds(array)
+    cloud.pixels, cloud.grid = pixels, grid_of([pixels])
     return cloud

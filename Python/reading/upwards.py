@@ -8,20 +8,20 @@ readings.
 
 import os
 
-import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
-
+from ..clouds import heights_of
 from ..names import option
 from .column_names import direction_of, is_of_horizon, says_up
 
 WHAT = {"depth": "depths", "time": "times"}
 
 
-def notes_on_up(cloud, depth, path=""):
-    """Notes for the user on the z of a Cloud as it was read. depth: it will be turned over."""
-    z = vtk_to_numpy(cloud.points.GetPoints().GetData())[:, 2]
-    z = z[numpy.isfinite(z)]
-    return notes_on_range(cloud, depth, float(z.min()), float(z.max()), path) if len(z) else []
+def notes_on_up(cloud, depth, path="", ranks=None):
+    """Notes for the user on the z of a Cloud as it was read; ranks: see take_out().
+
+    depth  it will be turned over
+    """
+    heights = heights_of(cloud.points, ranks)
+    return notes_on_range(cloud, depth, *heights, path) if heights else []
 
 
 def notes_on_range(cloud, depth, low, high, path=""):

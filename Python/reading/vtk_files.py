@@ -16,7 +16,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkRectilinearGrid,
 )
 
-from ..clouds import Cloud, crs_of, make_points, rounding_note
+from ..clouds import Cloud, crs_of, make_points, marked_points, rounding_note
 from .formats import FORMATS, HEAD
 from ..messages import FileError, Messages
 from ..paths import suffix_of
@@ -216,7 +216,7 @@ def vertices_of_text(path, word, progress, once=True):
 
 
 
-def points_of_grid(path, grid):
+def points_of_grid(path, grid, ids=None):
     """A flat grid with one elevation for each node -> its nodes as points."""
     scalars = grid.GetPointData().GetScalars()
     if scalars is None:
@@ -235,7 +235,7 @@ def points_of_grid(path, grid):
     hidden = hidden_nodes(grid)
     if hidden.any():
         z = numpy.where(hidden, numpy.nan, z)
-    cloud = points_of_raster(path, x, y, z)
+    cloud = points_of_raster(path, x, y, z, ids)
     cloud.z_name = scalars.GetName() or ""
     cloud.notes.insert(0, f"elevation: point array {scalars.GetName() or '(unnamed)'}")
     if isinstance(grid, vtkRectilinearGrid) and rows > 1 and columns > 1:
@@ -265,7 +265,7 @@ def places_of_image(path, grid):
 def hidden_nodes(grid):
     """(rows, columns) of bool: the nodes that are blanked, or of which all cells are."""
     columns, rows, _ = grid.GetDimensions()
-    hidden = hidden_points(grid).reshape(rows, columns)
+    hidden = marked_points(grid, vtkDataSetAttributes.HIDDENPOINT).reshape(rows, columns)
     ghosts = grid.GetCellData().GetArray(vtkDataSetAttributes.GhostArrayName())
     if ghosts is not None and rows > 1 and columns > 1:
         blank = vtk_to_numpy(ghosts).reshape(rows - 1, columns - 1) & vtkDataSetAttributes.HIDDENCELL
@@ -273,14 +273,6 @@ def hidden_nodes(grid):
         shown = around[:-1, :-1] | around[:-1, 1:] | around[1:, :-1] | around[1:, 1:]
         hidden = hidden | ~shown
     return hidden
-
-
-def hidden_points(data):
-    """(n,) of bool: the points that are blanked."""
-    ghosts = data.GetPointData().GetArray(vtkDataSetAttributes.GhostArrayName())
-    if ghosts is None:
-        return numpy.zeros(data.GetNumberOfPoints(), dtype=bool)
-    return (vtk_to_numpy(ghosts) & vtkDataSetAttributes.HIDDENPOINT) != 0
 
 
 def read_lines(path, singular, progress):

@@ -13,8 +13,6 @@ import meshes
 from on_ranks import COUNT, LAST, RANK, check, check_equal, end
 
 start()
-import TestExchanges  # noqa: E402  (the plugin brings the package)
-
 CLOUD = numpy.random.default_rng(7).uniform(0.0, 30.0, (700, 3))
 CLOUD = CLOUD[numpy.hypot(CLOUD[:, 0] - 12, CLOUD[:, 1] - 14) > 4]
 ANGLES = numpy.linspace(0.0, 2.0 * numpy.pi, 9)
@@ -196,4 +194,4 @@ wrong.GetPolys().ReplaceCellAtId(3, 3, [0, 1, 100000])
 messages, outputs = update(simple.TrimOutwardTriangles(Input=given(wrong if RANK == LAST else EMPTY)))
 check_equal(len(messages), 1 if RANK == 0 else 0, "errors of a wrong cell")
 
-end("blocks, boundaries, reports and " + TestExchanges.main())
+end("blocks, boundaries and reports")

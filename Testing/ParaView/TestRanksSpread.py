@@ -203,7 +203,8 @@ for claim, mine, whole in (
     messages, outputs = update(source)
     expected = alone(alike)
     twice = "3 places have several heights" if claim.startswith(("points", "table")) else ""
-    check_told(messages, twice, "chain, " + claim)
+    opened = "Open Edge Length opens regions" if claim == "image" else ""  # the gap
+    check_told(messages, twice or opened, "chain, " + claim)
     check_same(outputs[0], expected[0], "chain, " + claim)
     check_equal([outputs[0].GetPointData().HasArray(expected[0].GetPointData().GetArrayName(i))
                  for i in range(expected[0].GetPointData().GetNumberOfArrays())
@@ -213,8 +214,7 @@ for claim, mine, whole in (
                 "rows of the report, " + claim)
 messages, outputs = update(simple.ReconstructElevationSurface(
     Input=given(table(slice_of_mine) if RANK == LAST else cloud(slice_of_mine))))
-check(len(messages) == 1 and "different kinds of it: points and tables" in messages[0][1],
-      "kinds: %s" % messages)
+check_told(messages, "different kinds of it: points and tables", "kinds")
 check_equal(outputs[0].GetNumberOfPoints(), 0, "points of different kinds")
 
 # Blocks and partitions.

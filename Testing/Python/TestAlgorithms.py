@@ -10,7 +10,7 @@ import unittest
 
 import numpy
 from vtkelevationsurface import read, reconstruct, vtkGridDelaunay2D
-from vtkelevationsurface.accounts import CONTENTS, RECOGNISED
+from vtkelevationsurface.block_reports import CONTENTS, RECOGNISED
 from vtkelevationsurface.algorithm_base import set_words
 from vtkelevationsurface.algorithms import ElevationPoints, ReconstructElevationSurface
 from vtkelevationsurface.blocks import parts_of

@@ -26,7 +26,6 @@ EXCHANGES = {
     "total": lambda: ranks.total(RANKS, RANK),
     "shared": lambda: len(ranks.shared(RANKS, vtkPolyData)),
     "update": lambda: spreading.update(Updated(), RANKS),
-    "is_to_speak": lambda: ranks.is_to_speak(RANKS, []),
 }
 if hasattr(RANKS, "Iprobe"):  # else VTK's Python knows no MPI, and only the program needs it
     EXCHANGES["by_first"] = lambda: ranks.by_first(RANKS, lambda: 2, 3)

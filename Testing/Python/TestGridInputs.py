@@ -50,7 +50,7 @@ class GridInputs(unittest.TestCase):
             image.SetOrigin(600000.0, 5000000.0, 0.0)
             image.SetDirectionMatrix(*matrix)
             places = numpy.array([image.GetPoint(i)[:2] for i in range(300)])
-            found = xyz_of(cloud_of(image))
+            found = xyz_of(cloud_of([image]))
             numpy.testing.assert_allclose(found[:, :2], places, rtol=0, atol=1e-9)
             numpy.testing.assert_array_equal(found[:, 2], numpy.arange(300))
 
@@ -58,7 +58,7 @@ class GridInputs(unittest.TestCase):
         image = image_of(4, 4)
         image.SetDirectionMatrix(1, 0, 0, 0, 0, -1, 0, 1, 0)
         with self.assertRaisesRegex(ElevationSurfaceError, "leans"):
-            cloud_of(image)
+            cloud_of([image])
 
     def test_hidden_points_and_cells_are_left_out_and_counted(self):
         image = image_of(6, 5)
@@ -68,7 +68,7 @@ class GridInputs(unittest.TestCase):
         cells = numpy.zeros((4, 5))
         cells[2:, 3:] = vtkDataSetAttributes.HIDDENCELL  # around the nodes (4, 3), (5, 3), (4, 4) ...
         image.GetCellData().AddArray(named(GHOSTS, cells, "u1"))
-        cloud = cloud_of(image)
+        cloud = cloud_of([image])
         left = set(range(30)) - {7, 8} - {22, 23, 28, 29}
         self.assertEqual(set(xyz_of(cloud)[:, 2].astype(int)), left)
         self.assertEqual(cloud.left_out, {"pixels without data": 6})
@@ -76,7 +76,7 @@ class GridInputs(unittest.TestCase):
         points = vtkPolyData()
         points.SetPoints(make_points(numpy.random.default_rng(1).uniform(0, 9, (30, 3))).GetPoints())
         points.GetPointData().AddArray(named(GHOSTS, ghosts, "u1"))
-        cloud = cloud_of(points)
+        cloud = cloud_of([points])
         self.assertEqual(cloud.points.GetNumberOfPoints(), 28)
         self.assertEqual(cloud.left_out, {"points marked as hidden": 2})
 
@@ -89,7 +89,7 @@ class GridInputs(unittest.TestCase):
             grid.SetYCoordinates(named("y", numpy.arange(15.0)))
             z = numpy.add.outer(numpy.arange(15.0), steps) / 10.0
             grid.GetPointData().SetScalars(named("h", z))
-            surface = reconstruct(cloud_of(grid)).surface
+            surface = reconstruct(cloud_of([grid])).surface
             self.assertEqual(surface.GetNumberOfPoints(), 300)
             self.assertEqual(surface.GetNumberOfPolys(), 532)
 

@@ -182,9 +182,9 @@ class Readers(InFolder):
         table.AddColumn(values)
         for data, array in ((image, ""), (points, "Depth"), (table, "")):
             with self.subTest(kind=data.GetClassName()):
-                self.assertIn(UPSIDE_DOWN, "".join(cloud_of(data, array).notes))
-                self.assertEqual(told(cloud_of(data, array, ReadOptions(depth=True)).notes), [])
-        self.assertEqual(told(cloud_of(points).notes), [])
+                self.assertIn(UPSIDE_DOWN, "".join(cloud_of([data], array).notes))
+                self.assertEqual(told(cloud_of([data], array, ReadOptions(depth=True)).notes), [])
+        self.assertEqual(told(cloud_of([points]).notes), [])
 
 
 class Report(Program):

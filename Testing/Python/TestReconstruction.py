@@ -20,7 +20,7 @@ from vtkelevationsurface import (
     read,
     reconstruct,
 )
-from vtkelevationsurface.gathering import BASE, ROW, make_grid
+from vtkelevationsurface.inputs import nodes_of
 from vtkelevationsurface.picture.signs import add_scalar_bar
 from vtkelevationsurface.properties import PROPERTIES
 from vtkelevationsurface.reconstruction import as_lines
@@ -38,13 +38,13 @@ RING = numpy.array([(0.5, 0.5), (9.5, 0.5), (9.5, 9.5), (0.5, 9.5)])
 class Parts(unittest.TestCase):
     """What larger tests see only in a picture, on several ranks, or in a message."""
 
-    def test_a_grid_of_ranks_has_the_extent_of_its_nodes(self):
-        own, whole = vtkImageData(), vtkImageData()
-        own.SetDimensions(2, 2, 1)
-        rows, columns = numpy.meshgrid(numpy.arange(-3, 2), numpy.arange(5, 9), indexing="ij")
-        numbers = ROW * (BASE + rows.ravel()) + BASE + columns.ravel()
-        make_grid(whole, own, numbers, numpy.empty((0, 3)))
-        self.assertEqual(whole.GetExtent(), (5, 8, -3, 1, 0, 0))
+    def test_nodes_have_numbers_by_row_and_column_of_the_whole_grid(self):
+        pieces = [5, 8, -3, 1, 0, 0], [7, 20, -9, -2, 0, 0]
+        whole = numpy.arange(16 * 11).reshape(11, 16)  # columns from 5, rows from -9
+        numpy.testing.assert_array_equal(nodes_of(pieces, 0), whole[6:, :4])
+        there = whole[:8, 2:]
+        there[-2:, :2] = -1  # those of the first
+        numpy.testing.assert_array_equal(nodes_of(pieces, 1), there)
 
     def test_arrays_keep_their_names_in_xml(self):
         data = vtkPolyData()

@@ -7,6 +7,7 @@ from vtkmodules.vtkCommonCore import vtkStringArray
 
 from .algorithm_base import words_of
 from .messages import counted
+from .ranks import together, total
 from .report import main_counts, report_lines
 
 RECOGNISED = "Recognised"  # the field array in which ElevationPoints reports what a file is
@@ -14,32 +15,37 @@ CONTENTS = "RecognisedAs"  # that with its contents, points say, and how many po
 MOST_ERRORS = 5  # of blocks, in one message
 
 
-def recognised(points):
-    """What a reader has found out, for the report of these points: all of the file, or some."""
-    lines, count = words_of(points, RECOGNISED), points.GetNumberOfPoints()
-    if lines and words_of(points, CONTENTS)[1:] != [str(count)]:
+def recognised(points, ranks=None):
+    """What a reader has found out, for the report of these points: all of the file, or some.
+
+    ranks  the controller of those that have some of the points each, or None
+    """
+    count = total(ranks, points.GetNumberOfPoints())
+    words = together(ranks, lambda: [[words_of(points, name) for name in (RECOGNISED, CONTENTS)]])
+    lines, contents = next((pair for pair in words if pair[0]), ([], []))
+    if lines and contents[1:] != [str(count)]:
         lines[0] += f"; this surface is of {counted(count, 'point')}"
     return lines
 
 
-def account_of(part, result):
-    """The account of a Part that became a Reconstruction."""
+def account_of(surface, result, told):
+    """The account of a Surface that became a Reconstruction; told: recognised() of its points."""
     # A panel always says which of several heights is taken, so that nobody has decided it.
     notes = result.decided + result.notes
     return {
-        "place": part.place,
-        "name": part.name,
-        "notes": notes,
-        "shown": notes + recognised(result.cloud.points),
+        "place": surface.place,
+        "name": surface.name,
+        "warnings": notes + result.gathered,
+        "shown": notes + told,
         "rows": report_lines(result.report),
         "counts": main_counts(result),
         "sums": sums_of(result),
     }
 
 
-def account_of_error(part, error):
-    """The account of a Part that became nothing."""
-    return {"place": part.place, "name": part.name, "error": error}
+def account_of_error(surface, error):
+    """The account of a Surface that became nothing."""
+    return {"place": surface.place, "name": surface.name, "error": error}
 
 
 def sums_of(result):
