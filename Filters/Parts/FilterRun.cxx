@@ -16,6 +16,7 @@
 #include "vtkNew.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <map>
@@ -103,8 +104,19 @@ int FilterRun::Run(const std::function<void(Block&)>& body)
   return 1;
 }
 
+/** Whether the run before was aborted, too, and has said so. */
+bool FilterRun::IsAbortReported() const
+{
+  return this->Messages->GetNumberOfValues() > 1 &&
+    this->Messages->GetValue(1) == sentences::Stopped.Code;
+}
+
 void FilterRun::Report(const Ranks& ranks) const
 {
+  if (this->IsAborted && this->IsAbortReported())
+  {
+    return;
+  }
   const std::vector<Message> errors = OnFirst(this->Errors, ranks);
   ReportMessages(this->Filter, errors, OnFirst(this->Warnings, ranks), this->Messages);
 }
@@ -352,11 +364,7 @@ void FilterRun::ShareResults(const Ranks& ranks)
 void FilterRun::ReportAbort()
 {
   // ParaView updates each output, and VTK runs the filter for each while its abort flag is set.
-  constexpr const char* stopped = "Stopped";
-  const char* const last = this->Filter->GetProgressText();
-  const bool isReported = last && std::string(last) == stopped;
-  this->Filter->SetProgressText(this->IsAborted ? stopped : nullptr);
-  if (this->IsAborted && !isReported && this->Filter->GetAbortExecute())
+  if (this->IsAborted && !this->IsAbortReported() && this->Filter->GetAbortExecute())
   {
     this->Warnings.push_back(MakeMessage<sentences::Stopped>());
   }

@@ -110,6 +110,7 @@ private:
   Message RunPlace(const Place& place, Block& block, const std::function<void(Block&)>& body);
   void ShareResults(const Ranks& ranks);
   void ReportAbort();
+  bool IsAbortReported() const;
   void Report(const Ranks& ranks) const;
 
   vtkAlgorithm* Filter;

@@ -134,6 +134,26 @@ class TestTrimOutwardTriangles(unittest.TestCase):
         self.check_parts(trim)
         self.assertGreater(trim.GetNumberOfRecoveredEdges(), 20)
 
+    def test_an_abort_is_reported_once_and_the_progress_text_stays_the_users(self):
+        trim = vtkTrimOutwardTriangles()
+        trim.SetInputData(triangulate(numpy.random.RandomState(3).rand(500, 2)))
+        trim.SetProgressText("of the user")
+        trim.Update()
+        self.assertEqual(trim.GetProgressText(), "of the user")
+        tag = trim.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
+        trim.Modified()
+        with Messages(trim) as messages:
+            for port in range(3):  # as ParaView does
+                trim.Update(port)
+        self.assertEqual([one.code for one in messages.warnings], ["Stopped"])
+        self.assertEqual(trim.GetOutput(0).GetNumberOfCells(), 0)
+        self.assertEqual(trim.GetProgressText(), "of the user")
+        trim.RemoveObserver(tag)
+        trim.SetAbortExecute(0)
+        trim.Modified()
+        trim.Update()
+        self.assertGreater(trim.GetOutput(0).GetNumberOfCells(), 0)
+
     def test_a_ring_that_is_there_as_polygon_and_as_line_counts_once(self):
         ring = vtkRegularPolygonSource()  # makes both
         ring.SetRadius(0.3)

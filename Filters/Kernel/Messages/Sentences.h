@@ -27,8 +27,7 @@ namespace sentences
 ELEVATION_SENTENCE(EmptyBlocks, "All blocks of the input are empty, so the output is empty.");
 ELEVATION_SENTENCE(NotEnoughMemory, "There is not enough memory for this input.");
 ELEVATION_SENTENCE(Stopped,
-  "Stopped, so the output is empty. To make it, change a property and press Apply; in scripts, "
-  "SetAbortExecute(0) and Modified().");
+  "Stopped, so the output is empty. SetAbortExecute(0) and Modified() let the next update make it.");
 ELEVATION_SENTENCE(ArraysLeftOut,
   "Not all ranks (processes) have the {kind} {noun} {arrays} in the same type, so {they} left "
   "out.");
@@ -107,7 +106,7 @@ ELEVATION_SENTENCE(TwoLimits,
 /** @name Of trimming @{ */
 ELEVATION_SENTENCE(NothingToTrim,
   "The input has no triangles, so there is nothing to trim. Points alone are triangulated first, "
-  "by Grid Delaunay 2D.");
+  "by vtkGridDelaunay2D.");
 ELEVATION_SENTENCE(InvalidGapTolerance,
   "{property:GapTolerance} is {value}. It must be a number of spacings above 0, or 0 to choose it "
   "from the data.");
@@ -140,7 +139,7 @@ ELEVATION_SENTENCE(BoundaryElsewhere,
 /** @name Of filling @{ */
 ELEVATION_SENTENCE(NothingToFill,
   "The input has no triangles, so there is nothing to fill. Points alone are triangulated first, "
-  "by Grid Delaunay 2D.");
+  "by vtkGridDelaunay2D.");
 ELEVATION_SENTENCE(HoleNotFilled, "Hole {hole} ({edges} edges) was not filled. {reason}");
 /** Of a region of long triangles. */
 ELEVATION_SENTENCE(
