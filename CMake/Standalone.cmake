@@ -142,6 +142,9 @@ if (NOT ES_KERNEL AND NOT es_multi_config) # what another build may take over as
   file(GENERATE OUTPUT "${CMAKE_BINARY_DIR}/ES_KERNEL" CONTENT "$<TARGET_FILE:ElevationKernel>\n")
 endif ()
 
+# Built where Python or a test needs it.
+add_subdirectory(Python EXCLUDE_FROM_ALL)
+
 # ---- the CMake package -------------------------------------------------------------------------
 include(CMakePackageConfigHelpers)
 set(es_vtk_components_used "") # besides those that are always used
@@ -171,7 +174,7 @@ if (ES_WRAP_PYTHON)
     set(es_python_program "${Python3_EXECUTABLE}")
   endif ()
   vtk_module_wrap_python(
-    MODULES             ${es_modules}
+    MODULES             ${es_modules} VTK::ElevationSurfacePieces
     TARGET              vtkElevationSurface::Python
     PYTHON_PACKAGE      "vtkelevationsurface"
     MODULE_DESTINATION  "${es_python_destination}"

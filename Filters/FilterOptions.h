@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The kernel's options for the properties of the three filters. Private to the module.
+ * The kernel's options for the properties of the three filters. Private to the project.
  */
 #ifndef FilterOptions_h
 #define FilterOptions_h
@@ -11,6 +11,8 @@
 #include "Kernel/Fill/Fill.h"
 #include "Kernel/Trim/Trim.h"
 
+#include "vtkElevationSurfaceModule.h"
+
 class vtkFillElevationHoles;
 class vtkGridDelaunay2D;
 class vtkTrimOutwardTriangles;
@@ -18,9 +20,9 @@ class vtkTrimOutwardTriangles;
 namespace elevation
 {
 
-DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter);
-TrimOptions OptionsOf(vtkTrimOutwardTriangles* filter);
-FillOptions OptionsOf(vtkFillElevationHoles* filter);
+VTKELEVATIONSURFACE_EXPORT DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter);
+VTKELEVATIONSURFACE_EXPORT TrimOptions OptionsOf(vtkTrimOutwardTriangles* filter);
+VTKELEVATIONSURFACE_EXPORT FillOptions OptionsOf(vtkFillElevationHoles* filter);
 
 } // namespace elevation
 

@@ -39,7 +39,7 @@ from .results import Failure, WrongOption, write_report
 from .spreading import IN_NO_TRIANGLE
 from .steps import STEPS, in_our_names, is_of_constraints
 from .supervisor import note_partial_file
-from .vtkElevationSurface import vtkReconstructPieces
+from .vtkElevationSurfacePieces import vtkReconstructPieces
 from .writing.xml_writer import write_vtp
 
 AT_ONCE = 1_000_000  # points given to the filter at a time

@@ -5,7 +5,7 @@
 #   - a file of a room includes files of its own room, and of the rooms before it their faces alone,
 #     <Room>/<Room>.h;
 #   - of VTK, the kernel includes its Eigen alone; a room around it includes no filter;
-#   - a filter includes faces alone;
+#   - a filter includes faces alone; the class for the Python package also the options of the filters;
 #   - every file is in a room and is listed, and a file that is listed is there;
 #   - the drawing of the rooms is the one that Utilities/draw-rooms makes.
 # Run as: cmake -DROOT=<top of the source tree> -P IncludeOrder.cmake
@@ -71,6 +71,11 @@ endforeach ()
 file(GLOB filters RELATIVE "${ROOT}" "${ROOT}/Filters/*.h" "${ROOT}/Filters/*.cxx")
 foreach (file IN LISTS filters)
   check_file("${file}" "^vtk" ${faces})
+endforeach ()
+
+file(GLOB files RELATIVE "${ROOT}" "${ROOT}/Python/Pieces/*.h" "${ROOT}/Python/Pieces/*.cxx")
+foreach (file IN LISTS files)
+  check_file("${file}" "^(vtk|FilterOptions\\.h$)" ${faces})
 endforeach ()
 
 file(GLOB_RECURSE found RELATIVE "${ROOT}/Filters"

@@ -5,24 +5,84 @@
 #include "Gathering.h"
 #include "Kernel/Lattice/Lattice.h"
 
+#include "vtkAlgorithm.h"
+#include "vtkExecutive.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace elevation
 {
+namespace
+{
+/** Input 1 of a filter, brought up to date; nullptr: there is none. */
+vtkDataObject* UpdatedLines(vtkAlgorithm* filter)
+{
+  if (filter->GetNumberOfInputConnections(1) == 0)
+  {
+    return nullptr;
+  }
+  filter->GetInputAlgorithm(1, 0)->Update();
+  return filter->GetInputDataObject(1, 0);
+}
+} // namespace
 
-ReconstructParts::ReconstructParts() = default;
+ReconstructParts::ReconstructParts(
+  vtkAlgorithm* source, std::function<Settings()> settings, vtkStringArray* messages)
+  : Source(source)
+  , MakeSettings(std::move(settings))
+  , Messages(messages)
+{
+}
 
 ReconstructParts::~ReconstructParts() = default;
 
-void ReconstructParts::Open(
-  vtkMultiProcessController* controller, const std::function<void(const Message&)>& waiting)
+/** An abort is a warning. More parts may help where memory ends. */
+void ReconstructParts::ReportError(const std::exception& error)
 {
-  if (!this->IsOpen())
+  if (dynamic_cast<const Aborted*>(&error))
   {
-    this->Everybody = std::make_unique<Ranks>(controller, waiting);
+    this->ReportWarnings({ MakeMessage<sentences::Aborted>() });
+    return;
+  }
+  Message message = MessageOf(error);
+  if (message.GetCode() == sentences::NotEnoughMemory.Code)
+  {
+    message = this->Set.FillHoles ? MakeMessage<sentences::TooFewPiecesToFill>()
+                                  : MakeMessage<sentences::TooFewPieces>();
+  }
+  ReportMessages(this->Source, { message }, {}, this->Messages);
+}
+
+void ReconstructParts::ReportWarnings(const std::vector<Message>& warnings)
+{
+  if (!warnings.empty())
+  {
+    ReportMessages(this->Source, {}, warnings, this->Messages);
+  }
+}
+
+bool ReconstructParts::CanChange(const char* setting)
+{
+  if (this->HasPoints())
+  {
+    this->ReportError(Error(
+      std::string(setting) + " cannot be changed after the first points; that needs Reset()."));
+  }
+  return !this->HasPoints();
+}
+
+void ReconstructParts::Open(vtkMultiProcessController* controller)
+{
+  if (!this->Everybody)
+  {
+    this->Everybody = std::make_unique<Ranks>(
+      controller, [this](const Message& waiting) { this->ReportWarnings({ waiting }); });
   }
 }
 
@@ -58,17 +118,39 @@ void ReconstructParts::Do(bool withAll, const Step& step)
   this->IsLost = false;
 }
 
-void ReconstructParts::Add(vtkPointSet* points, const std::string& folder, const Progress& progress)
+bool ReconstructParts::AddPoints(vtkPointSet* points)
 {
-  this->Do(false, [&]() {
-    if (!this->Work)
+  try
+  {
+    const Settings settings = this->MakeSettings();
+    // What can be put right loses no points that are there.
+    if (!points || settings.Folder.empty())
     {
-      this->Work = std::make_unique<TriangulateParts>(*this->Everybody, folder);
+      throw Error(points ? "Folder is not set." : "There is no data set of points.");
     }
-    this->Work->Add(points, progress);
-  });
+    if (this->NumberOfParts > 0)
+    {
+      throw Error("Points cannot be added after the first piece; that needs Reset().");
+    }
+    this->Open(settings.Controller);
+    this->Set = settings;
+    this->Do(false, [&]() {
+      if (!this->Work)
+      {
+        this->Work = std::make_unique<TriangulateParts>(*this->Everybody, settings.Folder);
+      }
+      this->Work->Add(points, ProgressOf(this->Source));
+    });
+    return true;
+  }
+  catch (const std::exception& error)
+  {
+    this->ReportError(error);
+  }
+  return false;
 }
 
+/** @throws Error if this rank has no such part, or it has gone */
 void ReconstructParts::CheckPart(int part, int count) const
 {
   if (this->NumberOfParts > 0 && this->NumberOfParts != count)
@@ -100,9 +182,13 @@ void ReconstructParts::CheckPart(int part, int count) const
   }
 }
 
-void ReconstructParts::Begin(int count, const std::string& folder,
-  const std::function<Settings()>& settings, vtkMTimeType time)
+/**
+ * Step 2.
+ * @throws Error on all ranks if any of them cannot begin
+ */
+void ReconstructParts::Begin(int count)
 {
+  const vtkMTimeType time = this->Source->GetMTime();
   if (this->Refusal && this->TimeOfRefusal == time && this->RefusedParts == count)
   {
     throw CodedError(*this->Refusal);
@@ -110,15 +196,20 @@ void ReconstructParts::Begin(int count, const std::string& folder,
   this->IsOfAll = true;
   try
   {
-    this->Everybody->Agree([&]() { this->Prepare(folder, settings); });
+    vtkDataObject *constraints = nullptr, *boundary = nullptr;
+    this->Everybody->Agree([&]() {
+      this->Prepare();
+      constraints = UpdatedLines(this->Set.HasConstraints);
+      boundary = UpdatedLines(this->Set.HasBoundary);
+    });
     const std::vector<vtkIdType> counts = this->Everybody->Collect(std::vector<vtkIdType>{ count });
     if (std::count(counts.begin(), counts.end(), count) != this->Everybody->Count())
     {
       throw Error("Processes ask for different numbers of pieces, " +
         std::to_string(counts.front()) + " and others: all have to ask for the same number.");
     }
-    this->Constraints = ShareLines(this->Set.Constraints, "constraints", *this->Everybody);
-    this->Boundary = ShareLines(this->Set.Boundary, "boundary", *this->Everybody);
+    this->Constraints = ShareLines(constraints, "constraints", *this->Everybody);
+    this->Boundary = ShareLines(boundary, "boundary", *this->Everybody);
     this->Everybody->Agree([this]() { this->Check(); });
   }
   catch (const Error& error)
@@ -132,20 +223,19 @@ void ReconstructParts::Begin(int count, const std::string& folder,
 }
 
 /** What this rank has for all of them. One without points needs a folder, too. */
-void ReconstructParts::Prepare(const std::string& folder, const std::function<Settings()>& settings)
+void ReconstructParts::Prepare()
 {
   try
   {
     this->CheckIsComplete();
-    if (folder.empty())
+    if (this->Set.Folder.empty())
     {
       throw Error("Folder is not set.");
     }
     if (!this->Work)
     {
-      this->Work = std::make_unique<TriangulateParts>(*this->Everybody, folder);
+      this->Work = std::make_unique<TriangulateParts>(*this->Everybody, this->Set.Folder);
     }
-    this->Set = settings();
   }
   catch (const Error& error)
   {
@@ -185,7 +275,26 @@ void ReconstructParts::Check() const
   }
 }
 
-std::vector<Message> ReconstructParts::Triangulate(const Progress& progress)
+/** Step 3. What there is to warn of is reported on the first rank. */
+void ReconstructParts::WorkOnAll(const Progress& progress)
+{
+  const double filling = this->Set.FillHoles ? 0.7 : 1.0; // where it begins
+  const double trimming = this->IsTrimmed() ? 0.6 * filling : filling;
+  this->Source->SetProgressText("triangulating");
+  this->Triangulate(Part(progress, 0.0, trimming));
+  if (this->IsTrimmed())
+  {
+    this->Source->SetProgressText("trimming");
+    this->Trim(Part(progress, trimming, filling));
+  }
+  if (this->Set.FillHoles)
+  {
+    this->Source->SetProgressText("filling holes");
+    this->Fill(Part(progress, filling, 1.0));
+  }
+}
+
+void ReconstructParts::Triangulate(const Progress& progress)
 {
   std::vector<Message> warnings;
   this->Do(true, [&]() {
@@ -204,16 +313,16 @@ std::vector<Message> ReconstructParts::Triangulate(const Progress& progress)
     }
     warnings = OnFirst(warnings, *this->Everybody);
   });
-  return warnings;
+  this->ReportWarnings(warnings);
 }
 
-std::vector<Message> ReconstructParts::Trim(const Progress& progress)
+void ReconstructParts::Trim(const Progress& progress)
 {
-  std::vector<Message> warnings;
   if (this->Work->All().Triangles == 0)
   {
-    return warnings; // that has been told
+    return; // that has been told
   }
+  std::vector<Message> warnings;
   this->Do(true, [&]() {
     this->Set.Trim.Monitor = progress;
     const auto make = [this](
@@ -227,10 +336,10 @@ std::vector<Message> ReconstructParts::Trim(const Progress& progress)
     }
     warnings = OnFirst(warnings, *this->Everybody);
   });
-  return warnings;
+  this->ReportWarnings(warnings);
 }
 
-std::vector<Message> ReconstructParts::Fill(const Progress& progress)
+void ReconstructParts::Fill(const Progress& progress)
 {
   std::vector<Message> warnings;
   this->Do(true, [&]() {
@@ -245,7 +354,7 @@ std::vector<Message> ReconstructParts::Fill(const Progress& progress)
     this->Filled = std::move(filled);
     warnings = OnFirst(WarningsOf(this->Filled->Result()), *this->Everybody);
   });
-  return warnings;
+  this->ReportWarnings(warnings);
 }
 
 /** A part of the triangulation; nullptr: it has no points. */
@@ -278,6 +387,7 @@ vtkSmartPointer<vtkPolyData> ReconstructParts::MakeTrimmed(int part, const Progr
   return trimmed->GetNumberOfPoints() > 0 ? trimmed : nullptr;
 }
 
+/** Step 4. */
 void ReconstructParts::Pass(
   int part, const Progress& progress, vtkPolyData* output, vtkPolyData* rims)
 {
@@ -298,10 +408,57 @@ void ReconstructParts::Pass(
   });
 }
 
-void ReconstructParts::Forget(int part)
+int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector* outputs)
 {
-  this->Work->Forget(part);
-  this->Gone.insert(part);
+  const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
+  vtkInformation* const info = outputs->GetInformationObject(port);
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  const auto get = [info](
+                     vtkInformationIntegerKey* key) { return info->Has(key) ? info->Get(key) : 0; };
+  const int part = get(Pipeline::UPDATE_PIECE_NUMBER());
+  const int count = std::max(1, get(Pipeline::UPDATE_NUMBER_OF_PIECES()));
+  vtkPolyData* const output = vtkPolyData::GetData(outputs, 0);
+  vtkPolyData* const rims = vtkPolyData::GetData(outputs, 1);
+  bool isReporting = true;
+  try
+  {
+    const Settings settings = this->MakeSettings();
+    this->Open(settings.Controller);
+    if ((this->IsAlone() && !this->HasPoints()) || part < 0 || part >= count)
+    {
+      return 1; // empty, as VTK's sources
+    }
+    this->CheckPart(part, count);
+    const bool isFirst = this->NumberOfParts == 0;
+    if (!isFirst && settings.Time > this->Set.Time)
+    {
+      throw Error("Properties were changed after the first piece; that needs Reset().");
+    }
+    const Progress progress = ProgressOf(this->Source);
+    isReporting = false; // unless it is this rank's
+    if (isFirst)
+    {
+      this->Set = settings;
+      this->Begin(count);
+      this->WorkOnAll(Part(progress, 0.0, 0.9));
+    }
+    this->Pass(part, Part(progress, 0.9, 1.0), output, rims);
+    if (!settings.KeepFiles)
+    {
+      this->Work->Forget(part);
+      this->Gone.insert(part);
+    }
+  }
+  catch (const std::exception& error)
+  {
+    output->Initialize();
+    rims->Initialize();
+    if (isReporting || !this->IsOfAll || this->Everybody->Own() == 0)
+    {
+      this->ReportError(error);
+    }
+  }
+  return 1;
 }
 
 ReconstructParts::Counts ReconstructParts::All() const

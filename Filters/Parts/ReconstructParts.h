@@ -3,7 +3,8 @@
 /**
  * @file
  * The surface of points that are added slice by slice, triangulated, trimmed and filled in parts in
- * files, on one rank or several: the work behind vtkReconstructPieces. Private to the module.
+ * files, on one rank or several: the work behind vtkReconstructPieces of the Python package, which is a
+ * library of its own and so sees this class alone. Private to the project.
  *
  * In: slices of points on each rank. Out: the parts of each rank, and what there is of all.
  *
@@ -17,7 +18,7 @@
  * Errors: those of step 2 are that of all ranks, and nothing is lost. They are thrown again, without a
  * meeting of the ranks, until the properties change: so a rank that asks for its next part does not
  * wait for one that has given up. Any other error loses the points of the rank, in step 3 of all ranks.
- * What all ranks throw is for the first one to report.
+ * What all ranks throw is reported by the first one.
  */
 #ifndef ReconstructParts_h
 #define ReconstructParts_h
@@ -36,16 +37,20 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <exception>
 #include <functional>
 #include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
-class vtkDataObject;
+class vtkAlgorithm;
+class vtkInformation;
+class vtkInformationVector;
 class vtkMultiProcessController;
 class vtkPointSet;
 class vtkPolyData;
+class vtkStringArray;
 
 namespace elevation
 {
@@ -53,9 +58,13 @@ namespace elevation
 class VTKELEVATIONSURFACE_EXPORT ReconstructParts
 {
 public:
-  /** What the steps do, the same on all ranks but for the lines. */
   struct Settings
   {
+    vtkMTimeType Time = 0;                           ///< when they were changed last
+    std::string Folder;                              ///< an empty one, for the files of this rank
+    vtkMultiProcessController* Controller = nullptr; ///< nullptr: this process works alone
+    bool KeepFiles = true;                           ///< of a part that has been passed on
+    // What the steps do, the same on all ranks.
     DelaunayOptions Delaunay;
     TrimOptions Trim;
     FillOptions Fill;
@@ -64,9 +73,9 @@ public:
     bool InterpolatePointData = true;
     double LongestEdge = 0.0;      ///< of triangles that filling does not open; 0: of all
     bool DrapeConstraints = false; ///< for points in memory alone
-    // Lines of this rank, or composites of them; nullptr: none.
-    vtkDataObject* Constraints = nullptr;
-    vtkDataObject* Boundary = nullptr;
+    // Their input 1 has lines of this rank, or composites of them, or there is none.
+    vtkAlgorithm* HasConstraints = nullptr;
+    vtkAlgorithm* HasBoundary = nullptr;
   };
 
   /** Of all parts, the same on all ranks after each step; what a step has not found yet is 0. */
@@ -80,63 +89,59 @@ public:
     vtkIdType Holes = 0, FilledHoles = 0, FilledTriangles = 0;
   };
 
-  ReconstructParts();
+  /**
+   * @param[in] source     has progress, abort, errors and warnings
+   * @param[in] settings   makes those of this rank
+   * @param[out] messages  of the last error or warning
+   */
+  ReconstructParts(
+    vtkAlgorithm* source, std::function<Settings()> settings, vtkStringArray* messages);
   ~ReconstructParts();
 
-  /** @param[in] controller  of the processes that work together; nullptr: this one alone */
-  void Open(
-    vtkMultiProcessController* controller, const std::function<void(const Message&)>& waiting);
+  /** Whether a setting that is taken with the first points can be changed; else there is an error. */
+  bool CanChange(const char* setting);
   void Close(); ///< forgets all points, and removes the files
-  bool IsOpen() const { return this->Everybody != nullptr; }
-  bool IsAlone() const { return this->Everybody->Count() == 1; }
 
   /**
    * Step 1.
-   * @param[in] folder  an empty one, for the files of this rank
+   * @return whether it could be done; else there is an error
    */
-  void Add(vtkPointSet* points, const std::string& folder, const Progress& progress);
-  bool HasPoints() const { return this->Work || this->IsLost; } ///< or has lost some
-
-  int CountOfParts() const { return this->NumberOfParts; } ///< 0: before step 2
-  /** @throws Error if this rank has no such part, or it has gone */
-  void CheckPart(int part, int count) const;
+  bool AddPoints(vtkPointSet* points);
 
   /**
-   * Step 2.
-   * @param[in] settings  makes those of this rank
-   * @param[in] time      when they were changed last
-   * @throws Error on all ranks if any of them cannot begin
+   * Step 4 for the part that the pipeline asks for, at first steps 2 and 3 for all.
+   * @param[out] outputs  the part; of part 0, the outlines of holes with their reports
+   * @return what ProcessRequest returns, after an error too
    */
-  void Begin(int count, const std::string& folder, const std::function<Settings()>& settings,
-    vtkMTimeType time);
-
-  // Step 3. What there is to warn of is returned on the first rank.
-  std::vector<Message> Triangulate(const Progress& progress);
-  bool IsTrimmed() const { return this->Set.TrimOutward || this->Boundary; } ///< after step 2
-  std::vector<Message> Trim(const Progress& progress);
-  std::vector<Message> Fill(const Progress& progress);
-
-  /**
-   * Step 4, for a part of this rank.
-   * @param[out] rims  of part 0, the outlines of holes with their reports
-   */
-  void Pass(int part, const Progress& progress, vtkPolyData* output, vtkPolyData* rims);
-  void Forget(int part); ///< removes its files; it cannot be passed on again
-
-  /** Whether this rank has to report what was thrown last. */
-  bool IsReporting() const { return !this->IsOfAll || this->Everybody->Own() == 0; }
+  int RequestData(vtkInformation* request, vtkInformationVector* outputs);
 
   Counts All() const;
 
 private:
+  void Open(vtkMultiProcessController* controller);
+  bool IsAlone() const { return this->Everybody->Count() == 1; }
+  bool HasPoints() const { return this->Work || this->IsLost; } // or has lost some
+  bool IsTrimmed() const { return this->Set.TrimOutward || this->Boundary; }
   void CheckIsComplete() const;
+  void CheckPart(int part, int count) const;
   template <typename Step>
   void Do(bool withAll, const Step& step);
-  void Prepare(const std::string& folder, const std::function<Settings()>& settings);
+  void Begin(int count);
+  void Prepare();
   void Check() const;
+  void WorkOnAll(const Progress& progress);
+  void Triangulate(const Progress& progress);
+  void Trim(const Progress& progress);
+  void Fill(const Progress& progress);
   vtkSmartPointer<vtkPolyData> MakePart(int part, const Progress& progress);
   vtkSmartPointer<vtkPolyData> MakeTrimmed(int part, const Progress& progress);
+  void Pass(int part, const Progress& progress, vtkPolyData* output, vtkPolyData* rims);
+  void ReportError(const std::exception& error);
+  void ReportWarnings(const std::vector<Message>& warnings);
 
+  vtkAlgorithm* Source;
+  std::function<Settings()> MakeSettings;
+  vtkStringArray* Messages;
   std::unique_ptr<Ranks> Everybody;
   int NumberOfParts = 0;
   std::set<int> Gone; // parts

@@ -31,16 +31,21 @@ endif ()
 step("Installing"
   "${CMAKE_COMMAND}" --install "${BUILD_FOLDER}" --prefix "${prefix}" --config "${CONFIG}")
 
-# The kernel is private.
+# The kernel is private, and so is what is for the Python package alone.
 file(GLOB_RECURSE headers RELATIVE "${prefix}" "${prefix}/*.h")
 foreach (header IN LISTS headers)
-  if (NOT header MATCHES "/vtk(GridDelaunay2D|TrimOutwardTriangles|FillElevationHoles|ReconstructPieces|ElevationSurfaceModule)\\.h$")
+  if (NOT header MATCHES "/vtk(GridDelaunay2D|TrimOutwardTriangles|FillElevationHoles|ElevationSurfaceModule)\\.h$")
     message(FATAL_ERROR "A private header is installed: ${header}")
   endif ()
 endforeach ()
 list(LENGTH headers count)
-if (NOT count EQUAL 5)
-  message(FATAL_ERROR "Five headers were expected, there are ${count}: ${headers}")
+if (NOT count EQUAL 4)
+  message(FATAL_ERROR "Four headers were expected, there are ${count}: ${headers}")
+endif ()
+file(GLOB_RECURSE others RELATIVE "${prefix}" "${prefix}/*SurfacePieces*")
+list(FILTER others EXCLUDE REGEX "/vtkelevationsurface/vtkElevationSurfacePieces\\.[^/]*$")
+if (others)
+  message(FATAL_ERROR "Of the module for the Python package alone, the extension is to be installed, not: ${others}")
 endif ()
 
 # Configures and builds the project in a folder, and sets program to its executable.
@@ -74,6 +79,6 @@ if (PYTHON)
   file(RENAME "${prefix}" "${prefix}-moved")
   step("Importing the Python package"
     "${CMAKE_COMMAND}" -E env "PYTHONPATH=${prefix}-moved/${PYTHON_FOLDER}"
-    "${PYTHON}" -c "import vtkelevationsurface as v; v.vtkGridDelaunay2D(); print(v.__file__)")
+    "${PYTHON}" -c "import vtkelevationsurface as v, vtkelevationsurface.pieces; v.vtkGridDelaunay2D(); print(v.__file__)")
 endif ()
 file(REMOVE_RECURSE "${WORK_FOLDER}")

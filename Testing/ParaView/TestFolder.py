@@ -28,9 +28,11 @@ if sys.platform.startswith("linux"):
     check_equal({os.path.dirname(file) for file in used}, {place}, "folder of the library")
 
 import vtkelevationsurface  # noqa: E402
+from vtkelevationsurface import pieces  # noqa: E402
 
 check_equal(os.path.dirname(vtkelevationsurface.__file__), os.path.join(place, "vtkelevationsurface"),
             "folder of the Python package")
+check_equal(pieces.vtkReconstructPieces().GetNumberOfPoints(), 0, "points of a surface in pieces without any")
 cloud = vtkelevationsurface.read(os.path.join(data_folder, "olinda_land.xyz"))
 surface = vtkelevationsurface.reconstruct(cloud).surface
 check(surface.GetNumberOfPolys() > 0, "the package works on ParaView's VTK")

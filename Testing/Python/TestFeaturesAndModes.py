@@ -14,7 +14,7 @@ import documented
 import features
 import modes
 import outcomes
-from vtkelevationsurface import vtkReconstructPieces
+from vtkelevationsurface.vtkElevationSurfacePieces import vtkReconstructPieces
 
 POINTS = 500  # of a row, or about so many
 POINTS_FOR_THREADS = 12000  # so that several threads have something to do

@@ -15,7 +15,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 import modes
 import outcomes
 from meshes import cloud, lines, rings
-from vtkelevationsurface import vtkReconstructPieces
+from vtkelevationsurface.vtkElevationSurfacePieces import vtkReconstructPieces
 
 FIRST, BESIDE = RANK == 0, (RANK + 1) % COUNT  # a rank beside this one
 

@@ -17,7 +17,6 @@ from vtkelevationsurface import (
     reconstruct,
     vtkFillElevationHoles,
     vtkGridDelaunay2D,
-    vtkReconstructPieces,
     vtkTrimOutwardTriangles,
 )
 from vtkelevationsurface.algorithms import ReconstructElevationSurface
@@ -26,12 +25,14 @@ from vtkelevationsurface.messages import Messages, Reason, messages_of, of_reaso
 from vtkelevationsurface.names import PANEL, PROGRAM, PYTHON, argument, option, written_for
 from vtkelevationsurface.pieces import MessagesOfSteps
 from vtkelevationsurface.steps import in_our_names
+from vtkelevationsurface.vtkElevationSurfacePieces import vtkReconstructPieces
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 PACKAGE = os.path.dirname(vtkelevationsurface.__file__)
-FILTERS = ("vtkGridDelaunay2D", "vtkTrimOutwardTriangles", "vtkFillElevationHoles", "vtkReconstructPieces")
+HEADERS = ("Filters/vtkGridDelaunay2D.h", "Filters/vtkTrimOutwardTriangles.h", "Filters/vtkFillElevationHoles.h",
+           "Python/Pieces/vtkReconstructPieces.h")
 
 
 def read_source(*names):
@@ -239,20 +240,21 @@ class Sources(unittest.TestCase):
     """That no message slips past."""
 
     def test_only_one_place_reports(self):
-        for folder, _, names in os.walk(os.path.join(ROOT, "Filters")):
-            for name in names:
-                if name == "ReportMessages.cxx":
-                    continue
-                with self.subTest(name):
-                    self.assertNotRegex(
-                        read_source(folder, name), r"vtk(Generic)?(Error|Warning)(WithObject)?Macro\([^)]")
+        for top in ("Filters", "Python/Pieces"):
+            for folder, _, names in os.walk(os.path.join(ROOT, top)):
+                for name in names:
+                    if name == "ReportMessages.cxx":
+                        continue
+                    with self.subTest(name):
+                        self.assertNotRegex(
+                            read_source(folder, name), r"vtk(Generic)?(Error|Warning)(WithObject)?Macro\([^)]")
 
     def test_the_headers_list_the_codes(self):
         table = read_source("Filters", "Kernel", "Messages", "Sentences.h")
         codes = re.findall(r"^ELEVATION_SENTENCE\(\s*(\w+),", table, re.M)
         self.assertGreater(len(codes), 30)
         self.assertEqual(len(codes), len(set(codes)))
-        headers = "".join(read_source("Filters", f"{name}.h") for name in FILTERS)
+        headers = "".join(read_source(name) for name in HEADERS)
         listed = set(re.findall(r"\w+", headers))
         self.assertEqual([code for code in codes if code not in listed], [])
 

@@ -23,13 +23,13 @@ from vtkelevationsurface import (
     reading,
     vtkFillElevationHoles,
     vtkGridDelaunay2D,
-    vtkReconstructPieces,
     vtkTrimOutwardTriangles,
 )
 from vtkelevationsurface.clouds import Cloud, add_array, make_lines, make_points
 from vtkelevationsurface.messages import FileError, Messages
 from vtkelevationsurface.reading import text
 from vtkelevationsurface.reading.slicing import read_files
+from vtkelevationsurface.vtkElevationSurfacePieces import vtkReconstructPieces
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes

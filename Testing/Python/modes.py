@@ -14,9 +14,9 @@ import numpy
 from vtkelevationsurface import (
     vtkFillElevationHoles,
     vtkGridDelaunay2D,
-    vtkReconstructPieces,
     vtkTrimOutwardTriangles,
 )
+from vtkelevationsurface.vtkElevationSurfacePieces import vtkReconstructPieces
 from vtkmodules.vtkCommonDataModel import (
     vtkMultiBlockDataSet,
     vtkPartitionedDataSet,

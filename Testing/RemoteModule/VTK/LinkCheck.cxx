@@ -6,7 +6,6 @@
 #include <vtkFillElevationHoles.h>
 #include <vtkGridDelaunay2D.h>
 #include <vtkNew.h>
-#include <vtkReconstructPieces.h>
 #include <vtkTrimOutwardTriangles.h>
 
 #include <iostream>
@@ -14,10 +13,9 @@
 int main()
 {
   vtkNew<vtkGridDelaunay2D> delaunay;
-  vtkNew<vtkReconstructPieces> pieces;
   vtkNew<vtkTrimOutwardTriangles> trim;
   vtkNew<vtkFillElevationHoles> fill;
   std::cout << delaunay->GetClassName() << ' ' << trim->GetClassName() << ' '
-            << fill->GetClassName() << ' ' << pieces->GetClassName() << '\n';
+            << fill->GetClassName() << '\n';
   return 0;
 }

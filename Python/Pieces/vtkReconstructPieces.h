@@ -4,6 +4,8 @@
  * @class   vtkReconstructPieces
  * @brief   the surface of more points than memory holds, piece by piece
  *
+ * Private to the Python package, whose program makes surfaces larger than memory with it.
+ *
  * A source that is given points by AddPoints(), part by part, and whose output is the piece of the
  * surface that is asked for, as by UpdatePiece(piece, numberOfPieces, 0) or by a writer of pieces.
  * Together the pieces have exactly the triangles that vtkGridDelaunay2D makes of all points at
@@ -67,22 +69,17 @@
 #ifndef vtkReconstructPieces_h
 #define vtkReconstructPieces_h
 
-#include "vtkElevationSurfaceModule.h" // For export macro
+#include "vtkElevationSurfacePiecesModule.h" // For export macro
 #include "vtkNew.h"
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSmartPointer.h"
 
-#include <exception>
-#include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
 namespace elevation
 {
-class Message;
 class ReconstructParts;
-using Progress = std::function<bool(double)>;
 } // namespace elevation
 class vtkFillElevationHoles;
 class vtkGridDelaunay2D;
@@ -91,7 +88,7 @@ class vtkPointSet;
 class vtkStringArray;
 class vtkTrimOutwardTriangles;
 
-class VTKELEVATIONSURFACE_EXPORT vtkReconstructPieces : public vtkPolyDataAlgorithm
+class VTKELEVATIONSURFACEPIECES_EXPORT vtkReconstructPieces : public vtkPolyDataAlgorithm
 {
 public:
   ///@{
@@ -224,10 +221,7 @@ protected:
 private:
   vtkReconstructPieces(const vtkReconstructPieces&) = delete;
   void operator=(const vtkReconstructPieces&) = delete;
-  void ReportError(const std::exception& error);
-  void ReportWarnings(const std::vector<elevation::Message>& warnings);
   vtkMTimeType TimeOfProperties();
-  void WorkOnAll(int count, const elevation::Progress& progress);
 
   std::string Folder;
   vtkSmartPointer<vtkMultiProcessController> Controller;
@@ -238,9 +232,8 @@ private:
   bool TrimOutward = false;
   bool FillHoles = false;
   double MemoryOfHole = 0.0;
-  std::unique_ptr<elevation::ReconstructParts> Parts;
-  vtkMTimeType TimeOfWork = 0;
   vtkNew<vtkStringArray> Messages;
+  std::unique_ptr<elevation::ReconstructParts> Parts;
 };
 
 #endif
