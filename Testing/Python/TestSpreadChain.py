@@ -5,6 +5,8 @@ in one process: triangles, points with their values, rings, report and messages.
 points than others. Run by mpirun.
 """
 
+import re
+
 import numpy
 import meshes
 from on_ranks import COUNT, LAST, RANK, check, check_equal, end, gather
@@ -190,6 +192,11 @@ def edges_of(data):
     return sorted(sorted(xyz[i : i + 2]) for begin, end in zip(ends, ends[1:]) for i in range(begin, end - 1))
 
 
+def report_of(chain):
+    """The report without the holes that it names: their numbers are others on ranks."""
+    return re.sub(r"(hole|void) \d+ \(.*", r"\1", chain.GetReport())
+
+
 def check_same(name):
     (mine, whole), properties, boundary, faults, expected_words, further = INPUTS[name]
     here, there = (one if RANK == where else EMPTY if one else None
@@ -199,11 +206,13 @@ def check_same(name):
     if expected_words is not None:
         check(len(words) == len(expected_words) and all(a in b for a, b in zip(expected_words, words)),
               "%s, alone: %s" % (name, words))
+    are_full = gather(mine.GetNumberOfElements(6 if isinstance(mine, vtkTable) else 0) > 0)
+    further = further if sum(are_full) > 1 else []  # what is on one rank stays there
     told = [text for text in found if ON_ONE_RANK in text]
     check_equal([text for text in found if text not in told], words if RANK == 0 else [], "messages, " + name)
     check(len(told) == (len(further) if RANK == 0 else 0) and all(a in b for a, b in zip(further, told)),
           "%s: %s of what is made on one rank" % (name, told))
-    check_equal(chain.GetReport(), expected.GetReport(), "the report, " + name)
+    check_equal(report_of(chain), report_of(expected), "the report, " + name)
     check_equal(chain.GetOutputDataObject(3).GetNumberOfRows(),
                 expected.GetOutputDataObject(3).GetNumberOfRows() if RANK == 0 else 0, "rows of the report, " + name)
     surface, right = surface_of(chain), expected.GetOutputDataObject(0)
@@ -224,7 +233,7 @@ def check_same(name):
         check_equal(len(lines), len(edges_of(expected.GetOutputDataObject(port))), "edges of output %d, %s" % (port, name))
         check(numpy.allclose(lines, edges_of(expected.GetOutputDataObject(port))), "output %d, %s" % (port, name))
     counts = gather(int(numpy.count_nonzero(~meshes.ghosts_of(surface))))
-    if not further and sum(counts) > 100 * COUNT and all(gather(mine.GetNumberOfElements(0) > 0)) or name == "one rank empty" and COUNT > 2:
+    if not further and sum(are_full) > 1 and sum(counts) > 100 * COUNT and "error" not in name:
         check(max(counts) < 1.5 * sum(counts) / COUNT, "%s: points of ranks, %s" % (name, counts))
 
 

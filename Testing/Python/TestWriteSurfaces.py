@@ -15,7 +15,7 @@ from in_folder import InFolder, draws
 from vtkelevationsurface import distance, reconstruct, writing
 from vtkelevationsurface.picture import screen_mesh
 from vtkelevationsurface.writing import xml_writer
-from vtkelevationsurface.clouds import cells_of, make_points
+from vtkelevationsurface.clouds import cells_of, corner_flags, make_points
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
 
@@ -192,6 +192,7 @@ class LargeSurfaces(unittest.TestCase):
         xyz = random.uniform(size=(30000, 3))
         xyz = xyz[numpy.hypot(xyz[:, 0] - 0.5, xyz[:, 1] - 0.5) > 0.2]
         points, triangles = reconstruct(xyz, maximum_edge_length=0.1, fill=False).to_numpy()
+        used = corner_flags(triangles, len(points))
         cells = screen_mesh.Cells(points, numpy.eye(2), used, 50)
         patches = numpy.zeros(len(triangles), dtype=bool)
         patches[points[triangles[:, 0], 0] > 0.8] = True
