@@ -40,7 +40,7 @@ endmacro ()
 # The plugin's folder holds all it needs, and works wherever it is copied:
 #   ElevationSurfacePlugin.so     the plugin
 #   libvtkElevationSurface.so.*   the module's library
-#   vtkelevationsurface/          the Python package with the wrapped module
+#   vtkelevationsurface/          the Python package with the wrapped modules
 # They find each other by run paths from where they lie, and so do those of the build.
 macro (es_set_plugin_folder)
   set(es_library_destination "${CMAKE_INSTALL_LIBDIR}")

@@ -14,7 +14,7 @@ GROUPS = {
     ("files",): "",
     ("read",): "reading",
     ("faults", "delaunay", ""): "triangulation (vtkGridDelaunay2D)",
-    ("pieces",): "surfaces larger than memory (vtkReconstructPieces)",
+    ("pieces",): "surfaces larger than memory",
     ("trim",): "trimming (vtkTrimOutwardTriangles)",
     ("fill",): "hole filling (vtkFillElevationHoles)",
     ("results", "picture"): "results",

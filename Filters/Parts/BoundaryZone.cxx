@@ -99,12 +99,6 @@ bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& option
   return true;
 }
 
-Message BoundaryZone::NothingEnclosed(const BoundaryLines& boundary) const
-{
-  return elevation::NothingEnclosed(
-    this->Triangles.View.Points, boundary.Points, JoinLines(boundary));
-}
-
 namespace
 {
 constexpr const char* NameOfStates = "States";

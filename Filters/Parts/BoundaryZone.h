@@ -83,9 +83,6 @@ public:
   /** What goes back to each part. */
   std::vector<TrimmedPart> Split(const Progress& progress) const;
 
-  /** The error where the whole mesh has no triangle in a boundary. */
-  Message NothingEnclosed(const BoundaryLines& boundary) const;
-
   const Trimmed& Result() const { return this->Sides; }
   vtkPolyData* Joined() const { return this->Whole; }
 

@@ -47,6 +47,7 @@ public:
   std::int64_t CountOfInnerPoints() const { return this->Outline.NumberOfInnerPoints; }
   vtkIdType CountOfNear() const { return static_cast<vtkIdType>(this->Swept.Near.size()); }
   vtkIdType CountOfSide(int side) const; ///< triangles that are not near: 0 kept, 1 outward
+  Box Extent() const { return BoxOf(this->List); }
 
   /** The near triangles and, as lines, the border of all: for BoundaryZone. */
   vtkSmartPointer<vtkPolyData> NearPart();

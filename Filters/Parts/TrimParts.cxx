@@ -152,6 +152,7 @@ void TrimParts::FindNear(int margin)
   this->Near = 0;
   this->NearParts.clear();
   std::vector<vtkIdType> near, sums(2, 0);
+  Box extent;
   this->Crew.ForEach(this->Fraction(0.02, this->Swept), [&](int part, const Progress& progress) {
     near.push_back(-1);
     this->NearParts.emplace_back();
@@ -162,6 +163,10 @@ void TrimParts::FindNear(int margin)
       this->Near += own.CountOfNear();
       this->OfRank.OutwardTriangles += own.CountOfSide(1);
       sums[0] += own.CountOfSide(0);
+      if (sums[0] == 0)
+      {
+        extent.Join(own.Extent());
+      }
       sums[1] += static_cast<vtkIdType>(own.CountOfInnerPoints());
     });
   });
@@ -171,6 +176,7 @@ void TrimParts::FindNear(int margin)
       this->NearOfParts.begin());
   this->Crew.All().Sum(sums);
   this->Kept = sums[0];
+  this->Extent = BoxOfAll(this->Crew.All(), extent);
   this->InnerPoints = sums[1];
 }
 
@@ -215,7 +221,7 @@ void TrimParts::SendBack(const BoundaryZone& zone)
   const Trimmed& result = zone.Result();
   if (this->Given && this->Kept == 0 && result.Kept.Parents.empty())
   {
-    throw CodedError(zone.NothingEnclosed(this->Lines));
+    throw CodedError(NothingEnclosed(this->Extent, this->Lines.Points, JoinLines(this->Lines)));
   }
   const Progress progress = this->Crew.All().Watched(this->Fraction(0.95, 0.97));
   std::vector<TrimmedPart> backs = zone.Split(progress);

@@ -102,6 +102,7 @@ private:
   std::vector<vtkIdType> NearOfParts; // triangles of each part, and 1; -1 if it has no points
   int Home = 0;                       // the part with most of them
   vtkIdType InnerPoints = 0;          // of all parts
+  Box Extent;                         // of all triangles, where none is kept but near ones
   vtkIdType Triangles = 0, Near = 0;
   TrimCounts OfRank, OfAll;
   vtkIdType Kept = 0, Rings = 0;

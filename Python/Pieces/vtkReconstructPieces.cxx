@@ -142,25 +142,25 @@ void vtkReconstructPieces::Reset()
   {                                                                                                \
     return this->Parts->All().count;                                                               \
   }
-vtkGetCountMacro(vtkIdType, NumberOfPoints, Points)
-  vtkGetCountMacro(vtkIdType, NumberOfTriangles, Triangles)
-    vtkGetCountMacro(vtkIdType, NumberOfTrimmedTriangles, TrimmedTriangles)
-      vtkGetCountMacro(vtkIdType, NumberOfOutwardTriangles, Trim.OutwardTriangles)
-        vtkGetCountMacro(vtkIdType, NumberOfRecoveredEdges, Trim.RecoveredEdges)
-          vtkGetCountMacro(vtkIdType, NumberOfPointsLeftOut, Trim.PointsLeftOut)
-            vtkGetCountMacro(vtkIdType, NumberOfInsertedPoints, Trim.InsertedPoints)
-              vtkGetCountMacro(double, EffectiveGapTolerance, Trim.GapTolerance)
-                vtkGetCountMacro(vtkIdType, NumberOfBoundaryRings, BoundaryRings)
-                  vtkGetCountMacro(vtkIdType, NumberOfHoles, Holes)
-                    vtkGetCountMacro(vtkIdType, NumberOfFilledHoles, FilledHoles)
-                      vtkGetCountMacro(vtkIdType, NumberOfFilledTriangles, FilledTriangles)
-                        vtkGetCountMacro(vtkIdType, NumberOfDuplicatePoints, Duplicates)
-                          vtkGetCountMacro(vtkIdType, NumberOfNonFinitePoints, NotFinite)
-                            vtkGetCountMacro(vtkIdType, NumberOfConstraintCrossings, Crossings)
-                              vtkGetCountMacro(vtkIdType, NumberOfAddedPoints, AddedPoints)
-                                vtkGetCountMacro(bool, LatticeFound, LatticeFound)
+vtkGetCountMacro(vtkIdType, NumberOfPoints, Points);
+vtkGetCountMacro(vtkIdType, NumberOfTriangles, Triangles);
+vtkGetCountMacro(vtkIdType, NumberOfTrimmedTriangles, TrimmedTriangles);
+vtkGetCountMacro(vtkIdType, NumberOfOutwardTriangles, Trim.OutwardTriangles);
+vtkGetCountMacro(vtkIdType, NumberOfRecoveredEdges, Trim.RecoveredEdges);
+vtkGetCountMacro(vtkIdType, NumberOfPointsLeftOut, Trim.PointsLeftOut);
+vtkGetCountMacro(vtkIdType, NumberOfInsertedPoints, Trim.InsertedPoints);
+vtkGetCountMacro(double, EffectiveGapTolerance, Trim.GapTolerance);
+vtkGetCountMacro(vtkIdType, NumberOfBoundaryRings, BoundaryRings);
+vtkGetCountMacro(vtkIdType, NumberOfHoles, Holes);
+vtkGetCountMacro(vtkIdType, NumberOfFilledHoles, FilledHoles);
+vtkGetCountMacro(vtkIdType, NumberOfFilledTriangles, FilledTriangles);
+vtkGetCountMacro(vtkIdType, NumberOfDuplicatePoints, Duplicates);
+vtkGetCountMacro(vtkIdType, NumberOfNonFinitePoints, NotFinite);
+vtkGetCountMacro(vtkIdType, NumberOfConstraintCrossings, Crossings);
+vtkGetCountMacro(vtkIdType, NumberOfAddedPoints, AddedPoints);
+vtkGetCountMacro(bool, LatticeFound, LatticeFound);
 
-                                  vtkMTimeType vtkReconstructPieces::TimeOfProperties()
+vtkMTimeType vtkReconstructPieces::TimeOfProperties()
 {
   return std::max({ this->Delaunay->GetMTime(), this->Trim->GetMTime(), this->Fill->GetMTime() });
 }
@@ -188,25 +188,8 @@ void vtkReconstructPieces::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "KeepFiles: " << (this->KeepFiles ? "On" : "Off") << "\n";
   os << indent << "TrimOutward: " << (this->TrimOutward ? "On" : "Off") << "\n";
-  os << indent << "NumberOfPoints: " << this->GetNumberOfPoints() << "\n";
-  os << indent << "NumberOfTriangles: " << this->GetNumberOfTriangles() << "\n";
-  os << indent << "NumberOfDuplicatePoints: " << this->GetNumberOfDuplicatePoints() << "\n";
-  os << indent << "NumberOfNonFinitePoints: " << this->GetNumberOfNonFinitePoints() << "\n";
-  os << indent << "NumberOfConstraintCrossings: " << this->GetNumberOfConstraintCrossings() << "\n";
-  os << indent << "NumberOfAddedPoints: " << this->GetNumberOfAddedPoints() << "\n";
-  os << indent << "LatticeFound: " << this->GetLatticeFound() << "\n";
-  os << indent << "NumberOfTrimmedTriangles: " << this->GetNumberOfTrimmedTriangles() << "\n";
-  os << indent << "NumberOfOutwardTriangles: " << this->GetNumberOfOutwardTriangles() << "\n";
-  os << indent << "NumberOfRecoveredEdges: " << this->GetNumberOfRecoveredEdges() << "\n";
-  os << indent << "NumberOfPointsLeftOut: " << this->GetNumberOfPointsLeftOut() << "\n";
-  os << indent << "NumberOfInsertedPoints: " << this->GetNumberOfInsertedPoints() << "\n";
-  os << indent << "EffectiveGapTolerance: " << this->GetEffectiveGapTolerance() << "\n";
-  os << indent << "NumberOfBoundaryRings: " << this->GetNumberOfBoundaryRings() << "\n";
   os << indent << "FillHoles: " << (this->FillHoles ? "On" : "Off") << "\n";
   os << indent << "MemoryOfHole: " << this->MemoryOfHole << "\n";
-  os << indent << "NumberOfHoles: " << this->GetNumberOfHoles() << "\n";
-  os << indent << "NumberOfFilledHoles: " << this->GetNumberOfFilledHoles() << "\n";
-  os << indent << "NumberOfFilledTriangles: " << this->GetNumberOfFilledTriangles() << "\n";
   os << indent << "Delaunay:\n";
   this->Delaunay->PrintSelf(os, indent.GetNextIndent());
   os << indent << "Trim:\n";

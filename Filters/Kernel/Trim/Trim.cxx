@@ -114,7 +114,7 @@ void CheckEnclosed(const TriangleList& list, const std::vector<char>& isOutward,
 {
   if (std::find(isOutward.begin(), isOutward.end(), char(0)) == isOutward.end())
   {
-    throw CodedError(NothingEnclosed(list.Points, points, rings));
+    throw CodedError(NothingEnclosed(BoxOf(list), points, rings));
   }
 }
 
@@ -533,14 +533,21 @@ Trimmed Trim(
     });
 }
 
-Message NothingEnclosed(const PointView& points, const NamedPoints& boundary, const Rings& rings)
+Box BoxOf(const TriangleList& triangles)
+{
+  Box box;
+  std::for_each(triangles.CornersOf(0), triangles.CornersOf(triangles.Count),
+    [&](Index corner) { box.Add(triangles.Points.At(corner)); });
+  return box;
+}
+
+Message NothingEnclosed(const Box& ofMesh, const NamedPoints& boundary, const Rings& rings)
 {
   Box box;
   for (const Index vertex : rings.Vertices)
   {
     box.Add(boundary[vertex]);
   }
-  const Box ofMesh = FindExtent(points, 1, Progress(), [](Index, const Point2&) {});
   const std::string first = NameOf(boundary[rings.Vertices.front()]);
   return MakeMessage<sentences::BoundaryEnclosesNothing>(!box.Intersects(ofMesh)
       ? MakeMessage<sentences::BoundaryElsewhere>(NameOf(box), NameOf(ofMesh))

@@ -118,12 +118,15 @@ Trimmed Trim(
 Trimmed TrimNear(const TriangleList& triangles, const BoundaryLines& boundary,
   const std::vector<BorderEdge>& border, const TrimOptions& options);
 
+/** The box of the corners of triangles. */
+Box BoxOf(const TriangleList& triangles);
+
 /**
  * The error of Trim() where a boundary encloses no triangle.
- * @param[in] points  of the mesh
+ * @param[in] ofMesh  the box of all triangles
  * @param[in] rings   vertices of boundary
  */
-Message NothingEnclosed(const PointView& points, const NamedPoints& boundary, const Rings& rings);
+Message NothingEnclosed(const Box& ofMesh, const NamedPoints& boundary, const Rings& rings);
 
 /**
  * Splits triangles where lines cross their edges, so that the lines are edges and the surface is as
