@@ -9,7 +9,7 @@ from .clouds import coordinates_of
 from .messages import counted
 from .names import option
 from .properties import INTERPOLATIONS
-from .ranks import together, total
+from .ranks import all_values, before, summed, together, total
 
 STATUS = {
     0: "filled", 1: "too large", 2: "too many edges", 3: "failed", 4: "replaced", 5: "cut out",
@@ -91,28 +91,27 @@ def hole_counts(ranks, result):
     return result.fill.GetNumberOfHoles() - left, result.fill.GetNumberOfFilledHoles()
 
 
-def are_bridged(surface, outlines):
+def are_bridged(surface, outlines, ranks=None):
     """Which outlines are of voids that triangles bridge, or did until they were filled: (n,) bool.
 
-    A hole is on the left of its outline. Where a triangle is there, it bridges a void. On ranks, both are
-    on one: the filter gathers a surface whose long triangles it is to open.
+    A hole is on the left of its outline. Where a triangle is there, on any rank, it bridges a void.
     """
     status = column_of(outlines, "Status")
     bridged = status == 4
     left = numpy.flatnonzero((status != 0) & ~bridged)
-    if not len(left):
-        return bridged
+    own = before(ranks, len(left))
     lines = outlines.GetLines()
     starts = vtk_to_numpy(lines.GetOffsetsArray())[left]
     ids = vtk_to_numpy(lines.GetConnectivityArray())
-    places = complex_places(outlines)
-    first, second = places[ids[starts]], places[ids[starts + 1]]
+    ends = coordinates_of(outlines)[:, :2][numpy.stack((ids[starts], ids[starts + 1]), 1)] if len(left) else ()
+    first, second = all_values(ranks, numpy.ravel(ends), "f8").view("c16").reshape(-1, 2).T
     places = complex_places(surface)
     corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     corners = corners[numpy.isin(places, first)[corners].any(axis=1)]
     ends = places[numpy.roll(corners, -1, axis=1)]
     edges = set(zip(places[corners].ravel().tolist(), ends.ravel().tolist()))
-    bridged[left] = [edge in edges for edge in zip(first.tolist(), second.tolist())]
+    here = [float(edge in edges) for edge in zip(first.tolist(), second.tolist())]
+    bridged[left] = summed(ranks, numpy.array(here))[own : own + len(left)] > 0
     return bridged
 
 

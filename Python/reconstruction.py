@@ -310,7 +310,7 @@ def run_chain(
         result.fill = last = run("fill", filling)
         result.triangles["filled"] = total(ranks, last.GetOutput().GetNumberOfPolys())
         result.holes = filling.GetOutput(1)
-        result.bridged = are_bridged(last.GetOutput(), result.holes)
+        result.bridged = are_bridged(last.GetOutput(), result.holes, ranks)
         result.hole_counts = hole_counts(ranks, result)
     result.surface = last.GetOutput()
     result.points, result.reasons = followed(

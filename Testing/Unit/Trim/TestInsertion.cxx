@@ -674,7 +674,7 @@ TEST(InsertRings, RefusesRingsThatCrossAlongEdges)
       messageOf({ { 4, 1 }, { 6, 0 }, { 6, 5 }, { 2, 4 }, { 4, 4 } }, isReversed), "no error");
     EXPECT_EQ(messageOf({ { 4, 1 }, { 4, 3 }, { 2, 2 } }, isReversed), "no error");
     EXPECT_EQ(messageOf({ { 4, 1 }, { 4, 4 }, { 2, 4 }, { 2, 2 } }, isReversed), "no error");
-    EXPECT_HAS(messageOf(square, isReversed), "encloses no triangle");
+    EXPECT_EQ(messageOf(square, isReversed), "no error"); // the same ring counts once
   }
 }
 
