@@ -220,6 +220,7 @@ class Pieces:
                 f"multiple of {ranks}, such as {options.pieces + -options.pieces % ranks}"
             )
         source.SetFolder(folder_of_rank(folder, rank))
+        source.KeepFilesOff()
         source.SetTrimOutward(options.trim)
         source.SetFillHoles(options.fill)
         for step, algorithm in (
