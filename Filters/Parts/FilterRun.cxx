@@ -115,12 +115,12 @@ bool FilterRun::IsAbortReported() const
 
 void FilterRun::Report(const Ranks& ranks) const
 {
-  if (this->IsAborted && this->IsAbortReported())
-  {
-    return;
-  }
   const std::vector<Message> errors = OnFirst(this->Errors, ranks);
-  ReportMessages(this->Filter, errors, OnFirst(this->Warnings, ranks), this->Messages);
+  const std::vector<Message> warnings = OnFirst(this->Warnings, ranks);
+  if (!this->IsAborted || !this->IsAbortReported())
+  {
+    ReportMessages(this->Filter, errors, warnings, this->Messages);
+  }
 }
 
 void FilterRun::EmptyOutputs()
