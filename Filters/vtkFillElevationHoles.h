@@ -114,8 +114,9 @@
  * with the same global id are one, or, where not all ranks have global ids, those with the same
  * x,y,z. Field data are those of the rank, with the counts of all. Output 1 is on one rank.
  *
- * With vertices, lines or cells marked as another rank's, where borders touch without sharing a point, where not all ranks have the same arrays and type of points, and for
- * messages of what is wrong, the triangles are gathered on the rank with most of them, which gets
+ * With vertices, lines or cells marked as another rank's, where borders touch without sharing a
+ * point, where not all ranks have the same arrays and type of points, and for messages of what is
+ * wrong, the triangles are gathered on the rank with most of them, which gets
  * the result, with a warning unless there is an error; the others have empty output with the same
  * arrays. Points are in the order of their global ids then. Cells marked as another rank's are left
  * out, and arrays that not all ranks have, with a warning.

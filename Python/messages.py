@@ -4,6 +4,7 @@
 
 import difflib
 import re
+import sys
 
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkLogger, vtkOutputWindow
 
@@ -167,6 +168,9 @@ class Messages:
 
     def take(self, event, message):
         if not message or "returned failure for request" in message:  # of VTK's executives
+            return
+        if message.code == "RankWaits":  # of the moment, and not of the result
+            print(message, file=sys.stderr)
             return
         lines = self.errors if event == "ErrorEvent" else self.warnings
         if message not in lines:

@@ -8,7 +8,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .clouds import coordinates_of
-from .ranks import all_values, extremes, together, total
+from .ranks import all_values, together, total
 from .spreading import ids_of
 
 # Above this multiple, edges bridge missing nodes of a grid, or the space between survey lines.
@@ -83,12 +83,6 @@ def measured(ranks, surface):
 def lengths_of(corners):
     """(3, n) lengths of the edges of triangles, by x and y of their corners, (n, 3, 2)."""
     return numpy.array([numpy.hypot(*(corners[:, i - 2] - corners[:, i]).T) for i in range(3)])
-
-
-def longest_edge(ranks, surface):
-    """The length in x,y of the longest edge of the triangles of all ranks."""
-    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    return extremes(ranks, lengths_of(coordinates_of(surface)[:, :2][triangles].astype("f8")))[1]
 
 
 def length_of(area, shortest, longest, lattice):

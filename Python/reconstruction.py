@@ -26,7 +26,7 @@ from .heights import check_heights, heights_on_ranks
 from .holes import are_bridged, hole_counts
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .names import argument
-from .opening import length_to_open, longest_edge
+from .opening import length_to_open
 from .paths import check_suffix
 from .properties import COLOURS, PROPERTIES, checked
 from .ranks import extremes, total
@@ -304,8 +304,7 @@ def run_chain(
             result.open_edge_length, result.why_opened = given["open_edge_length"], AS_GIVEN
         elif not given.get("maximum_elevation_error"):  # else long edges are no voids
             length, result.why_opened = length_to_open(ranks, last.GetOutput(), result)
-            if not ranks or longest_edge(ranks, last.GetOutput()) > length:  # else it stays spread
-                filling.SetMaximumEdgeLength(length)
+            filling.SetMaximumEdgeLength(length)
             result.open_edge_length = length
         result.fill = last = run("fill", filling)
         result.triangles["filled"] = total(ranks, last.GetOutput().GetNumberOfPolys())
@@ -351,8 +350,8 @@ def reconstruct(
 ) -> Reconstruction:
     """Reconstructs an elevation surface z = f(x, y) from points.
 
-    points    (n, 3) array of x, y, z, whose values are taken as they are; a vtkPointSet or PyVista mesh, whose points and point data are
-              used; a flat vtkImageData or vtkRectilinearGrid, whose active point scalars are
+    points    (n, 3) array of x, y, z, whose values are taken as they are; a vtkPointSet or PyVista
+              mesh, whose points and point data are used; a flat vtkImageData or vtkRectilinearGrid, whose active point scalars are
               elevations, NaN where there is none; or what read() returns
     boundary  closed lines that bound the surface: vtkPolyData, an (n, 2) or (n, 3) array, or a list
               of such arrays; None: found from the points. Gaps of up to 1 % of a ring's length are

@@ -125,8 +125,13 @@ void RankNotes::Meet(
     }
     if (!isLate && std::chrono::steady_clock::now() >= end)
     {
+      // Notes may have come while this process was stopped itself.
+      missing.erase(std::remove_if(missing.begin(), missing.end(), hasCome), missing.end());
       isLate = true;
-      late(missing);
+      if (!missing.empty())
+      {
+        late(missing);
+      }
     }
     std::this_thread::yield();
   }

@@ -94,6 +94,7 @@ void ReconstructParts::Close()
   this->Work.reset();
   this->Everybody.reset();
   this->Refusal.reset();
+  this->Constraints = this->Boundary = nullptr;
   this->NumberOfParts = 0;
   this->Gone.clear();
   this->IsLost = this->IsOfAll = false;

@@ -16,8 +16,8 @@
  * The plane is cut into a cell for each piece, with about as many points each. A piece has the
  * points of its cell, also unused ones, then the corners of its triangles that are points of other
  * pieces: these are marked in vtkGhostType as DUPLICATEPOINT. Global ids are those of the points that
- * are added, or, in GlobalPointIds, the place of each in the order of AddPoints(). Each triangle is in one piece, that of its lowest corner
- * if it reaches over the border of a cell. Field data are those of vtkGridDelaunay2D, for this
+ * are added, or, in GlobalPointIds, the place of each in the order of AddPoints(). Each triangle is
+ * in one piece, that of its lowest corner if it reaches over the border of a cell. Field data are those of vtkGridDelaunay2D, for this
  * piece.
  *
  * @par Properties:

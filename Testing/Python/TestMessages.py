@@ -4,6 +4,8 @@
 names that options have where it is read. Nothing looks for words in sentences."""
 
 import ast
+import contextlib
+import io
 import os
 import re
 import string
@@ -21,7 +23,7 @@ from vtkelevationsurface import (
 )
 from vtkelevationsurface.algorithms import ReconstructElevationSurface
 from vtkelevationsurface.clouds import make_lines, make_points
-from vtkelevationsurface.messages import Messages, Reason, messages_of, of_reason
+from vtkelevationsurface.messages import Message, Messages, Reason, messages_of, of_reason
 from vtkelevationsurface.names import PANEL, PROGRAM, PYTHON, argument, option, written_for
 from vtkelevationsurface.pieces import MessagesOfSteps
 from vtkelevationsurface.steps import in_our_names
@@ -172,6 +174,19 @@ class Data(unittest.TestCase):
         self.assertEqual(len(errors), 1)
         self.assertEqual((errors[0].code, errors[0].values), ("", {"words": str(errors[0])}))
         self.assertIn("0 connections", errors[0])
+
+
+class Waiting(unittest.TestCase):
+    """A rank that waits for others is no fault of the result."""
+
+    def test_it_is_shown_and_is_no_warning(self):
+        waits = Message("Rank {rank} has waited.", {"rank": "1"}, "RankWaits")
+        shown, messages = io.StringIO(), Messages()
+        with contextlib.redirect_stderr(shown):
+            messages.take("WarningEvent", waits)
+            messages.take("WarningEvent", Message("{words}", {"words": "else"}))
+        self.assertEqual(shown.getvalue(), "Rank 1 has waited.\n")
+        self.assertEqual(messages.warnings, ["else"])
 
 
 class Names(unittest.TestCase):
