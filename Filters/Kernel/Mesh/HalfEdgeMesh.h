@@ -227,7 +227,7 @@ Components FindComponents(const Mesh& mesh, const Progress& progress, Relation&&
   Components components;
   components.Labels.Resize(count);
   LabelSets joined;
-  ForEachStretch(count, Part(progress, 0.0, 0.8), [&](Index begin, Index end) {
+  ForEachStretch(count, SubProgress(progress, 0.0, 0.8), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       Index label = None;
@@ -252,7 +252,7 @@ Components FindComponents(const Mesh& mesh, const Progress& progress, Relation&&
     }
   });
   joined.Renumber(components.Lowest);
-  ForEachStretch(count, Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, SubProgress(progress, 0.8, 1.0), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       components.Labels[t] = joined(components.Labels[t]);
