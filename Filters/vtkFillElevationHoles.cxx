@@ -64,7 +64,7 @@ using elevation::FillResult;
 using elevation::Holes;
 using elevation::Index;
 using elevation::Mesh;
-using elevation::Part;
+using elevation::SubProgress;
 using elevation::Report;
 } // namespace
 

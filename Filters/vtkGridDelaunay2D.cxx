@@ -61,7 +61,7 @@ namespace
 {
 using elevation::ConstraintLines;
 using elevation::Index;
-using elevation::Part;
+using elevation::SubProgress;
 using elevation::Progress;
 using elevation::ReportStep;
 

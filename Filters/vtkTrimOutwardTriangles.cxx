@@ -53,7 +53,7 @@ vtkCxxSetObjectMacro(vtkTrimOutwardTriangles, Controller, vtkMultiProcessControl
 namespace
 {
 using elevation::Index;
-using elevation::Part;
+using elevation::SubProgress;
 using elevation::Progress;
 using elevation::Report;
 using elevation::Trimmed;

@@ -94,6 +94,18 @@ bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& option
   TrimOptions ofNear = options;
   ofNear.ReturnParents = true;
   ofNear.Monitor = SubProgress(options.Monitor, 0.4, 0.9);
+  if (vtkDataArray* const ids = this->Whole->GetPointData()->GetGlobalIds())
+  {
+    const Index count = list.Points.Count;
+    std::int64_t largest = 0; // of all parts, each of which has sent its own
+    for (Index i = 0; i < count; ++i)
+    {
+      largest = std::max<std::int64_t>(largest, ids->GetVariantValue(i).ToTypeInt64());
+    }
+    ofNear.NumberOf = [ids, count, largest](Index id) {
+      return id < count ? ids->GetVariantValue(id).ToTypeInt64() : largest + 1 + id - count;
+    };
+  }
   this->Sides = TrimNear(list, boundary, this->Border, ofNear);
   PassPoints(this->Whole, this->Sides, SubProgress(options.Monitor, 0.9, 1.0), this->Points);
   return true;

@@ -359,15 +359,6 @@ void FilterRun::ShareResults(const Ranks& ranks)
     // The executive runs an aborted filter again for each output: on all ranks, or on none.
     this->Filter->SetAbortExecute(1);
     IsAbortRequested(this->Filter); // it makes the executive aware
-  }
-  this->ReportAbort();
-}
-
-void FilterRun::ReportAbort()
-{
-  // ParaView updates each output, and VTK runs the filter for each while its abort flag is set.
-  if (this->IsAborted && !this->IsAbortReported() && this->Filter->GetAbortExecute())
-  {
     this->Warnings.push_back(MakeMessage<sentences::Stopped>());
   }
 }

@@ -104,11 +104,16 @@ void TrimParts::WithPart(int part, const Progress& progress, const Step& step)
   step(*found);
 }
 
-void TrimParts::Sweep(TrimmedPart& part, const Progress& progress) const
+void TrimParts::Sweep(TrimmedPart& part, const Progress& progress)
 {
-  const bool isSwept = this->Given ? part.Sweep(this->Lines, static_cast<double>(this->NumberOfAll),
-                                       this->Options.NumberOfThreads, progress)
-                                   : part.SweepForOutline(this->Margin, this->Options, progress);
+  if (this->Given && this->Joined.Count() == 0)
+  {
+    this->Joined = JoinLines(this->Lines);
+  }
+  const bool isSwept = this->Given
+    ? part.Sweep(this->Lines.Points.Places, this->Joined, static_cast<double>(this->NumberOfAll),
+        this->Options.NumberOfThreads, progress)
+    : part.SweepForOutline(this->Margin, this->Options, progress);
   if (!isSwept)
   {
     throw this->Refusal();

@@ -80,7 +80,7 @@ private:
   }
   template <typename Step>
   void WithPart(int part, const Progress& progress, const Step& step);
-  void Sweep(TrimmedPart& part, const Progress& progress) const;
+  void Sweep(TrimmedPart& part, const Progress& progress);
   void TrimAll();
   CodedError Refusal() const;
   void Read();
@@ -95,6 +95,7 @@ private:
   const TrimOptions Options;
   const double Swept; // of the progress
   BoundaryLines Lines;
+  elevation::Rings Joined; // of the lines, once a part is swept
   vtkIdType NumberOfAll; // triangles
   int Margin = 0;        // of an outline
   std::unique_ptr<TrimmedPart> InMemory;

@@ -70,11 +70,11 @@ void TrimmedPart::LeaveOutCopies()
   this->List.Count = static_cast<Index>(this->Sources.size());
 }
 
-bool TrimmedPart::Sweep(
-  const BoundaryLines& lines, double numberOfAll, int threads, const Progress& progress)
+bool TrimmedPart::Sweep(const std::vector<Point2>& points, const Rings& rings, double numberOfAll,
+  int threads, const Progress& progress)
 {
-  std::optional<SweptAlongRings> swept = SweepAlongRings(
-    this->List, lines.Points.Places, JoinLines(lines), numberOfAll, threads, progress);
+  std::optional<SweptAlongRings> swept =
+    SweepAlongRings(this->List, points, rings, numberOfAll, threads, progress);
   if (swept)
   {
     this->Swept = std::move(*swept);

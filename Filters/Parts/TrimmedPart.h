@@ -38,10 +38,12 @@ public:
 
   /**
    * Finds the near triangles, and the sides of the others.
+   * @param[in] points       of the rings
    * @param[in] numberOfAll  triangles of all parts
    * @return false if the sweep cannot
    */
-  bool Sweep(const BoundaryLines& lines, double numberOfAll, int threads, const Progress& progress);
+  bool Sweep(const std::vector<Point2>& points, const Rings& rings, double numberOfAll, int threads,
+    const Progress& progress);
   /** The same without a boundary: the near triangles tell the outline. See FindPartOfOutline() */
   bool SweepForOutline(int margin, const TrimOptions& options, const Progress& progress);
   std::int64_t CountOfInnerPoints() const { return this->Outline.NumberOfInnerPoints; }

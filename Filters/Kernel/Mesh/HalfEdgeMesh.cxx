@@ -18,9 +18,9 @@ std::string NameOf(const Point2& p)
   return text;
 }
 
-std::string NameOf(Index id, const Point2& p)
+std::string NameOf(std::int64_t number, const Point2& p)
 {
-  return "point " + std::to_string(id) + " " + NameOf(p);
+  return "point " + std::to_string(number) + " " + NameOf(p);
 }
 
 std::string NameOf(const NamedPoints& points, Index i)
@@ -30,7 +30,8 @@ std::string NameOf(const NamedPoints& points, Index i)
 
 std::string NameOf(const Mesh& mesh, Index vertex)
 {
-  return NameOf(mesh.IdOf(vertex), mesh.PointOf(vertex));
+  const Index id = mesh.IdOf(vertex);
+  return NameOf(mesh.NumberOf ? mesh.NumberOf(id) : id, mesh.PointOf(vertex));
 }
 
 namespace

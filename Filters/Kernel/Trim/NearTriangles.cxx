@@ -41,11 +41,10 @@ public:
     // A few triangles per cell.
     const double cells = std::min(262144.0, std::max(64.0, numberOfTriangles / 8.0));
     const double columns = std::sqrt(cells * (width / height));
-    this->Side = width / std::min(512.0, std::max(1.0, columns));
-    // Cells must be so large that the rounding of coordinates does not matter. Rings without area,
-    // very large or very small ones are not handled.
-    this->Usable = size < 1e100 && this->Side > 1e-100 && this->Side > 1e-9 * size &&
-      height > 0.0 && height < 4096.0 * this->Side;
+    // Cells must be so large that the rounding of coordinates does not matter, and not too many.
+    this->Side = std::max(
+      { width / std::min(512.0, std::max(1.0, columns)), height / 4096.0, 1e-9 * size, 1e-100 });
+    this->Usable = size < 1e100;
     if (!this->Usable)
     {
       return;

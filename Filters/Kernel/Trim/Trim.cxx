@@ -279,6 +279,7 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
   const Progress making =
     SubProgress(progress, options.Test == OutwardTest::Exact ? 0.3 : 0.0, 0.5);
   Mesh mesh = near ? NearMesh(list, *near, making) : ProvenMesh(list, threads, making);
+  mesh.NumberOf = options.NumberOf;
   border = near ? std::move(border) : BorderOf(mesh, SubProgress(progress, 0.5, 0.5));
   const Index before = mesh.NumberOfPoints();
   InsertedRings rings = InsertRings(mesh, lines.Points, result.Boundary, options.RecoverBoundary,
