@@ -25,7 +25,7 @@
 
 #include "Engine.h"
 #include "Kernel/Cells/Cells.h"
-#include "PointRows.h"
+#include "PointTable.h"
 #include "SurfacePart.h"
 
 #include "vtkNew.h"
@@ -103,7 +103,7 @@ private:
   std::vector<SampledPoint> Sample;
   std::uint64_t SampleMask = 0;
   // What is written or sent next:
-  PointRows Rows;
+  PointTable Rows;
   std::vector<vtkIdType> Kept; // places of those that count
 };
 
