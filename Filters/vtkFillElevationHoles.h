@@ -141,10 +141,12 @@
 #ifndef vtkFillElevationHoles_h
 #define vtkFillElevationHoles_h
 
+#include "vtkElevationSurfaceABI.h"
 #include "vtkElevationSurfaceModule.h" // for export macro
 #include "vtkNew.h"
 #include "vtkPolyDataAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkMultiProcessController;
 class vtkStringArray;
 
@@ -412,5 +414,6 @@ private:
 
   vtkNew<vtkStringArray> Messages;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -161,10 +161,12 @@
 #ifndef vtkTrimOutwardTriangles_h
 #define vtkTrimOutwardTriangles_h
 
+#include "vtkElevationSurfaceABI.h"
 #include "vtkElevationSurfaceModule.h" // for export macro
 #include "vtkNew.h"
 #include "vtkPolyDataAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkMultiProcessController;
 class vtkStringArray;
 
@@ -396,5 +398,6 @@ private:
 
   vtkNew<vtkStringArray> Messages;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

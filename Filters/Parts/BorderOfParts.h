@@ -8,6 +8,7 @@
 #ifndef BorderOfParts_h
 #define BorderOfParts_h
 
+#include "Adapt/Adapt.h"
 #include "Kernel/Mesh/Mesh.h"
 #include "PointKeys.h"
 #include "Ranks.h"
@@ -17,8 +18,6 @@
 #include <map>
 #include <utility>
 #include <vector>
-
-class vtkPolyData;
 
 namespace elevation
 {

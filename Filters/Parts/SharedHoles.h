@@ -7,6 +7,7 @@
 #ifndef SharedHoles_h
 #define SharedHoles_h
 
+#include "Adapt/Adapt.h"
 #include "BorderOfParts.h"
 #include "CommonPoints.h"
 #include "HoleNeighborhoods.h"
@@ -17,8 +18,6 @@
 
 #include <tuple>
 #include <vector>
-
-class vtkPolyData;
 
 namespace elevation
 {
