@@ -7,6 +7,7 @@
 #   - of VTK, the kernel includes its Eigen alone; a room around it includes no filter;
 #   - a filter includes faces alone; the class for the Python package also the options of the filters;
 #   - classes of VTK and ours are declared and defined in the namespace that VTK was built with;
+#   - the comment of a filter's class has at most 70 lines: the rest is in Documentation/;
 #   - every file is in a room and is listed, and a file that is listed is there;
 #   - the drawing of the rooms is the one that Utilities/draw-rooms makes.
 # Run as: cmake -DROOT=<top of the source tree> -P IncludeOrder.cmake
@@ -73,6 +74,17 @@ endforeach ()
 file(GLOB filters RELATIVE "${ROOT}" "${ROOT}/Filters/*.h" "${ROOT}/Filters/*.cxx")
 foreach (file IN LISTS filters)
   check_file("${file}" "^vtk" ${faces})
+endforeach ()
+
+file(GLOB filters RELATIVE "${ROOT}" "${ROOT}/Filters/vtk*.h")
+foreach (file IN LISTS filters)
+  file(READ "${ROOT}/${file}" text)
+  string(REGEX REPLACE "\\*/.*" "" comment "${text}")
+  string(REGEX MATCHALL "\n" lines "${comment}")
+  list(LENGTH lines count) # and the two lines of the licence less the last one
+  if (comment MATCHES "@class" AND count GREATER 71)
+    list(APPEND wrong "the comment of the class in ${file} has more than 70 lines")
+  endif ()
 endforeach ()
 
 file(GLOB files RELATIVE "${ROOT}" "${ROOT}/Python/Pieces/*.h" "${ROOT}/Python/Pieces/*.cxx")
