@@ -88,7 +88,7 @@ def frame_of(path):
 
             frame, crs = read_frame(local)
         else:
-            cloud = read_any(local, ReadOptions(points_only=True))
+            cloud = read_by_format(local, ReadOptions(points_only=True))
             frame, crs = cloud.frame, cloud.crs
         if frame is None:
             raise FileError(f"{local}: is no raster with even steps, so there are no pixels like its own")
