@@ -111,7 +111,7 @@ set(es_Adapt
   Requests
   TrimmedSurface)
 set(es_headers_Adapt
-  Adapt VTKVersions)
+  Adapt VTKClasses VTKVersions)
 set(es_Parts
   BoundaryZone
   CommonPoints

@@ -44,6 +44,7 @@ FillOptions OptionsOf(vtkFillElevationHoles* filter)
 
 } // namespace elevation
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkFillElevationHoles);
 vtkCxxSetObjectMacro(vtkFillElevationHoles, Controller, vtkMultiProcessController);
 
@@ -196,3 +197,4 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfFilledHoles: " << this->NumberOfFilledHoles << "\n";
   os << indent << "Messages: " << this->Messages->GetNumberOfTuples() << " rows\n";
 }
+VTK_ABI_NAMESPACE_END

@@ -54,6 +54,7 @@ DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter)
 
 } // namespace elevation
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkGridDelaunay2D);
 vtkCxxSetObjectMacro(vtkGridDelaunay2D, Controller, vtkMultiProcessController);
 
@@ -406,3 +407,4 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfAddedPoints: " << this->NumberOfAddedPoints << "\n";
   os << indent << "Messages: " << this->Messages->GetNumberOfTuples() << " rows\n";
 }
+VTK_ABI_NAMESPACE_END

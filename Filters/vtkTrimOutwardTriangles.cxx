@@ -47,6 +47,7 @@ TrimOptions OptionsOf(vtkTrimOutwardTriangles* filter)
 
 } // namespace elevation
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkTrimOutwardTriangles);
 vtkCxxSetObjectMacro(vtkTrimOutwardTriangles, Controller, vtkMultiProcessController);
 
@@ -289,3 +290,4 @@ void vtkTrimOutwardTriangles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfInsertedPoints: " << this->NumberOfInsertedPoints << "\n";
   os << indent << "Messages: " << this->Messages->GetNumberOfTuples() << " rows\n";
 }
+VTK_ABI_NAMESPACE_END

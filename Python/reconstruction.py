@@ -212,20 +212,30 @@ class Reconstruction:
             f"{self.surface.GetNumberOfPolys():,} triangles>"
         )
 
-    def to_grid(self, step: float) -> Any:
-        """The surface at the centres of square pixels, interpolated in its triangles.
+    def to_grid(self, step: Optional[float] = None, *, like: Any = None) -> Any:
+        """The surface at the centres of pixels, interpolated in its triangles.
+
+        step  the width of square pixels, whose edges are multiples of it. None, or that of the raster
+              or regular grid that the points are from: on the pixels of that
+        like  a Grid, what read() returns of a raster, or the file of one: on its pixels
 
         Returns a Grid with z, (rows, columns) and NaN outside; x, (columns,); y, (rows,), falling;
-        and error, (rows, columns) or None. The edges of pixels are multiples of step. Raises
-        ElevationSurfaceError for a step that is too small or too large.
+        and error, (rows, columns) or None. Grids of the same pixels can be subtracted, and write()
+        writes one. Raises ElevationSurfaceError for a step that is too small or too large, and for
+        like where it is no raster or has another coordinate reference system.
         """
         from .writing.grids import grid_of
 
         try:
-            step = KINDS["step"].convert(step)
+            step = None if step is None else KINDS["step"].convert(step)
         except ValueError:
             raise ValueError(f"step takes a number above 0, not {step}") from None
-        return grid_of(self.surface, step)
+        if step is not None and like is not None:
+            raise ValueError("step or like, not both")
+        grid, notes = grid_of(self, step, like)
+        for note in notes:
+            warnings.warn(note, ElevationSurfaceWarning, stacklevel=2)
+        return grid
 
     def plot(
         self,

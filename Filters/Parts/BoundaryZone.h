@@ -22,8 +22,6 @@
 #include <utility>
 #include <vector>
 
-class vtkPolyData;
-
 namespace elevation
 {
 

@@ -39,6 +39,7 @@
 #ifndef FillParts_h
 #define FillParts_h
 
+#include "Adapt/Adapt.h"
 #include "FilledPart.h"
 #include "SharedHoles.h"
 #include "SurfaceParts.h"
@@ -46,8 +47,6 @@
 #include <map>
 #include <memory>
 #include <vector>
-
-class vtkPolyData;
 
 namespace elevation
 {

@@ -23,6 +23,7 @@
 #ifndef PointSource_h
 #define PointSource_h
 
+#include "Adapt/Adapt.h"
 #include "Engine.h"
 #include "Kernel/Cells/Cells.h"
 #include "PointTable.h"
@@ -34,9 +35,6 @@
 #include <memory>
 #include <string>
 #include <vector>
-
-class vtkPointData;
-class vtkPointSet;
 
 namespace elevation
 {

@@ -7,6 +7,7 @@
 #ifndef PointTable_h
 #define PointTable_h
 
+#include "Adapt/Adapt.h"
 #include "Bytes.h"
 #include "Kernel/Base/Base.h"
 #include "Ranks.h"
@@ -16,12 +17,6 @@
 #include <set>
 #include <string>
 #include <vector>
-
-class vtkAbstractArray;
-class vtkDataSetAttributes;
-class vtkPointData;
-class vtkPointSet;
-class vtkPointSet;
 
 namespace elevation
 {

@@ -8,6 +8,7 @@
 #ifndef SharedBorder_h
 #define SharedBorder_h
 
+#include "Adapt/Adapt.h"
 #include "Kernel/Mesh/Mesh.h"
 #include "PointKeys.h"
 #include "Ranks.h"
@@ -17,8 +18,6 @@
 #include <map>
 #include <utility>
 #include <vector>
-
-class vtkPolyData;
 
 namespace elevation
 {

@@ -18,8 +18,6 @@
 #include <tuple>
 #include <vector>
 
-class vtkPolyData;
-
 namespace elevation
 {
 

@@ -16,8 +16,6 @@
 #include <string>
 #include <vector>
 
-class vtkPolyData;
-
 namespace elevation
 {
 

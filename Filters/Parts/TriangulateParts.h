@@ -32,6 +32,7 @@
 #ifndef TriangulateParts_h
 #define TriangulateParts_h
 
+#include "Adapt/Adapt.h"
 #include "Engine.h"
 #include "Kernel/Cells/Cells.h"
 #include "Kernel/Messages/Messages.h"
@@ -45,10 +46,6 @@
 #include <set>
 #include <string>
 #include <vector>
-
-class vtkFieldData;
-class vtkPointSet;
-class vtkPolyData;
 
 namespace elevation
 {

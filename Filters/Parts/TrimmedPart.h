@@ -18,8 +18,6 @@
 #include <utility>
 #include <vector>
 
-class vtkPolyData;
-
 namespace elevation
 {
 

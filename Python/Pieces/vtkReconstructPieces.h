@@ -69,6 +69,7 @@
 #ifndef vtkReconstructPieces_h
 #define vtkReconstructPieces_h
 
+#include "vtkElevationSurfaceABI.h"
 #include "vtkElevationSurfacePiecesModule.h" // For export macro
 #include "vtkNew.h"
 #include "vtkPolyDataAlgorithm.h"
@@ -81,6 +82,8 @@ namespace elevation
 {
 class ReconstructParts;
 } // namespace elevation
+
+VTK_ABI_NAMESPACE_BEGIN
 class vtkFillElevationHoles;
 class vtkGridDelaunay2D;
 class vtkMultiProcessController;
@@ -223,5 +226,6 @@ private:
   vtkNew<vtkStringArray> Messages;
   std::unique_ptr<elevation::ReconstructParts> Parts;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

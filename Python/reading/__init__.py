@@ -78,6 +78,23 @@ def read_whole(path, options):
     return cloud
 
 
+def frame_of(path):
+    """(the Frame of the raster in a file, its coordinate reference system or None). Raises FileError
+    where it holds none."""
+    with unpacked(os.fspath(path)) as (local, _):
+        kind, _ = recognise(local)
+        if kind.module == "rasters":
+            from .rasters import frame_of as read_frame
+
+            frame, crs = read_frame(local)
+        else:
+            cloud = read_any(local, ReadOptions(points_only=True))
+            frame, crs = cloud.frame, cloud.crs
+        if frame is None:
+            raise FileError(f"{local}: is no raster with even steps, so there are no pixels like its own")
+    return frame, crs
+
+
 def finished(path, cloud, options):
     """What read() makes of the Cloud of read_whole(), which it changes: points that are chosen,
     without nulls, and turned over."""
