@@ -104,7 +104,7 @@ private:
 
   Progress Fraction(double begin, double end) const
   {
-    return Part(this->Whole.Options.Monitor, begin, end);
+    return SubProgress(this->Whole.Options.Monitor, begin, end);
   }
   template <typename Visit>
   void WithPart(int part, const Progress& progress, const Visit& visit);

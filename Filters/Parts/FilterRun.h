@@ -101,7 +101,6 @@ private:
     const std::function<void(Block&)>& body);
   Message RunPlace(const Place& place, Block& block, const std::function<void(Block&)>& body);
   void ShareResults(const Ranks& ranks);
-  void ReportAbort();
   bool IsAbortReported() const;
   void Report(const Ranks& ranks) const;
 

@@ -113,7 +113,7 @@ public:
 private:
   Progress Fraction(double begin, double end) const
   {
-    return Part(this->Options.Monitor, begin, end);
+    return SubProgress(this->Options.Monitor, begin, end);
   }
   std::vector<GlobalTriangle> Settle();
   void SendTriangles(std::vector<GlobalTriangle>&& ofSeams);
