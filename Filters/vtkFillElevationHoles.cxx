@@ -104,6 +104,7 @@ int vtkFillElevationHoles::RequestData(
 {
   elevation::FilterRun call(
     this, this->Controller, request, inputVector, outputVector, this->Messages);
+  call.CleanedOutputs = this->RemoveUnusedPoints ? 1 : 0;
   call.Sums = { &this->NumberOfHoles, &this->NumberOfFilledHoles };
   call.Spread = [this](elevation::Block& block, const elevation::Ranks& ranks) {
     FillResult patches;
@@ -190,6 +191,7 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Spacing: " << this->Spacing << "\n";
   os << indent << "Interpolation: " << this->GetInterpolationAsString() << "\n";
   os << indent << "InterpolatePointData: " << (this->InterpolatePointData ? "On" : "Off") << "\n";
+  os << indent << "RemoveUnusedPoints: " << (this->RemoveUnusedPoints ? "On" : "Off") << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "NumberOfHoles: " << this->NumberOfHoles << "\n";

@@ -337,6 +337,17 @@ public:
 
   ///@{
   /**
+   * Whether points that no cell has are removed from output 0, and the point array OriginalPointIds
+   * (vtkIdTypeArray) is added, as in vtkGridDelaunay2D; it is -1 for new points. Off (default): all
+   * points of the input come first.
+   */
+  vtkSetMacro(RemoveUnusedPoints, bool);
+  vtkGetMacro(RemoveUnusedPoints, bool);
+  vtkBooleanMacro(RemoveUnusedPoints, bool);
+  ///@}
+
+  ///@{
+  /**
    * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
    * without threads by default, as in ParaView. The output is the same, byte for byte, for any
    * number. Small holes are filled several at a time. Holes of more than some ten thousand
@@ -400,6 +411,7 @@ protected:
   double Spacing = 0.0;
   int Interpolation = ADAPTIVE;
   bool InterpolatePointData = true;
+  bool RemoveUnusedPoints = false;
   int NumberOfThreads = 0;
 
   vtkIdType NumberOfHoles = 0;
