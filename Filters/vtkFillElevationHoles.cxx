@@ -153,8 +153,9 @@ int vtkFillElevationHoles::RequestData(
     }
     const elevation::Progress filling = Part(progress, 0.55, isToBeFilled ? 0.85 : 0.55);
     options.Monitor = filling;
-    const FillResult patches =
+    FillResult patches =
       elevation::FillHoles(isOpened ? opened : mesh, points.View, std::move(found), options);
+    patches.FirstNumber = elevation::NextHole(input);
 
     MakeSurface(input, mesh, patches, this->InterpolatePointData,
       Part(progress, isToBeFilled ? 0.85 : 0.55, 0.97), block.Outputs[0]);

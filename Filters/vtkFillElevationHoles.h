@@ -30,8 +30,10 @@
  *   NEIGHBOR_MEAN, which is not tried.
  * - Cell array HoleId (vtkIdTypeArray): the hole a new triangle lies in, -1 for cells of the input.
  * - Other point arrays: see InterpolatePointData. Other cell arrays: new triangles get NaN
- *   (floating-point numbers), 0 (integers), or an empty string. Arrays of the input called
- *   FilledPoint, FilledError or HoleId are replaced.
+ *   (floating-point numbers), 0 (integers), or an empty string. 
+ *   Where the input has been filled before, its FilledPoint, FilledError and HoleId stay, and holes
+ *   have numbers after the largest of its triangles, in output 1 and warnings, too. Arrays of these
+ *   names and another type are replaced.
  * - Global ids of new points and triangles go on after the largest. Pedigree ids are -1 there (the
  *   largest number of an unsigned type, NaN, an empty string), as are global ids whose type has no
  *   more numbers, which are no longer marked as such.
@@ -41,7 +43,7 @@
  *
  * @par Output 1, the report:
  * One closed line for each hole, filled or not, its rim, counter-clockwise. Cell data:
- * - HoleId (vtkIdTypeArray): 0, 1, 2, ...
+ * - HoleId (vtkIdTypeArray): 0, 1, 2, ..., or on from the numbers of the input's triangles.
  * - Status (vtkUnsignedCharArray): see HoleStatusType.
  * - NumberOfEdges (vtkIdTypeArray): boundary edges, those of the rim and of the islands; in a
  *   region of MaximumEdgeLength, no others.
