@@ -105,6 +105,7 @@ int vtkFillElevationHoles::RequestData(
 {
   elevation::FilterRun call(
     this, this->Controller, request, inputVector, outputVector, this->Messages);
+  call.CleanedOutputs = this->RemoveUnusedPoints ? 1 : 0;
   call.Sums = { &this->NumberOfHoles, &this->NumberOfFilledHoles };
   call.Spread = [this](elevation::Block& block, const elevation::Ranks& ranks) {
     FillResult patches;
@@ -153,8 +154,9 @@ int vtkFillElevationHoles::RequestData(
     }
     const elevation::Progress filling = SubProgress(progress, 0.55, isToBeFilled ? 0.85 : 0.55);
     options.Monitor = filling;
-    const FillResult patches =
+    FillResult patches =
       elevation::FillHoles(isOpened ? opened : mesh, points.View, std::move(found), options);
+    patches.FirstNumber = elevation::NextHole(input);
 
     MakeSurface(input, mesh, patches, this->InterpolatePointData,
       SubProgress(progress, isToBeFilled ? 0.85 : 0.55, 0.97), block.Outputs[0]);
@@ -191,6 +193,7 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Spacing: " << this->Spacing << "\n";
   os << indent << "Interpolation: " << this->GetInterpolationAsString() << "\n";
   os << indent << "InterpolatePointData: " << (this->InterpolatePointData ? "On" : "Off") << "\n";
+  os << indent << "RemoveUnusedPoints: " << (this->RemoveUnusedPoints ? "On" : "Off") << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "NumberOfHoles: " << this->NumberOfHoles << "\n";

@@ -17,7 +17,8 @@
  *   triangles, counter-clockwise seen from +z. Point arrays FilledPoint (vtkUnsignedCharArray, 1 for
  *   new points) and FilledError (vtkDoubleArray, the standard error of z of new points, 0 for points
  *   of the input, NaN where nothing tells it); cell array HoleId (vtkIdTypeArray, -1 for cells of
- *   the input). Other point arrays: see InterpolatePointData.
+ *   the input). Other point arrays: see InterpolatePointData. Where the input has been filled before,
+ *   its arrays of these names stay, and holes have the numbers after the largest of its triangles.
  * - 1, the report: one closed line for each hole, filled or not, its rim, counter-clockwise. Cell data
  *   HoleId, Status (HoleStatusType), NumberOfEdges, Perimeter, Area, NumberOfInsertedPoints,
  *   Interpolation (the one used).
@@ -255,6 +256,17 @@ public:
 
   ///@{
   /**
+   * Whether points that no cell has are removed from output 0, and the point array OriginalPointIds
+   * (vtkIdTypeArray) is added, as in vtkGridDelaunay2D; it is -1 for new points. Off (default): all
+   * points of the input come first.
+   */
+  vtkSetMacro(RemoveUnusedPoints, bool);
+  vtkGetMacro(RemoveUnusedPoints, bool);
+  vtkBooleanMacro(RemoveUnusedPoints, bool);
+  ///@}
+
+  ///@{
+  /**
    * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
    * without threads by default, as in ParaView. The output is the same, byte for byte, for any
    * number. Small holes are filled several at a time. Holes of more than some ten thousand
@@ -318,6 +330,7 @@ protected:
   double Spacing = 0.0;
   int Interpolation = ADAPTIVE;
   bool InterpolatePointData = true;
+  bool RemoveUnusedPoints = false;
   int NumberOfThreads = 0;
 
   vtkIdType NumberOfHoles = 0;

@@ -243,6 +243,20 @@ public:
 
   ///@{
   /**
+   * Whether points without a triangle are removed from the output, and the point array
+   * OriginalPointIds (vtkIdTypeArray) is added: the input's global ids, or else the places of points
+   * in it (on several ranks, in the points of rank after rank; in a composite, in the block); -1 for
+   * points that constraints add. An array of this name that the input has stays, and goes on: so it
+   * names the points of the first filter's input. UnusedPointIds are such ids, too. Off (default):
+   * all points of the input are in the output.
+   */
+  vtkSetMacro(RemoveUnusedPoints, bool);
+  vtkGetMacro(RemoveUnusedPoints, bool);
+  vtkBooleanMacro(RemoveUnusedPoints, bool);
+  ///@}
+
+  ///@{
+  /**
    * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
    * without threads by default, as in ParaView. The output is the same, byte for byte, for any
    * number. From some thousands of points on, several threads bin the points and grow the
@@ -324,6 +338,7 @@ protected:
   int LatticeMode = AUTOMATIC;
   double Lattice[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   double LatticeTolerance = 0.01;
+  bool RemoveUnusedPoints = false;
   int NumberOfThreads = 0;
 
   vtkIdType NumberOfLattices = 0;

@@ -191,6 +191,7 @@ int vtkTrimOutwardTriangles::RequestData(
   elevation::FilterRun call(
     this, this->Controller, request, inputVector, outputVector, this->Messages);
   call.Second = "boundary";
+  call.CleanedOutputs = this->RemoveUnusedPoints ? 2 : 0;
   call.Sums = { &this->NumberOfOutwardTriangles, &this->NumberOfRecoveredEdges,
     &this->NumberOfPointsLeftOut, &this->NumberOfInsertedPoints };
   call.Maxima = { &this->EffectiveGapTolerance };
@@ -281,6 +282,7 @@ void vtkTrimOutwardTriangles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "GridSteps: " << this->GridSteps[0] << ", " << this->GridSteps[1] << ", "
      << this->GridSteps[2] << ", " << this->GridSteps[3] << "\n";
   os << indent << "RecoverBoundary: " << (this->RecoverBoundary ? "On" : "Off") << "\n";
+  os << indent << "RemoveUnusedPoints: " << (this->RemoveUnusedPoints ? "On" : "Off") << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "EffectiveGapTolerance: " << this->EffectiveGapTolerance << "\n";

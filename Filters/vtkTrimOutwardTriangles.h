@@ -198,6 +198,17 @@ public:
 
   ///@{
   /**
+   * Whether points that no cell has are removed from outputs 0 and 1, each for itself, and the point
+   * array OriginalPointIds (vtkIdTypeArray) is added, as in vtkGridDelaunay2D; it is -1 for points
+   * that are inserted. Off (default): both have all points.
+   */
+  vtkSetMacro(RemoveUnusedPoints, bool);
+  vtkGetMacro(RemoveUnusedPoints, bool);
+  vtkBooleanMacro(RemoveUnusedPoints, bool);
+  ///@}
+
+  ///@{
+  /**
    * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
    * without threads by default, as in ParaView. The output is the same, byte for byte, for any
    * number. Several threads read the triangles, measure the spacing of the points for the
@@ -283,6 +294,7 @@ protected:
   double GridSteps[4] = { 0.0, 0.0, 0.0, 0.0 };
   bool RecoverBoundary = true;
   int BoundaryEdges = FOLLOW_SURFACE;
+  bool RemoveUnusedPoints = false;
   int NumberOfThreads = 0;
 
   double EffectiveGapTolerance = 0.0;

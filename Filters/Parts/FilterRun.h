@@ -62,6 +62,11 @@ public:
     vtkInformationVector** inputs, vtkInformationVector* outputs, vtkStringArray* messages);
 
   std::string Second; ///< what messages call input 1
+  /**
+   * Of how many first outputs points that no cell has are removed. Then points have original ids
+   * (UsedPoints.h): on several ranks global ids or places in the input, rank after rank.
+   */
+  int CleanedOutputs = 0;
   /** Whether to report a composite without any data set; the filter before has reported others. */
   bool IsFirst = false;
   /** Results of the filter: set to 0, and added up (the largest taken) over blocks and ranks. */
@@ -92,6 +97,8 @@ private:
   /** Works on the blocks that are spread over ranks. @return the progress that has been made */
   double GatherSpreadBlocks(
     std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress);
+  void NumberPoints(const std::vector<Place*>& places, const Ranks& ranks) const;
+  void RemoveUnused(Block& block, const Ranks& ranks) const;
   bool RunSpread(const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second,
     const Progress& progress, Message& whyGathered);
   void AddMessages(const std::vector<Place*>& places, const std::vector<Message>& messages,

@@ -266,6 +266,10 @@ void ReconstructParts::Check() const
   {
     throw MakeError<sentences::ConstraintsNotInPieces>();
   }
+  if (this->Set.RemoveUnusedPoints)
+  {
+    throw MakeError<sentences::UnusedPointsInPieces>();
+  }
   if (this->IsTrimmed() && this->Set.Trim.Test != OutwardTest::Exact)
   {
     throw MakeError<sentences::InwardNormalNotInPieces>();

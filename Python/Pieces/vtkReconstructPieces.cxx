@@ -36,6 +36,9 @@ vtkReconstructPieces::vtkReconstructPieces()
     made.FillHoles = this->FillHoles;
     made.InterpolatePointData = this->Fill->GetInterpolatePointData() != 0;
     made.DrapeConstraints = this->Delaunay->GetDrapeConstraints() != 0;
+    made.RemoveUnusedPoints = this->Delaunay->GetRemoveUnusedPoints() ||
+      (this->TrimOutward && this->Trim->GetRemoveUnusedPoints()) ||
+      (this->FillHoles && this->Fill->GetRemoveUnusedPoints());
     made.LongestEdge = this->Fill->GetMaximumEdgeLength();
     made.HasConstraints = this->Delaunay;
     made.HasBoundary = this->Trim;

@@ -128,6 +128,7 @@ struct FillResult
   std::vector<double> StandardErrors;
   std::vector<std::vector<double>> Attributes; ///< as in the options, one value per new point
   std::vector<HoleReport> Reports;
+  Index FirstNumber = 0; ///< of a hole; for those who name them: earlier ones have been filled before
 
   Index NumberOfPoints() const { return this->PointOffsets.back(); }
   Index NumberOfTriangles() const { return this->TriangleOffsets.back(); }

@@ -199,6 +199,8 @@ ELEVATION_SENTENCE(
   ErrorNotInPieces, "{property:MaximumElevationError} is for points in memory, not for pieces.");
 ELEVATION_SENTENCE(ConstraintsNotInPieces,
   "Constraints with {property:DrapeConstraints} are for points in memory, not for pieces.");
+ELEVATION_SENTENCE(UnusedPointsInPieces,
+  "{property:RemoveUnusedPoints} is for a surface in memory; pieces keep all points.");
 ELEVATION_SENTENCE(InwardNormalNotInPieces,
   "{property:OutwardTest} InwardNormal is for a surface in memory, not for pieces.");
 ELEVATION_SENTENCE(BoundaryNotInPieces,
