@@ -3,6 +3,7 @@
 """Points, lines and polygons of vector files. OGR reads them, whatever their format."""
 
 import collections
+import os
 
 import numpy
 
@@ -25,12 +26,15 @@ OPEN_OPTIONS = {
 GIVEN_BY_TOOLS = ("grid_code", "gridcode", "rastervalu", "contour")
 
 
+def head_of(path):
+    with open(path, "rb") as stream:
+        return stream.read(HEAD)
+
+
 def open_file(path):
     """The dataset of a file, open for reading."""
     gdal = gdal_module()
-    with open(path, "rb") as stream:
-        is_table = is_table_with_geometry(stream.read(HEAD), path)
-    kind = "CSV" if is_table else kind_of(path, "vectors")
+    kind = "CSV" if os.path.isfile(path) and is_table_with_geometry(head_of(path), path) else kind_of(path, "vectors")
     if kind is None:
         raise FileError(f"{path}: GDAL knows no vector format that this could be")
     settings = OPEN_OPTIONS.get(kind, [])
