@@ -66,7 +66,12 @@ def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
             known = did_you_mean(name, ReadOptions.__dataclass_fields__)
             raise TypeError(f"read() has no option {name}{known}")
     options = ReadOptions(**options)
-    return finished(path, read_whole(path, options), options)
+    cloud = finished(path, read_whole(path, options), options)
+    if options.project:
+        from ..projecting import project
+
+        project(os.fspath(path), cloud)
+    return cloud
 
 
 def read_whole(path, options):

@@ -14,6 +14,7 @@ from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError, Reason
 from ..names import option
 from ..progress import share, told_items
+from ..projecting import note_on_degrees
 from ..selecting import words_of
 
 OPEN_OPTIONS = {
@@ -202,7 +203,7 @@ def are_angles(layer):
     return (numpy.abs(layer.coordinates()[:, :2]) <= (540.0, 90.0)).all()
 
 
-def read_layer(path, wanted, columns, progress):
+def read_layer(path, wanted, columns, progress, project=True):
     """(Layer with its elevations, notes, crs)."""
     with quiet():
         data = open_file(path)
@@ -216,8 +217,8 @@ def read_layer(path, wanted, columns, progress):
             # GDAL takes GeoJSON that names no system for degrees.
             notes.append(f"x,y are no angles, so it is not in {reference.GetName()}; see {option('crs')}")
             reference = None
-        if reference and reference.IsGeographic():
-            notes.append("x,y are angles: project them first to give triangles their true shape")
+        if reference and reference.IsGeographic() and not project:
+            notes.append(note_on_degrees(True))
         crs = reference.ExportToWkt() if reference else None
     progress(0.85)
     notes += layer.set_heights(columns)
@@ -232,7 +233,7 @@ def read_points(path, options):
     Takes about 20 seconds for a million features.
     """
     layer, notes, crs = read_layer(
-        path, options.layer, options.columns, options.progress
+        path, options.layer, options.columns, options.progress, options.project
     )
     parts = [points[:-1] if kind == "ring" else points for kind, points in layer.parts]
     coordinates = numpy.concatenate(parts)
