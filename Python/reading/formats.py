@@ -203,7 +203,7 @@ FORMATS = (
     ),
     Format(
         "a raster",
-        ".tif .tiff .dem .asc .grd .nc .vrt .img .hgt .flt .bil .dat .zmap",
+        ".tif .tiff .dem .asc .grd .nc .bag .vrt .img .hgt .flt .bil .dat .zmap",
         is_of_gdal("raster"),
         "rasters",
     ),

@@ -60,12 +60,17 @@ def open_raster(path, options):
     try:
         flags = gdal.OF_RASTER | gdal.OF_VERBOSE_ERROR
         settings = OPEN_OPTIONS.get(kind, [])
-        data = gdal.OpenEx(path, flags, [kind], settings)
+        data, notes = gdal.OpenEx(path, flags, [kind], settings), []
+        if data.GetMetadataItem("HAS_SUPERGRIDS") == "TRUE":  # by default GDAL gives its overview alone
+            told = data.GetMetadata()
+            least, most = (float(told.get(f"{end}_RESOLUTION_X", "nan")) for end in ("MIN", "MAX"))
+            notes = [f"the resolution varies from {least:g} to {most:g}: the nodes of all refined cells are read"]
+            data = gdal.OpenEx(path, flags, [kind], settings + ["MODE=RESAMPLED_GRID"])
         variables = {name.rsplit(":", 1)[-1].strip('"/'): name for name, _ in data.GetSubDatasets()}
         if data.RasterCount and not (options.layer and variables):
             if options.layer:
                 raise FileError(f"{path}: has no layers, so {option('layer')} {options.layer} means nothing")
-            return data, []
+            return data, notes
         name = choose_layer(path, options.layer, list(variables), "variables")
         notes = [f"elevation: variable {name} (of {', '.join(variables)})"]
         data = gdal.OpenEx(variables[name], flags, [], settings)

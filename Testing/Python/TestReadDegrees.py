@@ -66,6 +66,18 @@ class Degrees(Program):
                 place = expected(9 + 0.5 * STEP, 47 - 0.5 * STEP)
                 numpy.testing.assert_allclose(coordinates(cloud)[0, :2], place, rtol=0, atol=0.01)
 
+    def test_axes_of_netcdf_in_degrees_are_told_without_a_system(self):
+        data = gdal.GetDriverByName("netCDF").CreateMultiDimensional(self.path("a.nc"))
+        group, double = data.GetRootGroup(), gdal.ExtendedDataType.Create(gdal.GDT_Float64)
+        axes = [group.CreateDimension(name, None, None, count) for name, count in (("lat", 12), ("lon", 15))]
+        for axis, first, unit in zip(axes, (47.0, 9.0), ("degrees_north", "degrees_east")):
+            array = group.CreateMDArray(axis.GetName(), [axis], double)
+            array.Write(first + STEP * numpy.arange(axis.GetSize()))
+            array.SetUnit(unit)
+        group.CreateMDArray("depth", axes, double).Write(numpy.random.default_rng(1).normal(size=(12, 15)))
+        array = group = data = None
+        self.assertTrue([note for note in read(self.path("a.nc")).notes if "are angles" in note])
+
     def test_metres_are_not_called_degrees(self):
         for name, driver, place in (
             ("a.asc", "AAIGrid", (30.0, 2.0, 0.0, 60.0, 0.0, -2.0)), ("b.asc", "AAIGrid", (500000.0, 0.5, 0.0, 60.0, 0.0, -0.5)),
