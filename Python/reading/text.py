@@ -17,9 +17,8 @@ import numpy
 
 from ..clouds import WHOLE, Cloud, Part, add_array, make_points
 from .columns import advice_on_columns, choose_columns
+from .known import COMMENT_MARKS, SUMMARY
 from .layouts import (
-    COMMENT_MARKS,
-    SUMMARY,
     check_marks,
     check_names,
     doubtful_marks,
