@@ -701,6 +701,39 @@ class OthersBeside(Tables):
         self.assertIn("choose --columns 2,1,3 or --columns 1,2,3\n", self.refusal(text))
 
 
+class LinesOfOtherKinds(Tables):
+    def test_they_are_an_error_that_says_how_they_are_left_out(self):
+        points = [(452000 + 13.5 * i, 5411000 + i * i % 90, 230.25 + i % 7) for i in range(40)]
+
+        def rows(separator, form="{}"):
+            return [separator.join(form.format(v) for v in point) for point in points]
+
+        profiles = rows(" ")
+        profiles[0:0], profiles[21:21], profiles[43:] = ["Profile 1"], ["EOD", "Profile 2"], ["EOD"]
+        station = [f"{7 + i},{row},GRD" for i, row in enumerate(rows(","))]
+        station[3:3], station[9:9], station[30:30] = ["JB,NM16"], ["BS,OP1,BP7"], ["--a word"]
+        codes = [f"P{i} {row}" for i, row in enumerate(rows(" "))]
+        codes[0:0], codes[12:12], codes[30:30] = ["ST 12.5 1.5"], ["ST 13.5 1.5"], ["08 1 2"]
+        for lines, first, left_out in (
+            (profiles, "line 22", "line 22 (EOD), line 23 (Profile 2), line 44 (EOD)"),
+            (station, "line 4", "line 4 (JB,NM16), line 10 (BS,OP1,BP7), line 31 (--a word)"),
+            (codes, "line 13", "line 13 (ST 13.5 1.5), line 31 (08 1 2)"),
+            (profiles + ["EOD"] * 50, "line 22", "line 44 (EOD) and 50 more"),
+        ):
+            text = "\n".join(lines) + "\n"
+            error = self.refusal(text)
+            self.assertIn(f", {first}: ", error)
+            self.assertTrue(error.endswith("; --skip-bad-lines leaves out such lines"), error)
+            cloud = self.read(text, skip_bad_lines=True)
+            self.assert_coordinates(cloud, points)
+            told = [note for note in cloud.notes if note.startswith("lines of other kinds are left out: ")]
+            self.assertIn(left_out, told[0])
+        self.assertIn("no line is a row", self.refusal(
+            "a 1 2 3\nb 2 3 4\n", columns="1,2,3", skip_bad_lines=True))
+        # A line with a wrong column is no line of another kind.
+        self.assertIn("--columns chooses", self.refusal("1 2 3\n4 5 6\n4 five 6 7\n"))
+
+
 class OneNameMissing(Tables):
     def test_the_only_column_left_is_taken_and_that_is_told(self):
         rows = "".join(f"{100 + i * 1.5},{(i * 37) % 100 + 0.25},{i % 7 + 0.5}\n" for i in range(50))
