@@ -34,6 +34,7 @@ class Cloud:
     words    {name: Words} of columns of text
     files    of merged files, Words with the file of each point, else None
     grid     the PixelGrid of points from a raster, or None
+    frame    the Frame of that raster, where its steps are even, or None
     pixels   pixels_of() its pixels, where ranks may have others of the same raster
     """
 
@@ -46,12 +47,12 @@ class Cloud:
         self.largest_cell = 0.0
         self.z_name, self.is_horizon = "", False
         self.words, self.files = {}, None
-        self.grid = self.pixels = None
+        self.grid = self.pixels = self.frame = None
 
     def copy(self):
         """One that can be changed; the points themselves are shared, as nothing changes them."""
         copied = Cloud(self.points, self.notes, self.left_out, self.lines, self.crs)
-        copied.grid = self.grid
+        copied.grid, copied.frame = self.grid, self.frame
         copied.largest_cell, copied.files = self.largest_cell, self.files
         copied.z_name, copied.is_horizon = self.z_name, self.is_horizon
         copied.words = dict(self.words)
@@ -75,6 +76,93 @@ class PixelGrid:
             numpy.allclose(self.steps, other.steps, atol=1e-6 * abs(steps).max())
             and (abs(between - numpy.round(between)) < 0.01).all()
         )
+
+
+EVEN = 1e-3  # of a step: how far nodes may lie from places of even steps
+
+
+@dataclasses.dataclass(frozen=True)
+class Frame:
+    """The pixels of a raster, each with its place.
+
+    transform  GDAL's six numbers: x of the first corner, the steps of x by column and by row; then y
+    """
+
+    transform: tuple
+    columns: int
+    rows: int
+
+    def first(self):
+        """x and y of the first centre."""
+        x, a, b, y, d, e = self.transform
+        return x + 0.5 * (a + b), y + 0.5 * (d + e)
+
+    def is_turned(self):
+        return self.transform[2] != 0.0 or self.transform[4] != 0.0
+
+    def row(self, number):
+        """x and y of the centres of a row."""
+        (x, y), (_, a, b, _, d, e) = self.first(), self.transform
+        column = numpy.arange(self.columns, dtype="f8")
+        return x + a * column + b * number, y + d * column + e * number
+
+    def centres(self):
+        """x, (columns,), and y, (rows,), of the centres; of a turned raster (rows, columns) each."""
+        column, row = numpy.arange(self.columns, dtype="f8"), numpy.arange(self.rows, dtype="f8")
+        if self.is_turned():
+            column, row = numpy.meshgrid(column, row)
+        (x, y), (_, a, b, _, d, e) = self.first(), self.transform
+        if self.is_turned():
+            return x + a * column + b * row, y + d * column + e * row
+        return x + a * column, y + e * row
+
+    def places(self, xy):
+        """(n, 2) columns and rows of places; those of centres are whole numbers."""
+        _, a, b, _, d, e = self.transform
+        x, y = (xy - self.first()).T
+        return numpy.column_stack((e * x - b * y, a * y - d * x)) / (a * e - b * d)
+
+    def part(self, low, high):
+        """The Frame of the same steps whose pixels go from (column, row) low to before high."""
+        x, a, b, y, d, e = self.transform
+        (i, j), (columns, rows) = low, numpy.subtract(high, low)
+        corner = (x + a * i + b * j, a, b, y + d * i + e * j, d, e)
+        return Frame(tuple(map(float, corner)), int(columns), int(rows))
+
+    def is_same(self, other):
+        """Whether the pixels of both are the same, but for rounding."""
+        if other is None or (self.columns, self.rows) != (other.columns, other.rows):
+            return False
+        ends = [(-0.5, -0.5), (self.columns, -0.5), (-0.5, self.rows)]
+        corners = [other.part(end, end).first() for end in ends]
+        return bool(numpy.allclose(self.places(numpy.array(corners)), ends, rtol=0, atol=EVEN))
+
+
+def frame_of_nodes(x, y):
+    """The Frame of a raster with these nodes, (rows, columns) each; None where steps are not even."""
+    if min(x.shape) < 2:
+        return None
+    if y[0, 0] < y[-1, 0]:  # rows go from north to south
+        x, y = x[::-1], y[::-1]
+    rows, columns = x.shape
+    a, d = ((v[0, -1] - v[0, 0]) / (columns - 1) for v in (x, y))
+    b, e = ((v[-1, 0] - v[0, 0]) / (rows - 1) for v in (x, y))
+    if a * e == b * d:
+        return None
+    corner = x[0, 0] - 0.5 * (a + b), y[0, 0] - 0.5 * (d + e)
+    frame = Frame(tuple(map(float, (corner[0], a, b, corner[1], d, e))), columns, rows)
+    across, down = frame.centres() if frame.is_turned() else numpy.meshgrid(*frame.centres())
+    away = max(abs(across - x).max(), abs(down - y).max())
+    return frame if away <= EVEN * min(math.hypot(a, d), math.hypot(b, e)) else None
+
+
+def frame_of_all(frames):
+    """The Frame of rasters side by side, on whose pixels they all are; None where one has none."""
+    if not all(frames):
+        return None
+    ends = [one.part(at, at).first() for one in frames for at in ((0, 0), (one.columns - 1, one.rows - 1))]
+    ends = numpy.rint(frames[0].places(numpy.array(ends)))
+    return frames[0].part(ends.min(axis=0), ends.max(axis=0) + 1)
 
 
 def pixels_of(valid, row, column):
@@ -234,10 +322,7 @@ def parts_of_lines(data):
     """(names, parts) of the lines and polygons of vtkPolyData, as make_lines() takes them."""
     if data.GetPoints() is None:
         return [], []
-    xyz = vtk_to_numpy(data.GetPoints().GetData()).astype("f8")
-    words = data.GetCellData().GetAbstractArray(LINE_NAMES)
-    is_named = isinstance(words, vtkStringArray)
-    is_named = is_named and words.GetNumberOfValues() == data.GetNumberOfCells()
+    xyz, named = vtk_to_numpy(data.GetPoints().GetData()).astype("f8"), names_of_cells(data)
     first, names, parts = data.GetNumberOfVerts(), [], []
     for cells, kind in ((data.GetLines(), "line"), (data.GetPolys(), "polygon")):
         ids, ends = (
@@ -246,10 +331,23 @@ def parts_of_lines(data):
         for begin, end in zip(ends[:-1], ends[1:]):
             part = xyz[ids[begin:end]]
             if len(part):
-                names.append(words.GetValue(first) if is_named else f"{kind} (cell {first})")
+                cell = f"{kind} (cell {first})"
+                names.append(named.get(cell, cell))
                 parts.append(numpy.vstack((part, part[:1])) if kind == "polygon" else part)
             first += 1
     return names, parts
+
+
+def names_of_cells(data):
+    """{how the filters call a line or polygon: its name}; empty where make_lines() was given no names."""
+    words = data.GetCellData().GetAbstractArray(LINE_NAMES)
+    if not isinstance(words, vtkStringArray) or words.GetNumberOfValues() != data.GetNumberOfCells():
+        return {}
+    first, polygon = data.GetNumberOfVerts(), data.GetNumberOfVerts() + data.GetNumberOfLines()
+    return {
+        f"{'line' if cell < polygon else 'polygon'} (cell {cell})": words.GetValue(cell)
+        for cell in range(first, words.GetNumberOfValues())
+    }
 
 
 def bare_lines(data):
@@ -342,7 +440,7 @@ def merged(names, clouds):
     result = Cloud(append.GetOutput(), notes, crs=crs)
     first = clouds[0].grid
     if first and all(cloud.grid and cloud.grid.continues(first) for cloud in clouds):
-        result.grid = first
+        result.grid, result.frame = first, frame_of_all([cloud.frame for cloud in clouds])
     kept = result.points.GetPointData().GetNumberOfArrays()
     if any(cloud.points.GetPointData().GetNumberOfArrays() > kept for cloud in clouds):
         result.notes.append("point arrays that not all files have are left out")

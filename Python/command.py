@@ -34,8 +34,8 @@ from .results import Failure, NoPicture, Progress, Results, WrongOption, write_r
 from .selecting import NothingChosen, columns_in, none_chosen, values_to_make
 from .spreading import can_be_scattered, gather_surface, scatter
 from .supervisor import allow_stops
-from .writing.grids import write_prj
-from .writing.outputs import beside, write_output
+from .writing.grids import beside, write_prj
+from .writing.outputs import write_output
 
 
 class Run:

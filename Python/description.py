@@ -24,6 +24,12 @@ def view_angles(view):
     return (bearing % 360.0, height)
 
 
+def pixels(text):
+    """A number above 0, FILE of "like FILE", or "". Raises ValueError."""
+    word, _, path = text.partition(" ")
+    return path.strip() if word == "like" and path.strip() else text and KINDS["step"].convert(text)
+
+
 @dataclasses.dataclass(frozen=True)
 class Kind:
     """What a property takes.
@@ -96,6 +102,10 @@ KINDS = {
     "threads": Kind("NUMBER", "int", most=1024),
     "ordinal": Kind("NUMBER", "int", least=1),
     "step": Kind("STEP", "double", is_above=True, unit="units of x and y, or of z"),
+    "pixels": Kind(
+        "[STEP|like FILE]", words="a number above 0, or like FILE, or nothing where the points are from a grid",
+        make=pixels,
+    ),
     "elevation": Kind("VALUE", "string", "an elevation", float, unit="units of z"),
     "text": Kind("TEXT", words="text"),
     "name": Kind("NAME", words="a name"),

@@ -20,7 +20,8 @@ from .pieces import MEMORY, SUFFIX as OF_PIECES, check_files, check_given, memor
 from .properties import COLOURS, PROPERTIES, check_together, option_of
 from .results import WrongOption
 from .selecting import condition
-from .writing.outputs import OUTPUTS, beside, check_gdal, default_name
+from .writing.grids import beside
+from .writing.outputs import OUTPUTS, check_gdal, default_name
 
 READ_OPTIONS = [field.name for field in dataclasses.fields(ReadOptions)]
 
@@ -97,6 +98,9 @@ def make_parser():
 def parse_arguments(arguments):
     parser = make_parser()
     arguments = sys.argv[1:] if arguments is None else list(arguments)
+    if ["--grid", "like"] in [arguments[i : i + 2] for i in range(len(arguments) - 2)]:
+        at = arguments.index("--grid") + 1
+        arguments[at : at + 2] = [" ".join(arguments[at : at + 2])]
     end = arguments.index("--") if "--" in arguments else len(arguments)
     options = parser.parse_intermixed_args(arguments[:end])
     options.files += arguments[end + 1 :]
@@ -157,7 +161,7 @@ def options_of(options, files, value=None):
     if options.output is None:
         options.output = stem + "_surface.vtp" + "d" * options.in_pieces
     for one in OUTPUTS:
-        wanted = getattr(options, one.step) if one.step else getattr(options, one.name) is not None
+        wanted = getattr(options, one.step or one.name) is not None
         if wanted and not getattr(options, one.name):
             setattr(options, one.name, default_name(one, options.output))
     stem = os.path.splitext(options.output)[0]
@@ -199,6 +203,7 @@ def files_of(options):
 
 def check_options(options):
     """Refuses what could not be read or written, before any work is done."""
+    like = options.grid if isinstance(options.grid, str) else None
     try:
         for path, one in files_of(options):
             suffixes = (OF_PIECES,) if options.in_pieces else one.suffixes
@@ -210,6 +215,8 @@ def check_options(options):
             reference_of(options.crs)
         if options.picture is not None:
             check_suffix(options.picture, (".png",), "written as a picture")
+        if like:
+            reading.frame_of(like)
         for path in options.files:
             reading.check_options(path, **read_options(options))
         if options.in_pieces:
@@ -221,7 +228,7 @@ def check_options(options):
     wanted = [p for p in (options.picture, options.report) if p]
     for path, _ in files_of(options):
         wanted += [path, *beside(path)]
-    inputs = [p for p in (*options.files, options.faults, options.boundary) if p]
+    inputs = [p for p in (*options.files, options.faults, options.boundary, like) if p]
     for i, path in enumerate(wanted):
         check_writable(path)
         if os.path.abspath(path) in map(os.path.abspath, wanted[:i]):

@@ -61,7 +61,7 @@ def check_together(given, name_of=str, among=PROPERTIES):
         if value is None or value is False:
             continue
         for needs, other, words in DESCRIBED[name].rules():
-            if needs and other in among and not given.get(other):
+            if needs and other in among and given.get(other) in (None, False, 0):
                 raise ValueError(f"{name_of(name)} {words.format(name_of(other))}")
             if not needs and value and given.get(other):
                 raise ValueError(f"{name_of(name)} and {name_of(other)} {words}")

@@ -23,7 +23,7 @@ from .clouds import Cloud, coordinates_of, make_lines, make_points
 from .description import KINDS, listing, view_angles
 from .given_lines import fitted
 from .heights import check_heights, heights_on_ranks
-from .holes import are_bridged, hole_counts
+from .holes import BridgedVoids, hole_counts
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .names import argument
 from .opening import length_to_open
@@ -137,7 +137,7 @@ class Reconstruction:
     points    the output of a filter in which points of the input come first
     reasons   (n,) numbers of these: 0 for points in triangles of the triangulation, or why they are in
               none, as vtkGridDelaunay2D counts reasons; IN_NO_TRIANGLE where it has none
-    bridged   which of the holes are voids that triangles bridge, see are_bridged()
+    bridged   which of the holes are voids that triangles bridge, see BridgedVoids
     hole_counts        (found, filled)
     lattice   that of the triangulation, see lattice_of(), or None
     times     {step: seconds}
@@ -212,20 +212,30 @@ class Reconstruction:
             f"{self.surface.GetNumberOfPolys():,} triangles>"
         )
 
-    def to_grid(self, step: float) -> Any:
-        """The surface at the centres of square pixels, interpolated in its triangles.
+    def to_grid(self, step: Optional[float] = None, *, like: Any = None) -> Any:
+        """The surface at the centres of pixels, interpolated in its triangles.
+
+        step  the width of square pixels, whose edges are multiples of it. None, or that of the raster
+              or regular grid that the points are from: on the pixels of that
+        like  a Grid, what read() returns of a raster, or the file of one: on its pixels
 
         Returns a Grid with z, (rows, columns) and NaN outside; x, (columns,); y, (rows,), falling;
-        and error, (rows, columns) or None. The edges of pixels are multiples of step. Raises
-        ElevationSurfaceError for a step that is too small or too large.
+        and error, (rows, columns) or None. Grids of the same pixels can be subtracted, and write()
+        writes one. Raises ElevationSurfaceError for a step that is too small or too large, and for
+        like where it is no raster or has another coordinate reference system.
         """
         from .writing.grids import grid_of
 
         try:
-            step = KINDS["step"].convert(step)
+            step = None if step is None else KINDS["step"].convert(step)
         except ValueError:
             raise ValueError(f"step takes a number above 0, not {step}") from None
-        return grid_of(self.surface, step)
+        if step is not None and like is not None:
+            raise ValueError("step or like, not both")
+        grid, notes = grid_of(self, step, like)
+        for note in notes:
+            warnings.warn(note, ElevationSurfaceWarning, stacklevel=2)
+        return grid
 
     def plot(
         self,
@@ -309,7 +319,9 @@ def run_chain(
         result.fill = last = run("fill", filling)
         result.triangles["filled"] = total(ranks, last.GetOutput().GetNumberOfPolys())
         result.holes = filling.GetOutput(1)
-        result.bridged = are_bridged(last.GetOutput(), result.holes, ranks)
+        voids = BridgedVoids(result.holes, ranks)
+        voids.see(last.GetOutput())
+        result.bridged = voids.find()
         result.hole_counts = hole_counts(ranks, result)
     result.surface = last.GetOutput()
     result.points, result.reasons = followed(

@@ -73,9 +73,26 @@ def read_whole(path, options):
     whole = options.progress
     with unpacked(os.fspath(path), whole) as (local, begun):
         options.progress = share(whole, begun, 0.7)
-        cloud = read_any(local, options)
+        cloud = read_by_format(local, options)
     options.progress = whole
     return cloud
+
+
+def frame_of(path):
+    """(the Frame of the raster in a file, its coordinate reference system or None). Raises FileError
+    where it holds none."""
+    with unpacked(os.fspath(path)) as (local, _):
+        kind, _ = recognise(local)
+        if kind.module == "rasters":
+            from .rasters import frame_of as read_frame
+
+            frame, crs = read_frame(local)
+        else:
+            cloud = read_any(local, ReadOptions(points_only=True))
+            frame, crs = cloud.frame, cloud.crs
+        if frame is None:
+            raise FileError(f"{local}: is no raster with even steps, so there are no pixels like its own")
+    return frame, crs
 
 
 def finished(path, cloud, options):
@@ -93,7 +110,7 @@ def finished(path, cloud, options):
     return cloud
 
 
-def read_any(path, options):
+def read_by_format(path, options):
     """The Cloud of a file as its reader gives it, with its nulls."""
     kind, notes = recognise(path)
     check_use(path, kind, options)

@@ -61,7 +61,7 @@ def choose_columns(path, rows, consecutive, number, names, width, columns, neede
     """
     search = Search(path, rows, consecutive, number, names, width, needed, advice)
     if columns:
-        search.as_said(columns)
+        search.use_given(columns)
     elif not search.by_names():
         search.by_values()
     search.look_at_values()
@@ -121,7 +121,7 @@ class Search:
 
     # -- what the user said
 
-    def as_said(self, columns):
+    def use_given(self, columns):
         plain_names = ["".join(plain(in_brackets(name)[0])) for name in self.names or []]
         self.indices = []
         for axis, column in zip(self.axes, columns):

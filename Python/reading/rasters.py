@@ -7,7 +7,7 @@ import os
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
 
-from ..clouds import Cloud, grid_of, make_points, pixels_of
+from ..clouds import Cloud, Frame, ReadOptions, frame_of_nodes, grid_of, make_points, pixels_of
 from .column_names import direction_of
 from .formats import HEAD, is_saga_header, numbers_of
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
@@ -128,22 +128,20 @@ def axes_of(path, band):
 
 
 def placement(path, data, band, notes):
-    """A function that gives x and y of the pixel centres in a row."""
-    found = data.GetGeoTransform(can_return_null=True)
-    column = numpy.arange(data.RasterXSize, dtype="f8")
-    if found:
-        x, a, b, y, d, e = found
-        x, y = x + 0.5 * (a + b), y + 0.5 * (d + e)
-        return lambda row: (x + a * column + b * row, y + d * column + e * row)
-    axes = axes_of(path, band)
+    """(a function that gives x and y of the pixel centres in a row, the Frame or None)."""
+    found, size = data.GetGeoTransform(can_return_null=True), (data.RasterXSize, data.RasterYSize)
+    axes = None if found else axes_of(path, band)
     if axes:
         notes.append("the steps of x and y differ")
-        return lambda row: (axes[0], numpy.full(len(column), axes[1][row]))
-    why = "no georeferencing in the file"
-    if data.GetGCPCount():
-        why = "placed by ground control points only, which are not applied (see gdalwarp)"
-    notes.append(f"{why}: x and y are column and row, from bottom left")
-    return lambda row: (column, numpy.full(len(column), data.RasterYSize - 1.0 - row))
+        return lambda row: (axes[0], numpy.full(size[0], axes[1][row])), None
+    if not found:
+        why = "no georeferencing in the file"
+        if data.GetGCPCount():
+            why = "placed by ground control points only, which are not applied (see gdalwarp)"
+        notes.append(f"{why}: x and y are column and row, from bottom left")
+        found = (-0.5, 1.0, 0.0, size[1] - 0.5, 0.0, -1.0)
+    frame = Frame(tuple(found), *size)
+    return frame.row, frame
 
 
 def note_of_dem(path):
@@ -219,7 +217,7 @@ def read_points(path, options):
         data, notes = open_raster(path, options)
         band = choose_band(path, data, options, notes)
         notes += notes_of_raster(path, data, band, options)
-        place = placement(path, data, band, notes)
+        place, frame = placement(path, data, band, notes)
         begun = WORDS if data.GetDriver().ShortName in TEXT_KINDS else 0.0
         progress = share(options.progress, begun, 1.0)
         points, count = numpy.empty((data.RasterYSize * data.RasterXSize, 3)), 0
@@ -244,8 +242,18 @@ def read_points(path, options):
     if count < len(points):
         cloud.left_out[Reason("pixel", "without data")] = len(points) - count
     cloud.crs = reference.ExportToWkt() if reference else None
-    cloud.grid = grid
+    cloud.grid, cloud.frame = grid, frame
     return cloud
+
+
+def frame_of(path):
+    """(the Frame of a raster or None, its coordinate reference system or None)."""
+    with quiet():
+        options = ReadOptions()
+        data, _ = open_raster(path, options)
+        _, frame = placement(path, data, choose_band(path, data, options, []), [])
+        reference = data.GetSpatialRef()
+        return frame, reference.ExportToWkt() if reference else None
 
 
 def name_of_z(band):
@@ -314,4 +322,5 @@ def points_of_raster(path, x, y, z, ids=None):
         array.SetName("GlobalNodeIds")
         cloud.points.GetPointData().SetGlobalIds(array)
     cloud.pixels, cloud.grid = pixels, grid_of([pixels])
+    cloud.frame = frame_of_nodes(x, y) if ids is None else None
     return cloud

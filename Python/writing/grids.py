@@ -4,79 +4,189 @@
 
 import dataclasses
 import math
+import os
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from ..clouds import corner_flags, slices
+from ..clouds import EVEN, Frame, check_system, corner_flags, slices
 from ..gdal_common import gdal_module, reference_of, write_through_memory
-from ..messages import ElevationSurfaceError
-from ..paths import plain_stem, suffix_of
+from ..messages import ElevationSurfaceError, FileError
+from ..paths import check_suffix, plain_stem, suffix_of
+from ..progress import no_progress
+from ..reading import frame_of
 
 MOST_PIXELS = 250_000_000
 MOST_AT_ONCE = 2_000_000  # of rows or pixels of triangles; bounds the memory taken
 NEAR = 1e-9  # steps: a centre so close to an edge lies on it
+ON_NODE = 0.01  # steps: points so close to the nodes of a lattice are on them
 
 
 @dataclasses.dataclass(frozen=True)
 class Grid:
-    """Elevations at the centres of square pixels.
+    """Elevations at the centres of pixels.
 
-    z      (rows, columns) float64, north up; NaN outside the surface
-    x, y   (columns,) and (rows,) coordinates of the centres; y falls
+    z      (rows, columns) float64; NaN outside the surface
     error  (rows, columns) standard error of filled elevations, 0 where points are, NaN where it is
            not known; None where nothing was filled
-    step   width of a pixel; the edges of pixels are multiples of it
+    frame  the Frame of the pixels
+    crs    the coordinate reference system as WKT or AUTHORITY:CODE, or None
     """
 
     z: numpy.ndarray
-    x: numpy.ndarray
-    y: numpy.ndarray
     error: object
-    step: float
+    frame: Frame
+    crs: object = None
+
+    @property
+    def x(self):
+        """(columns,) x of the centres; (rows, columns) where the grid is turned."""
+        return self.frame.centres()[0]
+
+    @property
+    def y(self):
+        """(rows,) y of the centres, which falls; (rows, columns) where the grid is turned."""
+        return self.frame.centres()[1]
+
+    @property
+    def step(self):
+        """The width of a pixel."""
+        return math.hypot(self.frame.transform[1], self.frame.transform[4])
+
+    def __sub__(self, other):
+        """The Grid of differences of two surfaces at the same pixels. Raises ValueError."""
+        if not self.frame.is_same(other.frame):
+            raise ValueError("the two grids have different pixels: make one by to_grid(like=the other)")
+        errors = [grid.error for grid in (self, other) if grid.error is not None]
+        error = numpy.sqrt(sum(error**2 for error in errors)) if errors else None
+        return dataclasses.replace(self, z=self.z - other.z, error=error)
+
+    def write(self, path):
+        """Writes the grid in the format of the suffix: .tif, .asc, or .dat or .zmap for ZMAP+.
+
+        Returns notes, one line each. Raises OSError, and FileError for another suffix.
+        """
+        path = os.fspath(path)
+        check_suffix(path, tuple(FORMATS), "written as a grid")
+        notes = write_grid(self, path)
+        for other in beside(path) if self.crs else []:
+            write_prj(other, self.crs)
+        return notes
 
 
-def grid_of(surface, step, progress=None):
-    """The Grid of a surface: vtkPolyData with triangles; FilledError is its array of errors.
+def frame_of_step(surface, step):
+    """(Frame of square pixels over a surface, 0); their edges are multiples of step."""
+    (x0, x1), (y0, y1) = extent_of(vtk_to_numpy(surface.GetPoints().GetData()), surface)
+    first, last = [math.floor(v / step) for v in (x0, y0)], [math.ceil(v / step) for v in (x1, y1)]
+    columns, rows = (max(1, b - a) for a, b in zip(first, last))
+    return Frame((first[0] * step, step, 0.0, last[1] * step, 0.0, -step), columns, rows), 0.0
+
+
+def extent_of(points, surface):
+    """(lowest, highest) of each of the first two columns of the points that triangles use."""
+    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
+    used = points[corner_flags(triangles, len(points)), :2].astype("f8")
+    return list(zip(used.min(axis=0), used.max(axis=0)))
+
+
+def frame_of_lattice(lattice, surface):
+    """The Frame whose centres are the nodes of a lattice, see lattice_of(), that a surface covers."""
+    steps = sorted(lattice["steps"], key=lambda step: abs(step[0]) / math.hypot(*step))
+    down, across = (numpy.array(step) for step in steps)
+    across = across if across[0] > 0 else -across
+    down = down if across[0] * down[1] < across[1] * down[0] else -down
+    x, y = lattice["origin"] - 0.5 * (across + down)
+    nodes = Frame((x, across[0], down[0], y, across[1], down[1]), 1, 1)
+    places = nodes.places(vtk_to_numpy(surface.GetPoints().GetData())[:, :2].astype("f8"))
+    (left, right), (top, bottom) = extent_of(places, surface)
+    low = math.ceil(left - ON_NODE), math.ceil(top - ON_NODE)
+    return nodes.part(low, (math.floor(right + ON_NODE) + 1, math.floor(bottom + ON_NODE) + 1))
+
+
+def own_frame(result):
+    """(Frame of the raster or lattice that the points of a Reconstruction are from, how far in steps
+    they may be from centres); (None, 0) for other points."""
+    if result.cloud.frame:
+        return result.cloud.frame, 0.0
+    return (frame_of_lattice(result.lattice, result.surface), ON_NODE) if result.lattice else (None, 0.0)
+
+
+def frame_for(result, step, like):
+    """(Frame, how far points may be from its centres) of a grid as to_grid() takes its arguments."""
+    if like is not None:
+        frame, crs = (like.frame, like.crs) if hasattr(like, "frame") else frame_of(like)
+        name = "like" if hasattr(like, "frame") else os.fspath(like)
+        if frame is None:
+            raise ElevationSurfaceError(f"{name}: has no raster with even steps")
+        notes = check_system(name, crs, "the surface", result.crs)
+        return frame, own_frame(result)[1], notes
+    frame, near = own_frame(result)
+    if step is None and frame is None:
+        raise ElevationSurfaceError("a step is needed: the points are from no raster or lattice with even steps")
+    square = frame and (abs(numpy.array(frame.transform)[[1, 2, 4, 5]]) - (step, 0, 0, step) if step else 0.0)
+    if step is None or frame and abs(square).max() <= EVEN * step:
+        return frame, near, []
+    return *frame_of_step(result.surface, step), []
+
+
+def grid_of(result, step=None, like=None, progress=None):
+    """(Grid of the surface of a Reconstruction, notes); arguments are those of to_grid().
 
     Raises ElevationSurfaceError where the grid would be too large, or no pixel has its centre in
     the surface. Takes about a second for a million triangles and pixels each.
     """
-    points = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8", copy=False)
-    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    used = corner_flags(triangles, len(points))
-    (x0, x1), (y0, y1) = ((points[used, i].min(), points[used, i].max()) for i in (0, 1))
-    first, last = [math.floor(v / step) for v in (x0, y0)], [math.ceil(v / step) for v in (x1, y1)]
-    columns, rows = (max(1, b - a) for a, b in zip(first, last))
-    if columns * rows > MOST_PIXELS:
+    frame, near, notes = frame_for(result, step, like)
+    words = f"a grid with a step of {frame.transform[1]:g}"
+    if frame.columns * frame.rows > MOST_PIXELS:
         raise ElevationSurfaceError(
-            f"a grid with a step of {step:g} would have {columns:,} x {rows:,} pixels; "
+            f"{words} would have {frame.columns:,} x {frame.rows:,} pixels; "
             f"at most {MOST_PIXELS:,} are made: use a larger step"
         )
-    x = (first[0] + 0.5 + numpy.arange(columns)) * step
-    y = (last[1] - 0.5 - numpy.arange(rows)) * step
+    z, error = interpolated(result.surface, frame, near, progress)
+    if not numpy.isfinite(z).any():
+        raise ElevationSurfaceError(
+            f"no pixel of {words} has its centre in the surface: use a smaller step"
+        )
+    return Grid(z, error, frame, result.crs), notes
+
+
+def interpolated(surface, frame, near=0.0, progress=None):
+    """(rows, columns) elevations and their errors, or None, at the centres of a Frame.
+
+    near  steps: points so close to a centre are on it
+    """
+    points = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8")
+    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    points[:, :2] = on_centres(frame, points[:, :2], near)
     errors = surface.GetPointData().GetArray("FilledError")
     values = [points[:, 2]] + ([vtk_to_numpy(errors)] if errors else [])
-    layers = [numpy.full(rows * columns, numpy.nan) for _ in values]
+    layers = [numpy.full(frame.rows * frame.columns, numpy.nan) for _ in values]
     for part in slices(len(triangles), MOST_AT_ONCE):
         if progress:
             progress(part.start / len(triangles))
-        for ids, pixels, weights in covered(points, triangles[part], x, y, step):
+        for ids, pixels, weights in covered(points, triangles[part], frame.columns, frame.rows):
             for layer, value in zip(layers, values):
                 layer[pixels] = sum(w * value[ids[:, i]] for i, w in enumerate(weights))
-    layers = [layer.reshape(rows, columns) for layer in layers]
-    if not numpy.isfinite(layers[0]).any():
-        raise ElevationSurfaceError(
-            f"no pixel of a grid with a step of {step:g} has its centre in the surface: "
-            "use a smaller step"
-        )
-    return Grid(layers[0], x, y, layers[1] if errors else None, step)
+    layers = [layer.reshape(frame.rows, frame.columns) for layer in layers]
+    return layers[0], layers[1] if errors else None
 
 
-def covered(points, triangles, x, y, step):
+def on_centres(frame, xy, near):
+    """(n, 2) columns and rows of points. A point that is a centre but for rounding is one."""
+    places = frame.places(xy)
+    finite = abs(xy[numpy.isfinite(xy)]).max(initial=0.0)
+    rounding = 8.0 * numpy.spacing(finite) / min(numpy.hypot(*numpy.reshape(frame.transform, (2, 3))[:, 1:]))
+    whole = numpy.rint(places)
+    is_near = abs(places - whole).max(axis=1) <= max(near, rounding)
+    places[is_near] = whole[is_near]
+    return places
+
+
+def covered(points, triangles, columns, rows):
     """Yields (corners, pixels, weights) of the pixels whose centres lie in triangles.
 
-    corners  (n, 3) points; pixels (n,) places in the grid; weights three (n,) of the corners
+    corners  (n, 3) points, of which x and y are columns and rows; pixels (n,) places in the grid;
+    weights  three (n,) of the corners
     """
 
     def box(axis):
@@ -85,28 +195,27 @@ def covered(points, triangles, x, y, step):
 
     # Only triangles whose box has the centre of a pixel.
     low, high = box(0)
-    reach = numpy.ceil((low - x[0]) / step - NEAR) <= numpy.floor((high - x[0]) / step + NEAR)
-    triangles = triangles[reach]
+    triangles = triangles[numpy.ceil(low - NEAR) <= numpy.floor(high + NEAR)]
     low, high = box(1)
-    start = numpy.ceil((y[0] - high) / step - NEAR).astype("i8")
-    stop = numpy.floor((y[0] - low) / step + NEAR).astype("i8") + 1
-    start, stop = numpy.maximum(start, 0), numpy.minimum(stop, len(y))
-    for owner, row in expanded(start, stop):
+    for owner, row in expanded(*within(low, high, rows)):
         corners = triangles[owner]
-        left, right = crossed(points, corners, numpy.clip(y[row], low[owner], high[owner]))
-        begin = numpy.ceil((left - x[0]) / step - NEAR).astype("i8")
-        end = numpy.floor((right - x[0]) / step + NEAR).astype("i8") + 1
-        begin, end = numpy.maximum(begin, 0), numpy.minimum(end, len(x))
-        for place, column in expanded(begin, end):
-            rows, ids = row[place], corners[place]
+        ends = crossed(points, corners, numpy.clip(row, low[owner], high[owner]))
+        for place, column in expanded(*within(*ends, columns)):
+            at, ids = row[place], corners[place]
             # Twice the areas of the triangles that the centre makes with each side.
-            dx = [points[ids[:, i], 0] - x[column] for i in range(3)]
-            dy = [points[ids[:, i], 1] - y[rows] for i in range(3)]
+            dx = [points[ids[:, i], 0] - column for i in range(3)]
+            dy = [points[ids[:, i], 1] - at for i in range(3)]
             areas = [dx[i - 2] * dy[i - 1] - dx[i - 1] * dy[i - 2] for i in range(3)]
             total = areas[0] + areas[1] + areas[2]
             keep = total != 0.0
             weights = [area[keep] / total[keep] for area in areas]
-            yield ids[keep], (rows * len(x) + column)[keep], weights
+            yield ids[keep], (at * columns + column)[keep], weights
+
+
+def within(low, high, count):
+    """(start, stop) of the whole numbers from low to high that are 0 to before count."""
+    start = numpy.clip(numpy.ceil(low - NEAR), 0, count).astype("i8")
+    return start, numpy.clip(numpy.floor(high + NEAR) + 1, 0, count).astype("i8")
 
 
 def expanded(start, stop):
@@ -142,15 +251,14 @@ def no_data_value(z):
     return next(v for v in (-9999.0, -99999.0, -999999.0, -1e30) if not (z == v).any())
 
 
-def write_grid(grid, path, crs=None, progress=None):
+def write_grid(grid, path, progress=no_progress):
     """Writes a Grid as GeoTIFF, .asc or ZMAP+, told by the suffix. Returns notes for the user.
 
-    GeoTIFF holds errors as a second band, and crs: WKT, AUTHORITY:CODE or None. Raises OSError and
+    GeoTIFF holds errors as a second band, and the coordinate reference system. Raises OSError and
     FileError.
     """
     suffix = suffix_of(path)
-    progress = progress or (lambda fraction: None)
-    FORMATS[suffix](grid, path, crs, progress)
+    FORMATS[suffix](grid, path, progress)
     if grid.error is not None and suffix != ".tif":
         return [f"{suffix} holds one band: errors of filled elevations are left out"]
     return []
@@ -164,9 +272,7 @@ def raster(driver, path, grid, layers, options, progress):
     data = gdal.GetDriverByName(driver).Create(
         path, columns, rows, len(layers), gdal.GDT_Float64, options
     )
-    left = math.floor(grid.x[0] / grid.step) * grid.step
-    top = math.ceil(grid.y[0] / grid.step) * grid.step
-    data.SetGeoTransform((left, grid.step, 0.0, top, 0.0, -grid.step))
+    data.SetGeoTransform(grid.frame.transform)
     for number, (name, values) in enumerate(layers):
         band = data.GetRasterBand(number + 1)
         band.SetNoDataValue(outside)
@@ -179,7 +285,7 @@ def raster(driver, path, grid, layers, options, progress):
     return data
 
 
-def write_tif(grid, path, crs, progress):
+def write_tif(grid, path, progress):
     layers = [("elevation", grid.z)]
     if grid.error is not None:
         layers.append(("FilledError", grid.error))
@@ -187,26 +293,41 @@ def write_tif(grid, path, crs, progress):
 
     def make(name):
         data = raster("GTiff", name, grid, layers, options, progress)
-        if crs:
-            data.SetSpatialRef(reference_of(crs))
+        if grid.crs:
+            data.SetSpatialRef(reference_of(grid.crs))
         data.FlushCache()
 
     write_through_memory(path, make)
 
 
-def write_asc(grid, path, _crs, progress):
+def upright(grid, path):
+    """The grid with columns from west to east and rows from north to south. Raises FileError where it
+    is turned."""
+    frame = grid.frame
+    if frame.is_turned():
+        raise FileError(f"{path}: {suffix_of(path)} has no turned grids; write .tif")
+    (x, dx, _, y, _, dy), z = frame.transform, grid.z[:: 1 if frame.transform[5] < 0 else -1]
+    x, y, z = x + min(dx, 0) * frame.columns, y + max(dy, 0) * frame.rows, z[:, :: 1 if dx > 0 else -1]
+    frame = Frame((x, abs(dx), 0.0, y, 0.0, -abs(dy)), frame.columns, frame.rows)
+    return dataclasses.replace(grid, z=z, frame=frame)
+
+
+def write_asc(grid, path, progress):
     """ESRI's grid; 17 digits bring doubles back to the last bit."""
+    grid = upright(grid, path)
+    steps = grid.frame.transform[1], -grid.frame.transform[5]
 
     def make(name):
         data = raster("MEM", "", grid, [("", grid.z)], [], progress)
-        options = ["SIGNIFICANT_DIGITS=17", "FORCE_CELLSIZE=TRUE"]
+        options = ["SIGNIFICANT_DIGITS=17", f"FORCE_CELLSIZE={'YES' if steps[0] == steps[1] else 'NO'}"]
         gdal_module().GetDriverByName("AAIGrid").CreateCopy(name, data, False, options)
 
     write_through_memory(path, make)
 
 
-def write_zmap(grid, path, _crs, progress):
+def write_zmap(grid, path, progress):
     """ZMAP+ with nodes at the centres of pixels. GDAL's writer rounds the places of nodes."""
+    grid = upright(grid, path)
     rows, columns = grid.z.shape
     outside = no_data_value(grid.z)
     head = [
@@ -226,6 +347,11 @@ def write_zmap(grid, path, _crs, progress):
             lines = ("".join(words[j : j + 5]) for j in range(0, rows, 5))
             stream.write("\n".join(lines) + "\n")
             progress(i / columns)
+
+
+def beside(path):
+    """Other files that belong to the file of a result: an .asc has its .prj."""
+    return [os.path.splitext(path)[0] + ".prj"] if suffix_of(path) == ".asc" else []
 
 
 def write_prj(path, crs):

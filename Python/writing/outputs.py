@@ -8,7 +8,6 @@ import re
 
 from ..messages import ElevationSurfaceError, FileError
 from ..names import option
-from ..paths import suffix_of
 from ..writing import WRITE_SUFFIXES, write_surface
 
 GRID_SUFFIXES = (".tif", ".asc", ".dat", ".zmap")
@@ -19,11 +18,12 @@ def surface(result, path, _step, progress):
     return write_surface(result.surface, path, result.crs, progress)
 
 
-def grid(result, path, step, progress):
+def grid(result, path, pixels, progress):
     from .grids import grid_of, write_grid
 
-    made = grid_of(result.surface, step, lambda fraction: progress(0.7 * fraction))
-    return write_grid(made, path, result.crs, lambda fraction: progress(0.7 + 0.3 * fraction))
+    step, like = (None, pixels or None) if isinstance(pixels, str) else (pixels, None)
+    made, notes = grid_of(result, step, like, lambda fraction: progress(0.7 * fraction))
+    return notes + write_grid(made, path, lambda fraction: progress(0.7 + 0.3 * fraction))
 
 
 def contours(result, path, step, progress):
@@ -43,7 +43,7 @@ class Output:
     """A kind of result.
 
     name      the command line's name of its file, with underscores
-    step      the option that asks for it and is a length; "" where there is none
+    step      the option that asks for it, as by a length; "" where there is none
     ending    of the default name; "" where there is none but the option's
     suffixes  what the file's name may end with
     write     function of a Reconstruction, a path, the length and progress; returns notes
@@ -67,11 +67,6 @@ OUTPUTS = (
 def default_name(output, surface_path):
     """survey_surface.vtp -> survey_grid.tif, beside it"""
     return re.sub("_surface$", "", os.path.splitext(surface_path)[0]) + output.ending
-
-
-def beside(path):
-    """Other files that belong to the file of a result: an .asc has its .prj."""
-    return [os.path.splitext(path)[0] + ".prj"] if suffix_of(path) == ".asc" else []
 
 
 def check_gdal(what):

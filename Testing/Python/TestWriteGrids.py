@@ -9,7 +9,7 @@ import unittest
 
 import numpy
 from in_folder import InFolder, Program
-from vtkelevationsurface import ElevationSurfaceError, reconstruct
+from vtkelevationsurface import ElevationSurfaceError, read, reconstruct
 from vtkelevationsurface.writing import grids, lines as line_files
 from vtkelevationsurface.clouds import Cloud, make_points
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -106,6 +106,122 @@ class Interpolation(unittest.TestCase):
                 result.to_grid(step)
 
 
+def dem(path, z, turn=0.0, dy=-25.0, crs=25832):
+    """A GeoTIFF of these elevations, turned by degrees, in steps of 30 and dy."""
+    c, s = numpy.cos(numpy.radians(turn)), numpy.sin(numpy.radians(turn))
+    data = gdal.GetDriverByName("GTiff").Create(path, z.shape[1], z.shape[0], 1, gdal.GDT_Float32)
+    data.SetGeoTransform((500007.0, 30 * c, dy * -s, 5000003.0, 30 * s, dy * c))
+    data.SetSpatialRef(grids.reference_of(f"EPSG:{crs}"))
+    data.GetRasterBand(1).WriteArray(z)
+    data.GetRasterBand(1).SetNoDataValue(-9999)
+    return path
+
+
+def with_voids(shape=(40, 50)):
+    y, x = numpy.mgrid[: shape[0], : shape[1]]
+    z = numpy.random.default_rng(2).normal(100 + 20 * numpy.sin(x / 7) * numpy.cos(y / 5), 1)
+    whole, z = z.astype("f4"), z.astype("f4")
+    z[10:14, 20:26] = z[30, 5] = -9999
+    return whole, z
+
+
+@unittest.skipUnless(gdal, "GDAL's Python module is missing")
+class OnPixels(Program):
+    def test_filling_voids_gives_every_pixel_back(self):
+        for turn, dy in ((0.0, -30.0), (0.0, -25.0), (17.0, -25.0), (0.0, 25.0)):
+            with self.subTest(turn=turn, dy=dy):
+                _, z = with_voids()
+                path = dem(self.path("dem.tif"), z, turn, dy)
+                grid = reconstruct(read(path)).to_grid()
+                self.assertEqual(grid.z.shape, z.shape)
+                self.assertTrue(numpy.isfinite(grid.z).all())
+                numpy.testing.assert_array_equal(grid.z[z != -9999], z[z != -9999])
+                self.assertGreater(numpy.nanmax(grid.error[z == -9999]), 0)
+                grid.write(self.path("back.tif"))
+                back = gdal.Open(self.path("back.tif"))
+                self.assertEqual(back.GetGeoTransform(), gdal.Open(path).GetGeoTransform())
+                self.assertEqual(back.GetSpatialRef().GetAuthorityCode(None), "25832")
+
+    def test_the_step_of_the_raster_means_its_pixels_and_another_does_not(self):
+        _, z = with_voids()
+        result = reconstruct(read(dem(self.path("dem.tif"), z, dy=-30.0)))
+        numpy.testing.assert_array_equal(result.to_grid(30).x, result.to_grid().x)
+        self.assertEqual(result.to_grid(15).x[0] % 15, 7.5)
+
+    def test_points_of_a_lattice_go_back_onto_its_nodes(self):
+        y, x = numpy.mgrid[:20, :30] * 25.0
+        z = numpy.random.default_rng(3).normal(size=x.shape)
+        for angle in (0.0, 0.3, 1.2, 2.5):
+            c, s = numpy.cos(angle), numpy.sin(angle)
+            places = c * x - s * y + 3.0, s * x + c * y + 8.0
+            xyz = numpy.column_stack([a.ravel().round(2) for a in (*places, z)])
+            grid = reconstruct(xyz).to_grid()
+            self.assertEqual(sorted(grid.z.shape), [20, 30])
+            self.assertEqual(sorted(grid.z.ravel()), sorted(xyz[:, 2]))
+            at = numpy.argmin(abs(grid.z - xyz[40, 2]))
+            found = [numpy.broadcast_to(v, grid.z.shape).ravel()[at] for v in (grid.x, grid.y[:, None] if grid.y.ndim == 1 else grid.y)]
+            numpy.testing.assert_allclose(found, xyz[40, :2], rtol=0, atol=0.05)
+
+    def test_grids_of_the_same_pixels_are_subtracted_and_others_are_refused(self):
+        whole, z = with_voids()
+        path = dem(self.path("dem.tif"), whole)
+        filled, true = reconstruct(read(dem(self.path("voids.tif"), z))), reconstruct(read(path))
+        away = filled.to_grid() - true.to_grid(like=path)
+        self.assertEqual(set(zip(*numpy.nonzero(away.z))), set(zip(*numpy.nonzero(z == -9999))))
+        numpy.testing.assert_array_equal(away.error, filled.to_grid(like=true.to_grid()).error)
+        with self.assertRaisesRegex(ValueError, "different pixels"):
+            filled.to_grid() - true.to_grid(10)
+        with self.assertRaisesRegex(ValueError, "not both"):
+            filled.to_grid(3, like=path)
+        with self.assertRaisesRegex(ElevationSurfaceError, "a step is needed"):
+            reconstruct(wavy()).to_grid()
+        other = dem(self.path("other.tif"), whole, crs=25833)
+        with self.assertRaisesRegex(ElevationSurfaceError, "other.tif: its coordinate reference system"):
+            filled.to_grid(like=other)
+        with self.assertRaisesRegex(ElevationSurfaceError, "is no raster"):
+            filled.to_grid(like=self.path(self.file("a.xyz", "0 0 1\n1 0 1\n0 1 2\n3 5 2\n")))
+
+    def test_a_turned_grid_is_no_text_grid(self):
+        _, z = with_voids()
+        grid = reconstruct(read(dem(self.path("dem.tif"), z, 17.0))).to_grid()
+        for name in ("a.asc", "a.dat"):
+            with self.assertRaisesRegex(ElevationSurfaceError, "has no turned grids; write .tif"):
+                grid.write(self.path(name))
+        with self.assertRaisesRegex(ElevationSurfaceError, "one of .tif .asc .dat .zmap"):
+            grid.write(self.path("a.png"))
+
+    def test_rows_from_south_to_north_come_back_from_text(self):
+        _, z = with_voids()
+        grid = reconstruct(read(dem(self.path("dem.tif"), z, dy=25.0))).to_grid()
+        for name in ("a.asc", "a.dat"):
+            grid.write(self.path(name))
+            cloud = read(self.path(name))
+            self.assertTrue(cloud.frame.is_same(grids.upright(grid, "").frame))
+            self.assertTrue((grid - reconstruct(read(dem(self.path("dem.tif"), z, dy=25.0))).to_grid()).z.any() == 0)
+            z_of = vtk_to_numpy(cloud.points.GetPoints().GetData())[:, 2]
+            numpy.testing.assert_allclose(z_of, grid.z[::-1].ravel(), rtol=1e-12)
+        self.assertTrue(os.path.exists(self.path("a.prj")))
+
+    def test_the_program_takes_the_pixels_of_a_file_or_its_own(self):
+        _, z = with_voids()
+        dem(self.path("dem.tif"), z)
+        for given in (["--grid", "like", "dem.tif"], ["--grid"], ["--grid=like dem.tif"]):
+            done = self.call("dem.tif", *given, "--no-picture", "--quiet")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            back = gdal.Open(self.path("dem_grid.tif")).ReadAsArray()[0]
+            numpy.testing.assert_array_equal(back[z != -9999], z[z != -9999])
+            os.remove(self.path("dem_grid.tif"))
+        for given, words in (
+            (["--grid", "like", "gone.tif"], "gone.tif: no such file"),
+            (["--grid", "wide"], "--grid takes a number above 0, or like FILE"),
+            (["--grid-output", "a.tif"], "--grid-output is for the result of --grid"),
+            (["--grid", "like", "dem.tif", "--grid-output", "dem.tif"], "would overwrite dem.tif"),
+        ):
+            done = self.call("dem.tif", *given)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(words, done.stderr)
+
+
 @unittest.skipUnless(gdal, "GDAL's Python module is missing")
 class Files(InFolder):
     @classmethod
@@ -119,7 +235,7 @@ class Files(InFolder):
         for suffix, bands, digits in ((".tif", 2, 0), (".asc", 1, 0), (".dat", 1, 1e-11)):
             with self.subTest(suffix=suffix):
                 path = self.path("g" + suffix)
-                notes = grids.write_grid(self.grid, path, "EPSG:25832")
+                notes = grids.write_grid(self.grid, path)
                 self.assertEqual(len(notes), 0 if bands == 2 else 1)
                 self.assertEqual(os.listdir(self.folder), ["g" + suffix])
                 options = ["DATATYPE=Float64"] if suffix == ".asc" else []
@@ -248,7 +364,7 @@ class CommandLine(Program):
 
     def test_what_could_not_be_written_is_refused_at_once(self):
         for words, arguments in (
-            ("--grid takes a number above 0, not '0'", ("--grid", "0")),
+            ("--grid takes a number above 0, or like FILE", ("--grid", "0")),
             ("--contours takes a number above 0", ("--contours", "-1")),
             ("--grid-output is for the result of --grid", ("--grid-output", "g.tif")),
             ("g.png: .png cannot be written; use one of .tif", ("--grid", "5", "--grid-output", "g.png")),
