@@ -94,7 +94,8 @@
  * cells that overlap in x,y. So does an invalid vtkCellArray, and a point or cell array whose
  * number of tuples is not that of the points or cells; the error names the array. So do more new
  * points than MaximumNumberOfExpectedPoints. A surface without holes passes; an input without triangles
- * passes with a warning (none where it has no points, or vtkGridDelaunay2D has made it and told why).
+ * passes with a warning (none where it has no points, or a filter of this module has made it and told
+ * why).
  * An abort also leaves empty output, which counts as up to date: call Modified() to start again.
  *
  * @par Composite input:

@@ -167,7 +167,7 @@ void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
 {
   if (constrained.Result.NumberOfHullPoints == 0)
   {
-    warnings.push_back(elevation::MakeMessage<elevation::sentences::NoTriangle>(points.Count));
+    elevation::WarnOfNoTriangle(points.Count, warnings);
     return;
   }
   try
@@ -194,15 +194,7 @@ elevation::ConstrainedTriangulation TriangulateSpread(
   parts.Triangulate(block.Outputs.empty() ? 0 : 1, block.Second, options, block.Warnings);
   const elevation::TriangulateParts::Totals& all = parts.All();
   elevation::WarnOfLeft("point", parts.LeftOut(), block.Warnings);
-  if (all.Settled == 0)
-  {
-    block.Warnings.push_back(
-      elevation::MakeMessage<elevation::sentences::NoTriangle>(all.Points));
-  }
-  else if (all.Effect.AreMostMissing())
-  {
-    block.Warnings.push_back(elevation::AdviceOnLimit(options.MaximumEdgeLength, all.Effect));
-  }
+  parts.WarnOfMissing(block.Warnings);
   elevation::ConstrainedTriangulation counts;
   counts.NumberOfCrossings = all.Crossings;
   ranks.Agree([&]() {
@@ -282,7 +274,6 @@ int vtkGridDelaunay2D::RequestData(
   elevation::FilterRun call(
     this, this->Controller, request, inputVector, outputVector, this->Messages);
   call.Second = "constraints";
-  call.IsFirst = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
     &this->NumberOfRedundantPoints, &this->NumberOfConstraintCrossings, &this->NumberOfAddedPoints,
     &this->NumberOfLattices };

@@ -110,7 +110,8 @@
  * points and no triangle; a MaximumEdgeLength that leaves more than half of the points without a
  * triangle (it tells one that does not, for which it triangulates once more); constraints of which
  * more than half lies farther outside the points' bounding box than a tenth of its size, or which
- * have polygons: vtkDelaunay2D would cut along these.
+ * have polygons: vtkDelaunay2D would cut along these; a Lattice with constraints. An input without
+ * points passes in silence.
  *
  * Errors leave empty output. They are: a MaximumEdgeLength that is no length, a
  * MaximumElevationError that is no distance, or both; more points than can be handled

@@ -142,11 +142,11 @@
  * a ring of fewer than three points, edges or rings that cross each other, a boundary that encloses
  * no triangle; also an invalid vtkCellArray, and a point or cell array of an input whose number of
  * tuples is not that of the points or cells. A mesh without triangles passes with a warning (none
- * where it has no points, or vtkGridDelaunay2D has made it and told why), and the lines of input 1
- * are ignored; so does a mesh in which no triangle is surface (all are outward
- * then). Where borders of the mesh coincide without common points, as between tiles, a ring that
- * passes there may be refused: merge the points, as vtkStaticCleanPolyData does. An abort also
- * leaves empty output, which counts as up to date: call Modified() to start again.
+ * where it has no points, or a filter of this module has made it and told why), and the lines of
+ * input 1 are ignored; so does a mesh in which no triangle is surface (all are outward then). Where
+ * borders of the mesh coincide without common points, as between tiles, a ring that passes there
+ * may be refused: merge the points, as vtkStaticCleanPolyData does. An abort also leaves empty
+ * output, which counts as up to date: call Modified() to start again.
  *
  * @par Cost:
  * Linear in the number of triangles, plus the triangles crossed by boundary edges; one more sweep

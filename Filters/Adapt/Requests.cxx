@@ -9,6 +9,8 @@
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkPolyData.h"
@@ -43,10 +45,29 @@ void EndWithError(vtkAlgorithm* filter, vtkInformationVector* outputs,
   ReportMessages(filter, { MessageOf(failure) }, {}, messages);
 }
 
+namespace
+{
+vtkInformationIntegerKey* IsReportedKey()
+{
+  static auto* const key = vtkInformationIntegerKey::MakeKey("IS_REPORTED", "ElevationSurface");
+  return key;
+}
+} // namespace
+
+void MarkAsReported(vtkDataObject* output)
+{
+  output->GetInformation()->Set(IsReportedKey(), 1);
+}
+
+void CopyMark(vtkDataObject* original, vtkDataObject* copy)
+{
+  copy->GetInformation()->CopyEntry(original->GetInformation(), IsReportedKey());
+}
+
 bool NeedsWarning(vtkPolyData* meshWithoutTriangles)
 {
   return meshWithoutTriangles->GetNumberOfPoints() > 0 &&
-    !meshWithoutTriangles->GetFieldData()->HasArray("UnusedPointIds");
+    !meshWithoutTriangles->GetInformation()->Has(IsReportedKey());
 }
 
 void CheckMaximumEdgeLength(double length)

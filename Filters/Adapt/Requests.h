@@ -20,6 +20,7 @@ class vtkAlgorithm;
 class vtkFieldData;
 class vtkInformationVector;
 class vtkPolyData;
+class vtkDataObject;
 class vtkStringArray;
 
 namespace elevation
@@ -58,8 +59,8 @@ int Guarded(
 Progress ProgressOf(vtkAlgorithm* filter);
 
 /**
- * Whether a mesh without triangles needs a warning. It needs none where the filter before has told
- * why: a mesh without points comes of an error, and vtkGridDelaunay2D leaves its counts.
+ * Marks a data set as the output of a filter of this module, which has reported why there are no
+ * triangles, if there are none. The mark is in the object's information, which no array can fake.
  */
 bool NeedsWarning(vtkPolyData* meshWithoutTriangles);
 
@@ -75,3 +76,7 @@ void AddTuple(vtkFieldData* fieldData, const char* name,
 } // namespace elevation
 
 #endif
+void MarkAsReported(vtkDataObject* output);
+/** Marks a copy if the original is marked. */
+void CopyMark(vtkDataObject* original, vtkDataObject* copy);
+/** Whether a mesh without triangles needs a warning: it has points, and no mark. */

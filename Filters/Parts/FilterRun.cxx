@@ -91,10 +91,6 @@ int FilterRun::Run(const std::function<void(Block&)>& body)
       [&] { places = ListPlaces(vtkDataObject::GetData(this->Inputs[0]), this->Outputs); });
     const vtkSmartPointer<vtkPolyData> second = this->ShareSecond(ranks);
     this->RunPlaces(places, ranks, second, body);
-    if (this->IsFirst && places.empty() && this->Occupied.empty() && ranks.Own() == 0)
-    {
-      this->Warnings.push_back(MakeMessage<sentences::EmptyBlocks>());
-    }
   }
   catch (const std::exception& error)
   {
@@ -262,6 +258,7 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
     {
       break;
     }
+    std::for_each(place.Outputs.begin(), place.Outputs.end(), MarkAsReported);
     // A rank without points has the rest of the outputs, and leaves the messages to the others.
     const bool isReported = this->ShouldReport(place, ranks);
     const double next = done + workOf(place);

@@ -70,8 +70,6 @@ public:
     vtkInformationVector** inputs, vtkInformationVector* outputs, vtkStringArray* messages);
 
   std::string Second; ///< what messages call input 1
-  /** Whether to report a composite without any data set; the filter before has reported others. */
-  bool IsFirst = false;
   /** Results of the filter: set to 0, and added up (the largest taken) over blocks and ranks. */
   std::vector<vtkIdType*> Sums;
   std::vector<double*> Maxima;

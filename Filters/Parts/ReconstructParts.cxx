@@ -303,15 +303,7 @@ void ReconstructParts::Triangulate(const Progress& progress)
     options.Monitor = progress;
     this->Work->Triangulate(
       this->NumberOfParts / this->Everybody->Count(), this->Constraints, options, warnings);
-    const TriangulateParts::Totals& all = this->Work->All();
-    if (all.Settled == 0)
-    {
-      warnings.push_back(MakeMessage<sentences::NoTriangle>(all.Points));
-    }
-    else if (all.Effect.AreMostMissing())
-    {
-      warnings.push_back(AdviceOnLimit(options.MaximumEdgeLength, all.Effect));
-    }
+    this->Work->WarnOfMissing(warnings);
     warnings = OnFirst(warnings, *this->Everybody);
   });
   this->ReportWarnings(warnings);

@@ -239,6 +239,18 @@ void TriangulateParts::LimitEdges(const Progress& progress)
 }
 
 // The limit of edges is applied again, which is faster than writing what it leaves.
+void TriangulateParts::WarnOfMissing(std::vector<Message>& warnings) const
+{
+  if (this->Total.Settled == 0)
+  {
+    WarnOfNoTriangle(this->Total.Points, warnings);
+  }
+  else if (this->Total.Effect.AreMostMissing())
+  {
+    warnings.push_back(AdviceOnLimit(this->Options.MaximumEdgeLength, this->Total.Effect));
+  }
+}
+
 SurfacePart TriangulateParts::Take(int part, const Progress& progress)
 {
   SurfacePart taken = this->Store->TakeWhole(part, elevation::Part(progress, 0.0, 0.7));

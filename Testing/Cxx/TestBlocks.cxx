@@ -272,19 +272,43 @@ void TestChainTellsOnce()
   tooShort->SetName("TooShort");
   tooShort->InsertNextValue(1);
   wrong->GetPointData()->AddArray(tooShort);
-  vtkNew<vtkMultiBlockDataSet> nothing;
+  vtkNew<vtkMultiBlockDataSet> nothing, empty;
   nothing->SetNumberOfBlocks(2);
+  empty->SetBlock(1, vtkNew<vtkPolyData>());
   const auto check = [](const std::vector<std::string>& messages, const std::string& part) {
     Check(messages.size() == 1 && messages.front().find(part) != std::string::npos,
       "one message with '" + part + "'; they were " + std::to_string(messages.size()) + ": " +
         (messages.empty() ? "" : messages.front()));
   };
   check(MessagesOfChain(two), "the 2 input points");
-  check(MessagesOfChain(vtkNew<vtkPolyData>()), "the 0 input points");
   check(MessagesOfChain(wrong), "TooShort");
   check(MessagesOfChain(MakeCloud(0.0, 0), 0.01), "MaximumEdgeLength");
-  check(MessagesOfChain(nothing), "All blocks of the input are empty");
-  Check(MessagesOfChain(MakeCloud(0.0, 0)).empty(), "a cloud passes in silence");
+  for (vtkDataObject* input : std::initializer_list<vtkDataObject*>{
+         MakeCloud(0.0, 0), vtkNew<vtkPolyData>(), nothing, empty })
+  {
+    Check(MessagesOfChain(input).empty(), "a cloud, and an empty input, pass in silence");
+  }
+}
+
+void TestArraysFakeNoReport()
+{
+  const auto cloud = MakeCloud(0.0, 0);
+  vtkNew<vtkIdTypeArray> fake;
+  fake->SetName("UnusedPointIds");
+  cloud->GetFieldData()->AddArray(fake);
+  vtkNew<vtkTest::ErrorObserver> observer;
+  vtkNew<vtkTrimOutwardTriangles> trim;
+  vtkNew<vtkFillElevationHoles> fill;
+  trim->SetInputData(cloud);
+  fill->SetInputData(cloud);
+  for (vtkAlgorithm* filter : std::initializer_list<vtkAlgorithm*>{ trim, fill })
+  {
+    filter->AddObserver(vtkCommand::WarningEvent, observer);
+    filter->Update();
+    Check(observer->GetWarningMessage().find("The input has no triangles") != std::string::npos,
+      "an array of the user's hides no warning");
+    observer->Clear();
+  }
 }
 
 void TestProgressAndAbort()
@@ -329,6 +353,7 @@ int TestBlocks(int, char*[])
   TestSecondInput();
   TestMessages();
   TestChainTellsOnce();
+  TestArraysFakeNoReport();
   TestProgressAndAbort();
   return failures > 0;
 }

@@ -132,9 +132,8 @@ class Data(unittest.TestCase):
         blocks.SetBlock(2, make_points(numpy.zeros((1, 3))))
         errors, warnings = run(triangulated(blocks))
         self.assertEqual(errors, [])
-        self.assertEqual([one.code for one in warnings], ["NoTriangle", "NoTriangle"])
-        self.assertEqual([one.block for one in warnings], ["Block 1", "Block 2"])
-        self.assertEqual([one.values["points"] for one in warnings], ["0", "1"])
+        self.assertEqual([(one.code, one.block, one.values["points"]) for one in warnings],
+                         [("NoTriangle", "Block 2", "1")])  # an empty block passes in silence
 
     def test_pieces_have_data_of_each_step(self):
         with tempfile.TemporaryDirectory() as folder:

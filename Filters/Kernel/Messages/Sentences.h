@@ -24,7 +24,6 @@ namespace sentences
 // clang-format on
 
 /** @name Of any filter @{ */
-ELEVATION_SENTENCE(EmptyBlocks, "All blocks of the input are empty, so the output is empty.");
 ELEVATION_SENTENCE(NotEnoughMemory, "There is not enough memory for this input.");
 ELEVATION_SENTENCE(Stopped,
   "Stopped, so the output is empty. SetAbortExecute(0) and Modified() let the next update make it.");
