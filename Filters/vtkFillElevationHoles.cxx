@@ -92,7 +92,7 @@ int vtkFillElevationHoles::FillOutputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkFillElevationHoles::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return elevation::Guarded(this, outputVector, this->Messages, [&] {
+  return elevation::Guarded(this, request, outputVector, this->Messages, this->ErrorCode, [&] {
     return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
       ? elevation::MakeOutputs(inputVector, outputVector)
       : this->Superclass::ProcessRequest(request, inputVector, outputVector);

@@ -89,8 +89,9 @@
  *   border of that kind may also join a hole to the outside, so that it is no hole; a
  *   warning names such a point.
  *
- * An input that is not an elevation surface gives empty output, and an error that names the cell:
- * cells other than triangles, triangles that are flat in x,y, an edge with more than two triangles,
+ * Errors leave empty outputs, make the request fail (but in ParaView), so that filters behind do not
+ * run, and set GetErrorCode(). One names a property that cannot be what it is, NaN or less than 0.
+ * An input that is not an elevation surface is an error that names the cell: cells other than triangles, triangles that are flat in x,y, an edge with more than two triangles,
  * cells that overlap in x,y. So does an invalid vtkCellArray, and a point or cell array whose
  * number of tuples is not that of the points or cells; the error names the array. So do more new
  * points than MaximumNumberOfExpectedPoints. A surface without holes passes; an input without triangles

@@ -244,7 +244,7 @@ int vtkGridDelaunay2D::FillOutputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkGridDelaunay2D::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return elevation::Guarded(this, outputVector, this->Messages, [&] {
+  return elevation::Guarded(this, request, outputVector, this->Messages, this->ErrorCode, [&] {
     return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
       ? elevation::MakeOutputs(inputVector, outputVector)
       : this->Superclass::ProcessRequest(request, inputVector, outputVector);

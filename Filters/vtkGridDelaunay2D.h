@@ -113,8 +113,9 @@
  * have polygons: vtkDelaunay2D would cut along these; a Lattice with constraints. An input without
  * points passes in silence.
  *
- * Errors leave empty output. They are: a MaximumEdgeLength that is no length, a
- * MaximumElevationError that is no distance, or both; more points than can be handled
+ * Errors leave empty output, make the request fail (but in ParaView), so that filters behind do not
+ * run, and set GetErrorCode(). They are: a property that cannot be what it is, which the error names;
+ * both a MaximumEdgeLength and a MaximumElevationError; more points than can be handled
  * (357,913,941); a point array whose number of tuples is not that of the points; constraints
  * without a line or polygon, all beside the points' bounding box, with triangle strips, an invalid
  * vtkCellArray, or a point that does not exist or is not finite (the error names it).

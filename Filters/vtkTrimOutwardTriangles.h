@@ -137,7 +137,8 @@
  * tells how much, and which GapTolerance would keep it. One that leaves out every point is an
  * error.
  *
- * Errors leave empty outputs and name the cell, point or edge: a cell that is not a triangle, a
+ * Errors leave empty outputs, make the request fail (but in ParaView), so that filters behind do not
+ * run, set GetErrorCode(), and name the cell, point or edge: a cell that is not a triangle, a
  * mesh that covers a place twice, a boundary that is not closed or has a point that is not finite,
  * a ring of fewer than three points, edges or rings that cross each other, a boundary that encloses
  * no triangle; also an invalid vtkCellArray, and a point or cell array of an input whose number of

@@ -6,7 +6,9 @@
 #include "VTKVersions.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkCallbackCommand.h"
 #include "vtkDataObject.h"
+#include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
@@ -53,6 +55,27 @@ vtkInformationIntegerKey* IsReportedKey()
   return key;
 }
 } // namespace
+
+int AfterError(vtkAlgorithm* filter)
+{
+  vtkExecutive* const executive = filter->GetExecutive();
+  if (executive->IsA("vtkPVCompositeDataPipeline"))
+  {
+    return 1;
+  }
+  // Where there is an observer, VTK leaves the output window alone. Without GlobalWarningDisplay
+  // there is no line, and the observer would stay.
+  if (vtkObject::GetGlobalWarningDisplay())
+  {
+    vtkNew<vtkCallbackCommand> once;
+    once->SetCallback([](vtkObject* caller, unsigned long, void* self, void*) {
+      caller->RemoveObserver(static_cast<vtkCommand*>(self));
+    });
+    once->SetClientData(once.Get());
+    executive->AddObserver(vtkCommand::ErrorEvent, once);
+  }
+  return 0;
+}
 
 void MarkAsReported(vtkDataObject* output)
 {

@@ -10,6 +10,9 @@
 
 #include "Kernel/Base/Base.h"
 
+#include "vtkDemandDrivenPipeline.h"
+#include "vtkErrorCode.h"
+#include "vtkInformation.h"
 #include "vtkType.h"
 
 #include <exception>
@@ -31,24 +34,40 @@ void EndWithError(vtkAlgorithm* filter, vtkInformationVector* outputs,
   const std::exception& failure, vtkStringArray* messages);
 
 /**
+ * What ProcessRequest returns after an error that has been reported: 0. The line that the executive
+ * adds then, which tells the user nothing, is kept from the output window; observers of the
+ * executive get it. In ParaView it is 1: after a request that has failed, ParaView 5.11 never
+ * updates the picture of this output again.
+ */
+int AfterError(vtkAlgorithm* filter);
+
+/**
  * Answers a request of the pipeline. An exception that would leave the filter, as when there is no
  * memory even for what surrounds FilterRun::Run(), becomes an error: after an exception VTK takes
  * the filter to be at work for ever, and runs it no more.
  * @param[in] answer  returns what ProcessRequest returns; after an error that is 1, as Run() says
  */
 template <typename Answer>
-int Guarded(
-  vtkAlgorithm* filter, vtkInformationVector* outputs, vtkStringArray* messages, Answer&& answer)
+int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector* outputs,
+  vtkStringArray* messages, unsigned long& errorCode, Answer&& answer)
 {
   try
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
   {
-    return answer();
+    errorCode = vtkErrorCode::NoError;
+  }
+  {
+    if (const int result = answer())
+    {
+      return result;
+    }
   }
   catch (const std::exception& error)
   {
     EndWithError(filter, outputs, error, messages);
   }
-  return 1;
+  errorCode = vtkErrorCode::UnknownError;
+  return AfterError(filter);
 }
 
 /**

@@ -99,7 +99,7 @@ int FilterRun::Run(const std::function<void(Block&)>& body)
     this->Warnings.clear();
   }
   this->Report(ranks);
-  return 1;
+  return IsOnAny(ranks, !this->Errors.empty()) ? 0 : 1;
 }
 
 /** Whether the run before was aborted, too, and has said so. */

@@ -86,8 +86,7 @@ public:
 
   /**
    * @param[in] body  adds its results to Sums and Maxima last, when it cannot fail any more
-   * @return what RequestData returns: always 1, because on 0 the executive adds an error of its own
-   *         that tells the user nothing.
+   * @return what RequestData returns: on all ranks 0 after an error in any block
    */
   int Run(const std::function<void(Block&)>& body);
 
