@@ -12,13 +12,13 @@
  * hole. A component that lies inside a hole, an island, stays, and the ring around it is filled.
  * Holes may be nested, pinched, and may share vertices.
  *
- * Voids that triangles with long edges bridge are no holes: see MaximumEdgeLength, which opens them.
+ * Voids that triangles with long edges bridge are no holes: see OpenEdgeLength, which opens them.
  * What a boundary given to vtkTrimOutwardTriangles has cut out is a hole that stays open: see
  * FillCutOuts.
  *
  * @par Output 0, the surface:
  * The points and cells of the input first, with their ids, then the new points and triangles.
- * (Where MaximumEdgeLength lets patches replace triangles of the input, these are left out, and the
+ * (Where OpenEdgeLength lets patches replace triangles of the input, these are left out, and the
  * ids of later cells are lower.) The triangles are counter-clockwise seen from +z: a clockwise one
  * of the input is turned over (its last two points change places); nothing else of the input
  * changes.
@@ -44,7 +44,7 @@
  * - HoleId (vtkIdTypeArray): 0, 1, 2, ...
  * - Status (vtkUnsignedCharArray): see HoleStatusType.
  * - NumberOfEdges (vtkIdTypeArray): boundary edges, those of the rim and of the islands; in a
- *   region of MaximumEdgeLength, no others.
+ *   region of OpenEdgeLength, no others.
  * - Perimeter (vtkDoubleArray): the length of all these edges in x,y.
  * - Area (vtkDoubleArray): in x,y, inside the rim and outside the islands; NaN where the extent of
  *   the hole is above 1e150 or below 1e-150.
@@ -167,7 +167,7 @@ public:
     TOO_LARGE = 1,      ///< left open because of MaximumHoleSize
     TOO_MANY_EDGES = 2, ///< left open because of MaximumHoleEdges
     FAILED = 3,         ///< could not be filled; a warning says why
-    REPLACED = 4,       ///< filled: long triangles bridged it, see MaximumEdgeLength
+    REPLACED = 4,       ///< filled: long triangles bridged it, see OpenEdgeLength
     CUT_OUT = 5,        ///< left open: a given boundary has cut it out, see FillCutOuts
   };
 
@@ -224,8 +224,7 @@ public:
   /**
    * The length in x,y, in input units, above which an edge is long. A region of triangles with a
    * long edge, connected by edges, is then a hole too: a patch replaces its triangles, and output 1
-   * lists it behind the other holes, with status REPLACED. 0 (default): none. A negative value or
-   * NaN is an error.
+   * lists it behind the other holes, with status REPLACED. 0 (default): none.
    *
    * - The rim of a region is its border: along the rest of the surface, along the surface's own
    *   outer border, along a hole, which is filled apart. Regions may enclose islands and holes,
@@ -238,7 +237,7 @@ public:
    * - Where the surface's points lie on a lattice, the nodes of a region are filled as those of a
    *   hole; edges that are kept inside are then those between nodes. Without Spacing, the default
    *   is the mean length of all edges of a region, on its rim and inside, that are not long (if
-   *   there are none: MaximumEdgeLength). In a region of lines, which has more such edges inside
+   *   there are none: OpenEdgeLength). In a region of lines, which has more such edges inside
    *   than on its rim, each of them counts as at least a tenth of the gap beside it: where lines are
    *   more than ten times as far apart as their points, as contour lines are, the spacing follows
    *   the gaps. As in holes, points are graded where lengths differ more
@@ -253,39 +252,45 @@ public:
    *
    * Cost: one more pass over the triangles.
    */
-  vtkSetMacro(MaximumEdgeLength, double);
-  vtkGetMacro(MaximumEdgeLength, double);
+  vtkSetMacro(OpenEdgeLength, double);
+  vtkGetMacro(OpenEdgeLength, double);
+  ///@}
+
+  ///@{
+  /** Deprecated: the name that OpenEdgeLength had. Setting it warns. */
+  void SetMaximumEdgeLength(double length);
+  double GetMaximumEdgeLength() const { return this->OpenEdgeLength; }
   ///@}
 
   ///@{
   /**
    * The largest hole that is filled: the diagonal of the bounding box of its rim in x,y, in input
-   * units. 0 (default): no limit; negative values are taken as 0.
+   * units. 0 (default): no limit.
    */
-  vtkSetClampMacro(MaximumHoleSize, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetMacro(MaximumHoleSize, double);
   vtkGetMacro(MaximumHoleSize, double);
   ///@}
 
   ///@{
   /**
    * The most boundary edges of a hole that is filled; edges of the rim and of islands count.
-   * 0 (default): no limit; negative values are taken as 0.
+   * 0 (default): no limit.
    */
-  vtkSetClampMacro(MaximumHoleEdges, vtkIdType, 0, VTK_ID_MAX);
+  vtkSetMacro(MaximumHoleEdges, vtkIdType);
   vtkGetMacro(MaximumHoleEdges, vtkIdType);
   ///@}
 
   ///@{
   /**
    * The most new points in all holes together. Default: 100 million, which take about 50 GB of
-   * memory. 0: no limit but that of 357,913,941 points of a surface; negative values are taken as
-   * 0. Before any hole is filled, each, from the smallest on, is granted the most points that it
-   * may take, by its area and spacing, and a long thin one also by its length. It fails if fewer
-   * are left, so the largest fail first; of equal ones, those with the largest HoleId. Which holes
-   * fail depends on the input and this number alone, not on threads or free memory. Holes that
-   * other limits leave open are granted none.
+   * memory. 0: no limit but that of 357,913,941 points of a surface. Before any hole is filled,
+   * each, from the smallest on, is granted the most points that it may take, by its area and
+   * spacing, and a long thin one also by its length. It fails if fewer are left, so the largest
+   * fail first; of equal ones, those with the largest HoleId. Which holes fail depends on the input
+   * and this number alone, not on threads or free memory. Holes that other limits leave open are
+   * granted none.
    */
-  vtkSetClampMacro(MaximumNumberOfInsertedPoints, vtkIdType, 0, VTK_ID_MAX);
+  vtkSetMacro(MaximumNumberOfInsertedPoints, vtkIdType);
   vtkGetMacro(MaximumNumberOfInsertedPoints, vtkIdType);
   ///@}
 
@@ -307,20 +312,19 @@ public:
    * The most new points that may be expected of all holes together; if there are more, nothing is
    * filled, and an error reports how many, their memory, and a Spacing that would do. The estimate
    * takes no time: it follows from areas and spacings of the holes that MaximumHoleSize and
-   * MaximumHoleEdges admit. 0 (default): ten times the points of the input, but at least a million;
-   * negative values are taken as 0. Where MaximumNumberOfInsertedPoints is no larger, it leaves the
-   * largest holes open instead.
+   * MaximumHoleEdges admit. 0 (default): ten times the points of the input, but at least a million.
+   * Where MaximumNumberOfInsertedPoints is no larger, it leaves the largest holes open instead.
    */
-  vtkSetClampMacro(MaximumNumberOfExpectedPoints, vtkIdType, 0, VTK_ID_MAX);
+  vtkSetMacro(MaximumNumberOfExpectedPoints, vtkIdType);
   vtkGetMacro(MaximumNumberOfExpectedPoints, vtkIdType);
   ///@}
 
   ///@{
   /**
    * Distance of new points in x,y, in input units. 0 (default): that of the lattice, or for each
-   * hole the mean length of its boundary edges, see above; negative values are taken as 0.
+   * hole the mean length of its boundary edges, see above.
    */
-  vtkSetClampMacro(Spacing, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetMacro(Spacing, double);
   vtkGetMacro(Spacing, double);
   ///@}
 
@@ -344,7 +348,7 @@ public:
    * number. Small holes are filled several at a time. Holes of more than some ten thousand
    * points are filled one after the other, each triangulated on several threads. Range: 0 to 1024.
    */
-  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkSetMacro(NumberOfThreads, int);
   vtkGetMacro(NumberOfThreads, int);
   ///@}
 
@@ -380,7 +384,9 @@ public:
    * are "Words":
    * NothingToFill, HoleNotFilled and RegionNotFilled (with a reason: BordersTouch, SizeOutOfRange,
    * MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall, PointsCoincide), MoreHolesNotFilled,
-   * BordersMeet, TooManyPointsToFill, TooManyPointsByDefault, InvalidEdgeLength, ArraysLeftOut,
+   * BordersMeet, TooManyPointsToFill, TooManyPointsByDefault, InvalidOpenEdgeLength, InvalidHoleSize,
+   * InvalidHoleEdges, InvalidSpacing, InvalidInsertedPoints, InvalidExpectedPoints, InvalidThreads,
+   * EdgeLengthRenamed, ArraysLeftOut,
    * OnOneRank (with a reason: PartsDoNotFit), RankWaits, NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
@@ -393,7 +399,7 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  double MaximumEdgeLength = 0.0;
+  double OpenEdgeLength = 0.0;
   double MaximumHoleSize = 0.0;
   vtkIdType MaximumHoleEdges = 0;
   vtkIdType MaximumNumberOfInsertedPoints = 100000000;

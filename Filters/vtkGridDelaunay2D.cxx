@@ -91,6 +91,7 @@ elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
     return unconstrained;
   }
   elevation::CheckPointArrays(source, "The constraints'");
+  elevation::WarnOfLattice(options, warnings);
   const elevation::PointsOfDataSet own = elevation::ViewPoints(source);
   const ConstraintLines lines =
     LinesOf(source, own, points, options.NumberOfThreads, Part(progress, 0.0, 0.02), warnings);
@@ -187,7 +188,7 @@ void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
 elevation::ConstrainedTriangulation TriangulateSpread(
   const elevation::Ranks& ranks, elevation::DelaunayOptions options, elevation::Block& block)
 {
-  elevation::CheckLimits(options);
+  elevation::CheckOptions(options);
   options.Monitor = block.Progress;
   elevation::TriangulateParts parts(ranks);
   parts.Add(block.Input, options.Monitor);
@@ -299,7 +300,7 @@ int vtkGridDelaunay2D::RequestData(
     const elevation::Progress& progress = block.Progress;
     vtkPolyData* const output = block.Outputs.front();
     elevation::Report(progress, 0.0);
-    elevation::CheckLimits(options);
+    elevation::CheckOptions(options);
     elevation::CheckPointArrays(block.Input);
     const elevation::PointsOfDataSet points = elevation::ViewPoints(block.Input);
     vtkPolyData* const draped = this->DrapeConstraints ? block.Second : nullptr;

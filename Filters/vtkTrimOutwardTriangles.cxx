@@ -217,11 +217,7 @@ int vtkTrimOutwardTriangles::RequestData(
     vtkPolyData* const given = block.Second;
     Report(progress, 0.0);
     elevation::CheckArrays(input);
-    const elevation::Message wrong = elevation::WrongOption(options);
-    if (!wrong.IsEmpty())
-    {
-      throw elevation::CodedError(wrong);
-    }
+    elevation::CheckOptions(options);
     if (given)
     {
       elevation::CheckArrays(given, "The boundary's");

@@ -303,7 +303,7 @@ public:
    * boundary that is extracted, and write the outputs; work near the boundary is done on one.
    * Range: 0 to 1024.
    */
-  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkSetMacro(NumberOfThreads, int);
   vtkGetMacro(NumberOfThreads, int);
   ///@}
 
@@ -361,7 +361,7 @@ public:
    * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent, whose
    * text has the same for people, are invoked. Codes, besides those of data that are invalid, which
    * are "Words":
-   * NothingToTrim, InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut,
+   * NothingToTrim, InvalidThreads, InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut,
    * BoundaryLeavesOutAll, RingsRepeated, BoundaryEnclosesNothing (reasons: NothingInRing,
    * NothingBetweenRings, BoundaryElsewhere), StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
    * ArraysLeftOut, OnOneRank (with a reason: NormalsNeedAll, PartsDoNotFit), RankWaits,

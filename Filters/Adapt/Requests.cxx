@@ -93,11 +93,12 @@ bool NeedsWarning(vtkPolyData* meshWithoutTriangles)
     !meshWithoutTriangles->GetInformation()->Has(IsReportedKey());
 }
 
-void CheckMaximumEdgeLength(double length)
+void CheckThreads(int threads)
 {
-  if (!(length >= 0.0))
+  constexpr int most = 1024;
+  if (threads < 0 || threads > most)
   {
-    throw MakeError<sentences::InvalidEdgeLength>(length);
+    throw MakeError<sentences::InvalidThreads>(threads, most);
   }
 }
 

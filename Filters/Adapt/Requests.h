@@ -83,8 +83,8 @@ Progress ProgressOf(vtkAlgorithm* filter);
  */
 bool NeedsWarning(vtkPolyData* meshWithoutTriangles);
 
-/** @throws Error if the limit is no length */
-void CheckMaximumEdgeLength(double length);
+/** @throws Error if it is no NumberOfThreads of a filter */
+void CheckThreads(int threads);
 
 /** Adds a count to the field data, as an array of one value. */
 void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count);

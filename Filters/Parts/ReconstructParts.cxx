@@ -252,7 +252,7 @@ void ReconstructParts::Prepare()
 void ReconstructParts::Check() const
 {
   const DelaunayOptions& options = this->Set.Delaunay;
-  CheckLimits(options);
+  CheckOptions(options);
   if (options.GivenLattice.IsSet() && options.UseLattice == LatticeMode::Automatic &&
     !this->Constraints)
   {
@@ -272,7 +272,7 @@ void ReconstructParts::Check() const
   }
   if (this->Set.FillHoles)
   {
-    CheckMaximumEdgeLength(this->Set.LongestEdge);
+    CheckOptions(this->Set.Fill, this->Set.LongestEdge);
   }
 }
 

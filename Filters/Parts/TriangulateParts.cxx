@@ -70,6 +70,7 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
   LinesOfParts lines;
   if (constraints)
   {
+    WarnOfLattice(this->Options, warnings);
     lines = AddLines(
       *this->Store, constraints, *this->Plane, this->Options, this->Fraction(0.14, 0.15), warnings);
     this->Options.UseLattice = LatticeMode::Off;
@@ -238,7 +239,6 @@ void TriangulateParts::LimitEdges(const Progress& progress)
   }
 }
 
-// The limit of edges is applied again, which is faster than writing what it leaves.
 void TriangulateParts::WarnOfMissing(std::vector<Message>& warnings) const
 {
   if (this->Total.Settled == 0)

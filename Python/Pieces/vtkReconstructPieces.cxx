@@ -35,7 +35,7 @@ vtkReconstructPieces::vtkReconstructPieces()
     made.FillHoles = this->FillHoles;
     made.InterpolatePointData = this->Fill->GetInterpolatePointData() != 0;
     made.DrapeConstraints = this->Delaunay->GetDrapeConstraints() != 0;
-    made.LongestEdge = this->Fill->GetMaximumEdgeLength();
+    made.LongestEdge = this->Fill->GetOpenEdgeLength();
     made.HasConstraints = this->Delaunay;
     made.HasBoundary = this->Trim;
     return made;
