@@ -297,11 +297,13 @@ public:
 
   ///@{
   /**
-   * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
-   * without threads by default, as in ParaView. The output is the same, byte for byte, for any
-   * number. Several threads read the triangles, measure the spacing of the points for the
-   * boundary that is extracted, and write the outputs; work near the boundary is done on one.
-   * Range: 0 to 1024.
+   * Threads to use, of those that vtkSMPTools has: 0 (default) to 1024, of which 0 is all. Its
+   * backend and number are as you have set them; where VTK starts without threads (backend
+   * Sequential), vtkSMPTools::SetBackend("STDThread") or VTK_SMP_BACKEND_IN_USE=STDThread in the
+   * environment gives them. Debian's VTK has them, and the plugin gives them to ParaView. The
+   * output is the same, byte for byte, for any number. Several threads read the triangles, measure
+   * the spacing of the points for the boundary that is extracted, and write the outputs; work near
+   * the boundary is done on one.
    */
   vtkSetMacro(NumberOfThreads, int);
   vtkGetMacro(NumberOfThreads, int);

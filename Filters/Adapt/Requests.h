@@ -20,10 +20,10 @@
 #include <vector>
 
 class vtkAlgorithm;
+class vtkDataObject;
 class vtkFieldData;
 class vtkInformationVector;
 class vtkPolyData;
-class vtkDataObject;
 class vtkStringArray;
 
 namespace elevation
@@ -45,17 +45,18 @@ int AfterError(vtkAlgorithm* filter);
  * Answers a request of the pipeline. An exception that would leave the filter, as when there is no
  * memory even for what surrounds FilterRun::Run(), becomes an error: after an exception VTK takes
  * the filter to be at work for ever, and runs it no more.
- * @param[in] answer  returns what ProcessRequest returns; after an error that is 1, as Run() says
+ * @param[out] errorCode  the filter's; that of the last request for data
+ * @param[in] answer  returns 0 after an error that has been reported
  */
 template <typename Answer>
 int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector* outputs,
   vtkStringArray* messages, unsigned long& errorCode, Answer&& answer)
 {
-  try
   if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
   {
     errorCode = vtkErrorCode::NoError;
   }
+  try
   {
     if (const int result = answer())
     {
@@ -81,6 +82,10 @@ Progress ProgressOf(vtkAlgorithm* filter);
  * Marks a data set as the output of a filter of this module, which has reported why there are no
  * triangles, if there are none. The mark is in the object's information, which no array can fake.
  */
+void MarkAsReported(vtkDataObject* output);
+/** Marks a copy if the original is marked. */
+void CopyMark(vtkDataObject* original, vtkDataObject* copy);
+/** Whether a mesh without triangles needs a warning: it has points, and no mark. */
 bool NeedsWarning(vtkPolyData* meshWithoutTriangles);
 
 /** @throws Error if it is no NumberOfThreads of a filter */
@@ -95,7 +100,3 @@ void AddTuple(vtkFieldData* fieldData, const char* name,
 } // namespace elevation
 
 #endif
-void MarkAsReported(vtkDataObject* output);
-/** Marks a copy if the original is marked. */
-void CopyMark(vtkDataObject* original, vtkDataObject* copy);
-/** Whether a mesh without triangles needs a warning: it has points, and no mark. */

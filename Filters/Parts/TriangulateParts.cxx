@@ -251,6 +251,7 @@ void TriangulateParts::WarnOfMissing(std::vector<Message>& warnings) const
   }
 }
 
+// The limit of edges is applied again, which is faster than writing what it leaves.
 SurfacePart TriangulateParts::Take(int part, const Progress& progress)
 {
   SurfacePart taken = this->Store->TakeWhole(part, elevation::Part(progress, 0.0, 0.7));

@@ -62,7 +62,7 @@ struct TrimOptions
   Lattice Grid; ///< the same
   /** Whether to return the parents of triangles. */
   bool ReturnParents = true;
-  /** Threads to use; 0: one per core. The result is the same. */
+  /** Threads to use; 0: all there are. The result is the same. */
   int NumberOfThreads = 1;
   Progress Monitor;
 };
