@@ -161,7 +161,7 @@ int vtkTrimOutwardTriangles::FillOutputPortInformation(int, vtkInformation* info
 vtkTypeBool vtkTrimOutwardTriangles::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return elevation::Guarded(this, outputVector, this->Messages, [&] {
+  return elevation::Guarded(this, request, outputVector, this->Messages, this->ErrorCode, [&] {
     return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
       ? elevation::MakeOutputs(inputVector, outputVector)
       : this->Superclass::ProcessRequest(request, inputVector, outputVector);
@@ -220,11 +220,7 @@ int vtkTrimOutwardTriangles::RequestData(
     vtkPolyData* const given = block.Second;
     Report(progress, 0.0);
     elevation::CheckArrays(input);
-    const elevation::Message wrong = elevation::WrongOption(options);
-    if (!wrong.IsEmpty())
-    {
-      throw elevation::CodedError(wrong);
-    }
+    elevation::CheckOptions(options);
     if (given)
     {
       elevation::CheckArrays(given, "The boundary's");

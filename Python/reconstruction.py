@@ -332,7 +332,7 @@ def run_chain(
             result.open_edge_length, result.why_opened = given["open_edge_length"], AS_GIVEN
         elif not given.get("maximum_elevation_error"):  # else long edges are no voids
             length, result.why_opened = length_to_open(ranks, last.GetOutput(), result)
-            filling.SetMaximumEdgeLength(length)
+            filling.SetOpenEdgeLength(length)
             result.open_edge_length = length
         result.fill = last = run("fill", filling)
         result.triangles["filled"] = total(ranks, last.GetOutput().GetNumberOfPolys())

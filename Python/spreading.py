@@ -148,10 +148,6 @@ def gather_points(ranks, points):
     rank; the others have none. A filter that is given no triangle does it, by the rules of all filters."""
     gatherer, given = vtkTrimOutwardTriangles(), points.NewInstance()
     given.ShallowCopy(points)
-    # The filter takes it for what was triangulated, and does not report that there are no triangles.
-    unused = vtkIdTypeArray()
-    unused.SetName("UnusedPointIds")
-    given.GetFieldData().AddArray(unused)
     are_numbered = points.GetPointData().GetGlobalIds() or not points.GetNumberOfPoints()
     if total(ranks, not are_numbered):  # else points at one place would count once
         count = points.GetNumberOfPoints()

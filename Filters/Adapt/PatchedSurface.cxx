@@ -18,6 +18,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace elevation
 {
@@ -25,6 +26,35 @@ namespace elevation
 namespace
 {
 constexpr const char* NameOfHoles = "HoleId";
+} // namespace
+
+void CheckOptions(const FillOptions& options, double openEdgeLength)
+{
+  CheckThreads(options.NumberOfThreads);
+  if (!(openEdgeLength >= 0.0))
+  {
+    throw MakeError<sentences::InvalidOpenEdgeLength>(openEdgeLength);
+  }
+  if (!(options.MaximumHoleSize >= 0.0))
+  {
+    throw MakeError<sentences::InvalidHoleSize>(options.MaximumHoleSize);
+  }
+  if (options.MaximumHoleEdges < 0)
+  {
+    throw MakeError<sentences::InvalidHoleEdges>(options.MaximumHoleEdges);
+  }
+  if (!(options.Spacing >= 0.0) || std::isinf(options.Spacing))
+  {
+    throw MakeError<sentences::InvalidSpacing>(options.Spacing);
+  }
+  if (options.MaximumInsertedPoints < 0)
+  {
+    throw MakeError<sentences::InvalidInsertedPoints>(options.MaximumInsertedPoints);
+  }
+  if (options.MaximumExpectedPoints < 0)
+  {
+    throw MakeError<sentences::InvalidExpectedPoints>(options.MaximumExpectedPoints);
+  }
 }
 
 bool IsInterpolated(vtkPointData* pointData, vtkAbstractArray* array)

@@ -20,6 +20,12 @@
 namespace elevation
 {
 
+/**
+ * @param[in] openEdgeLength  the OpenEdgeLength of the filter
+ * @throws Error naming a property that cannot be used
+ */
+void CheckOptions(const FillOptions& options, double openEdgeLength);
+
 /** Whether the values of an array at new points are interpolated as z is. */
 bool IsInterpolated(vtkPointData* pointData, vtkAbstractArray* array);
 

@@ -8,15 +8,12 @@
 #define UsedPoints_h
 
 #include "Kernel/Base/Base.h"
+#include "VTKClasses.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
 #include <vector>
-
-class vtkAbstractArray;
-class vtkPointSet;
-class vtkPolyData;
 
 namespace elevation
 {

@@ -545,7 +545,7 @@ bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolat
   int type = VTK_VOID;
   bool hasIds = true;
   const auto isFit = [&](vtkPolyData* part) {
-    CheckMaximumEdgeLength(longest);
+    CheckOptions(options, longest);
     if (part->GetNumberOfPoints() > 0)
     {
       type = part->GetPoints()->GetDataType();

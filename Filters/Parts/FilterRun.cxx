@@ -138,10 +138,6 @@ int FilterRun::Run(const std::function<void(Block&)>& body)
       [&] { places = ListPlaces(vtkDataObject::GetData(this->Inputs[0]), this->Outputs); });
     const vtkSmartPointer<vtkPolyData> second = this->ShareSecond(ranks);
     this->RunPlaces(places, ranks, second, body);
-    if (this->IsFirst && places.empty() && this->Occupied.empty() && ranks.Own() == 0)
-    {
-      this->Warnings.push_back(MakeMessage<sentences::EmptyBlocks>());
-    }
   }
   catch (const std::exception& error)
   {
@@ -150,7 +146,7 @@ int FilterRun::Run(const std::function<void(Block&)>& body)
     this->Warnings.clear();
   }
   this->Report(ranks);
-  return 1;
+  return IsOnAny(ranks, !this->Errors.empty()) ? 0 : 1;
 }
 
 /** Whether the run before was aborted, too, and has said so. */
@@ -285,7 +281,7 @@ void FilterRun::RemoveUnused(Block& block, const Ranks& ranks) const
   for (std::size_t port = 0; port < static_cast<std::size_t>(this->CleanedOutputs); ++port)
   {
     vtkPolyData* const surface = block.Outputs.empty() ? nullptr : block.Outputs[port];
-    if (surface && this->IsFirst)
+    if (surface && this->ListsUnused)
     {
       NameUnusedByOriginalIds(surface);
     }
@@ -353,6 +349,7 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
     {
       break;
     }
+    std::for_each(place.Outputs.begin(), place.Outputs.end(), MarkAsReported);
     // A rank without points has the rest of the outputs, and leaves the messages to the others.
     const bool isReported = this->ShouldReport(place, ranks);
     const double next = done + workOf(place);

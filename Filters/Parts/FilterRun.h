@@ -67,8 +67,7 @@ public:
    * (UsedPoints.h): on several ranks global ids or places in the input, rank after rank.
    */
   int CleanedOutputs = 0;
-  /** Whether to report a composite without any data set; the filter before has reported others. */
-  bool IsFirst = false;
+  bool ListsUnused = false; ///< whether the filter lists unused points in field data
   /** Results of the filter: set to 0, and added up (the largest taken) over blocks and ranks. */
   std::vector<vtkIdType*> Sums;
   std::vector<double*> Maxima;
@@ -85,8 +84,7 @@ public:
 
   /**
    * @param[in] body  adds its results to Sums and Maxima last, when it cannot fail any more
-   * @return what RequestData returns: always 1, because on 0 the executive adds an error of its own
-   *         that tells the user nothing.
+   * @return what RequestData returns: on all ranks 0 after an error in any block
    */
   int Run(const std::function<void(Block&)>& body);
 

@@ -252,7 +252,7 @@ void ReconstructParts::Prepare()
 void ReconstructParts::Check() const
 {
   const DelaunayOptions& options = this->Set.Delaunay;
-  CheckLimits(options);
+  CheckOptions(options);
   if (options.GivenLattice.IsSet() && options.UseLattice == LatticeMode::Automatic &&
     !this->Constraints)
   {
@@ -276,7 +276,7 @@ void ReconstructParts::Check() const
   }
   if (this->Set.FillHoles)
   {
-    CheckMaximumEdgeLength(this->Set.LongestEdge);
+    CheckOptions(this->Set.Fill, this->Set.LongestEdge);
   }
 }
 
@@ -307,15 +307,7 @@ void ReconstructParts::Triangulate(const Progress& progress)
     options.Monitor = progress;
     this->Work->Triangulate(
       this->NumberOfParts / this->Everybody->Count(), this->Constraints, options, warnings);
-    const TriangulateParts::Totals& all = this->Work->All();
-    if (all.Settled == 0)
-    {
-      warnings.push_back(MakeMessage<sentences::NoTriangle>(all.Points));
-    }
-    else if (all.Effect.AreMostMissing())
-    {
-      warnings.push_back(AdviceOnLimit(options.MaximumEdgeLength, all.Effect));
-    }
+    this->Work->WarnOfMissing(warnings);
     warnings = OnFirst(warnings, *this->Everybody);
   });
   this->ReportWarnings(warnings);

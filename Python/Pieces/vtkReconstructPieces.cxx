@@ -39,7 +39,7 @@ vtkReconstructPieces::vtkReconstructPieces()
     made.RemoveUnusedPoints = this->Delaunay->GetRemoveUnusedPoints() ||
       (this->TrimOutward && this->Trim->GetRemoveUnusedPoints()) ||
       (this->FillHoles && this->Fill->GetRemoveUnusedPoints());
-    made.LongestEdge = this->Fill->GetMaximumEdgeLength();
+    made.LongestEdge = this->Fill->GetOpenEdgeLength();
     made.HasConstraints = this->Delaunay;
     made.HasBoundary = this->Trim;
     return made;

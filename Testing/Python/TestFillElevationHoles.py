@@ -74,7 +74,7 @@ class TestFillElevationHoles(unittest.TestCase):
 
     def test_defaults(self):
         fill = vtkFillElevationHoles()
-        self.assertEqual(fill.GetMaximumEdgeLength(), 0.0)
+        self.assertEqual(fill.GetOpenEdgeLength(), 0.0)
         self.assertEqual(fill.GetMaximumHoleSize(), 0.0)
         self.assertEqual(fill.GetMaximumHoleEdges(), 0)
         self.assertEqual(fill.GetMaximumNumberOfInsertedPoints(), 100_000_000)
@@ -91,7 +91,7 @@ class TestFillElevationHoles(unittest.TestCase):
         text = str(vtkFillElevationHoles())
         for name in ("MaximumHoleSize", "MaximumHoleEdges", "MaximumNumberOfInsertedPoints",
                      "MaximumNumberOfExpectedPoints", "Spacing", "Interpolation", "InterpolatePointData",
-                     "NumberOfThreads", "Controller", "NumberOfHoles", "NumberOfFilledHoles", "MaximumEdgeLength"):
+                     "NumberOfThreads", "Controller", "NumberOfHoles", "NumberOfFilledHoles", "OpenEdgeLength"):
             self.assertIn(name + ":", text)
 
     def test_the_number_of_threads_does_not_change_a_byte(self):

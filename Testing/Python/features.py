@@ -101,7 +101,7 @@ interpolation: thin plate         | Interpolation=2            | coast and lakes
 interpolation: adaptive           | Interpolation=3            | coast and lakes              | s  s  s  s  s  s  s
 interpolation: cubic spline       | Interpolation=4            | coast and lakes              | s  s  s  s  s  s  s
 on the nodes of a lattice         |                            | lattice and lakes            | s  s  s  s  s  s  s
-long triangles opened             | MaximumEdgeLength=2.5      | coast and lakes              | s  s  s  s  s  s  s
+long triangles opened             | OpenEdgeLength=2.5         | coast and lakes              | s  s  s  s  s  s  s
 largest hole                      | MaximumHoleSize=4.0        | coast and lakes              | s  s  s  s  s  s  s
 most edges of a hole              | MaximumHoleEdges=13        | coast and lakes              | s  s  s  s  s  s  s
 what the boundary cut out, open   |                            | coast and lakes              | s  s  s  s  s  s  s
