@@ -5,7 +5,8 @@
  * @brief   fills the holes of an elevation surface with new points and triangles, and lists them
  *
  * Input: a vtkPolyData of triangles, an elevation surface from any source, of one or more
- * components. x,y is the plane of projection, z the elevation.
+ * components. x,y is the plane of projection, z the elevation. Cells that are marked as hidden
+ * (vtkGhostType), or have a point that is, are none, and count in no message.
  *
  * @par What is a hole:
  * A hole is an empty region that the surface encloses. The outer boundary of a component is never a

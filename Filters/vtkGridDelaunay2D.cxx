@@ -321,6 +321,7 @@ int vtkGridDelaunay2D::RequestData(
     elevation::ConstrainedTriangulation constrained = TriangulateWith(
       source, points.View, options, Part(progress, 0.0, triangulated), block.Warnings);
     elevation::Triangulation& triangulation = constrained.Result;
+    elevation::NameHidden(elevation::GhostsOf(block.Input->GetPointData()), triangulation);
     WarnOfMissing(source, points.View, options, constrained, Part(progress, triangulated, told),
       block.Warnings);
     elevation::PassPoints(

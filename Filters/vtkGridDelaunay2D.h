@@ -122,7 +122,8 @@
  * @par Field data of the output:
  * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;
  * - UnusedPointReasons (vtkUnsignedCharArray): for each of them, 1 = duplicate (another point with
- *   the same x,y is the vertex), 2 = not finite (x, y or z), 3 = within MaximumElevationError;
+ *   the same x,y is the vertex), 2 = not finite (x, y or z), 3 = within MaximumElevationError,
+ *   4 = hidden: marked as HIDDENPOINT in vtkGhostType, as VTK marks blanked nodes;
  * - NumberOfDuplicatePoints, NumberOfNonFinitePoints (vtkIdTypeArray, one value);
  * - NumberOfRedundantPoints (vtkIdTypeArray, one value), LargestElevationError (vtkDoubleArray, one
  *   value), only with a MaximumElevationError;

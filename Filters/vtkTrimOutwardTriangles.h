@@ -69,7 +69,8 @@
  * - The input should be a Delaunay triangulation. Its holes stay open and are part of the boundary.
  *
  * @par Outputs:
- * - 0: the triangles inside. Vertices and lines of the input come first.
+ * - 0: the triangles inside. Vertices and lines of the input come first. Cells that are marked as hidden
+ *   (vtkGhostType), or have a point that is, are none, and count in no message.
  * - 1: the triangles outside. With a given boundary, both have a point array OnBoundary
  *   (vtkUnsignedCharArray): 1 for points on its edges, else 0. A 1 that an input has in
  *   an array of this name and type stays. By it vtkFillElevationHoles leaves open what the boundary

@@ -34,6 +34,7 @@ class Cloud:
     words    {name: Words} of columns of text
     files    of merged files, Words with the file of each point, else None
     grid     the PixelGrid of points from a raster, or None
+    plane    the Plane that its points have been turned out of, or None
     pixels   pixels_of() its pixels, where ranks may have others of the same raster
     """
 
@@ -46,12 +47,12 @@ class Cloud:
         self.largest_cell = 0.0
         self.z_name, self.is_horizon = "", False
         self.words, self.files = {}, None
-        self.grid = self.pixels = None
+        self.grid = self.pixels = self.plane = None
 
     def copy(self):
         """One that can be changed; the points themselves are shared, as nothing changes them."""
         copied = Cloud(self.points, self.notes, self.left_out, self.lines, self.crs)
-        copied.grid = self.grid
+        copied.grid, copied.plane = self.grid, self.plane
         copied.largest_cell, copied.files = self.largest_cell, self.files
         copied.z_name, copied.is_horizon = self.z_name, self.is_horizon
         copied.words = dict(self.words)

@@ -27,6 +27,7 @@ from .options import (
 )
 from .names import PROGRAM, written_for
 from .pieces import Pieces
+from .planes import in_plane
 from .ranks import agreed, by_first, together, total
 from .reconstruction import check_spacing, least_reach, run_chain
 from .report import picture_subtitle, print_report
@@ -128,6 +129,7 @@ class Run:
         if options.faults:
             lines["faults"] = self.read_faults(cloud)
         names = {"points": options.files[0], "boundary": options.boundary, "faults": options.faults}
+        cloud, lines = in_plane(cloud, lines, options.given)
         lines, notes = fitted(cloud, lines, names, options.given, options.strict)
         cloud.notes += notes + notes_on(cloud, lines)
         return cloud, lines.get("boundary"), lines.get("faults")

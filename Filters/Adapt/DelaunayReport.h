@@ -11,12 +11,16 @@
 #include "Kernel/Constrain/Constrain.h"
 
 class vtkFieldData;
+class vtkUnsignedCharArray;
 
 namespace elevation
 {
 
 /** @throws Error if MaximumEdgeLength or MaximumElevationError is wrong, or both are set */
 void CheckLimits(const DelaunayOptions& options);
+
+/** Tells points that are hidden, and so had no place, from those that are not finite. */
+void NameHidden(vtkUnsignedCharArray* marks, Triangulation& triangulation);
 
 /** Adds the field data on points, lines and lattice. */
 void AddReport(

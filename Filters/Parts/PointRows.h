@@ -7,6 +7,7 @@
 #ifndef PointRows_h
 #define PointRows_h
 
+#include "Adapt/Adapt.h"
 #include "Bytes.h"
 #include "Kernel/Base/Base.h"
 #include "Ranks.h"
@@ -21,7 +22,7 @@ class vtkAbstractArray;
 class vtkDataSetAttributes;
 class vtkPointData;
 class vtkPointSet;
-class vtkPointSet;
+class vtkUnsignedCharArray;
 
 namespace elevation
 {
@@ -58,7 +59,10 @@ public:
   std::size_t Count() const { return this->Ids.size(); }
   const double* At(std::size_t place) const { return this->Coordinates.data() + 3 * place; }
 
+  /** Whether it has a place, and is not hidden. */
   bool IsFinite(std::size_t place) const;
+  /** The flags of ghosts, or nullptr. */
+  vtkUnsignedCharArray* Marks() const;
 
   /** Takes points, numbered from @a first; their arrays are not copied. */
   void Read(vtkPointSet* points, vtkIdType first, const Progress& progress);
@@ -80,10 +84,11 @@ public:
 
 private:
   void View(vtkPointData* data);
+  std::size_t PlaceOfMarks = 0; // among the arrays; their number: there are none
 };
 
-/** The positions, in place. */
-PointView ViewOf(const PointRows& rows);
+/** The positions, in place unless some are hidden: these have none. */
+PointsOfDataSet ViewOf(const PointRows& rows);
 
 } // namespace elevation
 
