@@ -79,7 +79,7 @@ def wall_note(points, ranks=None):
         return None
     plane, (off, across, along) = best_plane(points, ranks)
     steepness = numpy.degrees(numpy.arccos(min(1.0, plane.axes[2][2])))
-    if steepness < STEEP or off > THIN * across or across < LEAST_WIDTH * along:
+    if steepness < STEEP or off > THIN * across or not across > LEAST_WIDTH * along:
         return None
     return (
         f"the points lie on a wall: their best plane is {steepness:.0f} degrees steep, and they scatter "

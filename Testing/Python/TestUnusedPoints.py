@@ -153,7 +153,7 @@ class Products(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             points, surface = (os.path.join(folder, name) for name in ("points.xyz", "surface.vtp"))
             numpy.savetxt(points, XYZ[numpy.isfinite(XYZ).all(axis=1)])
-            for more in ([], ["--keep-unused-points"]):
+            for more in ([], ["--no-remove-unused-points"]):
                 main([points, "-o", surface, "--no-picture", *more])
                 self.assertEqual(read(surface).points.GetBounds()[1] == 400.0, bool(more))
 
