@@ -10,7 +10,8 @@
  *
  * @par Input:
  * A vtkPolyData of triangles, an elevation surface from any source, of one or more components. x,y is
- * the plane of projection, z the elevation.
+ * the plane of projection, z the elevation. Cells that are marked as hidden (vtkGhostType), or have a
+ * point that is, are none, and count in no message.
  *
  * @par Outputs:
  * - 0, the surface: the points and cells of the input first, with their ids, then the new points and

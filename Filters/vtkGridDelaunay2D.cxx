@@ -315,8 +315,9 @@ int vtkGridDelaunay2D::RequestData(
     elevation::ConstrainedTriangulation constrained = TriangulateWith(
       source, points.View, options, SubProgress(progress, 0.0, triangulated), block.Warnings);
     elevation::Triangulation& triangulation = constrained.Result;
-    WarnOfMissing(source, points.View, options, constrained,
-      SubProgress(progress, triangulated, told), block.Warnings);
+    elevation::NameHidden(elevation::GhostsOf(block.Input->GetPointData()), triangulation);
+    WarnOfMissing(source, points.View, options, constrained, SubProgress(progress, triangulated, told),
+      block.Warnings);
     elevation::PassPoints(
       block.Input, source, constrained.Added, SubProgress(progress, told, split), output);
     output->GetFieldData()->PassData(block.Input->GetFieldData());

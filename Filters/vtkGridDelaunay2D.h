@@ -17,7 +17,8 @@
  * constraints add come behind those of the input. Field data:
  * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;
  * - UnusedPointReasons (vtkUnsignedCharArray): for each of them, 1 = duplicate (another point with
- *   the same x,y is the vertex), 2 = not finite (x, y or z), 3 = within MaximumElevationError;
+ *   the same x,y is the vertex), 2 = not finite (x, y or z), 3 = within MaximumElevationError,
+ *   4 = hidden: marked as HIDDENPOINT in vtkGhostType, as VTK marks blanked nodes;
  * - NumberOfDuplicatePoints, NumberOfNonFinitePoints, NumberOfConstraintCrossings,
  *   NumberOfAddedPoints, with a MaximumElevationError NumberOfRedundantPoints (vtkIdTypeArray, one
  *   value) and LargestElevationError (vtkDoubleArray, one value);

@@ -18,7 +18,8 @@
  * GapTolerance times the spacing of the points there.
  *
  * @par Outputs:
- * - 0: the triangles inside. Vertices and lines of the input come first.
+ * - 0: the triangles inside. Vertices and lines of the input come first. Cells that are marked as hidden
+ *   (vtkGhostType), or have a point that is, are none, and count in no message.
  * - 1: the triangles outside. With a given boundary, both have a point array OnBoundary
  *   (vtkUnsignedCharArray): 1 for points on its edges, else 0. By it vtkFillElevationHoles leaves
  *   open what the boundary has cut out.

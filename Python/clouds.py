@@ -35,6 +35,7 @@ class Cloud:
     files    of merged files, Words with the file of each point, else None
     grid     the PixelGrid of points from a raster, or None
     frame    the Frame of that raster, where its steps are even, or None
+    plane    the Plane that its points have been turned out of, or None
     pixels   pixels_of() its pixels, where ranks may have others of the same raster
     """
 
@@ -47,12 +48,12 @@ class Cloud:
         self.largest_cell = 0.0
         self.z_name, self.is_horizon = "", False
         self.words, self.files = {}, None
-        self.grid = self.pixels = self.frame = None
+        self.grid = self.pixels = self.frame = self.plane = None
 
     def copy(self):
         """One that can be changed; the points themselves are shared, as nothing changes them."""
         copied = Cloud(self.points, self.notes, self.left_out, self.lines, self.crs)
-        copied.grid, copied.frame = self.grid, self.frame
+        copied.grid, copied.frame, copied.plane = self.grid, self.frame, self.plane
         copied.largest_cell, copied.files = self.largest_cell, self.files
         copied.z_name, copied.is_horizon = self.z_name, self.is_horizon
         copied.words = dict(self.words)

@@ -27,6 +27,7 @@ from .options import (
 )
 from .names import PROGRAM, written_for
 from .pieces import Pieces
+from .planes import in_plane
 from .projecting import project
 from .ranks import agreed, by_first, together, total
 from .reconstruction import check_spacing, least_reach, run_chain
@@ -132,6 +133,7 @@ class Run:
         for data in lines.values() if options.project else ():
             set_crs(data, crs_of(data) or crs)  # lines that tell none are in that of the points
         names = {"points": options.files[0], "boundary": options.boundary, "faults": options.faults}
+        cloud, lines = in_plane(cloud, lines, options.given)
         lines, notes = fitted(cloud, lines, names, options.given, options.strict)
         cloud.notes += notes + notes_on(cloud, lines)
         return cloud, lines.get("boundary"), lines.get("faults")

@@ -186,8 +186,8 @@ class Property:
         found = []
         for rule in ("needs", "excludes"):
             if rule in self.words:
-                other, words = self.words[rule].split(": ", 1)
-                found.append((rule == "needs", other, words))
+                others, words = self.words[rule].split(": ", 1)
+                found += [(rule == "needs", other, words) for other in others.split()]
         return found
 
 

@@ -28,6 +28,7 @@ from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .names import argument
 from .opening import length_to_open
 from .paths import check_suffix
+from .planes import in_plane, turn_back
 from .properties import COLOURS, PROPERTIES, checked
 from .ranks import extremes, total
 from .reading.arrays import cloud_of_columns, cloud_of_grid, columns_of
@@ -71,9 +72,11 @@ def as_cloud(points: Points, x: Any = None, y: Any = None) -> Cloud:
 def cloud_of_mesh(points):
     """The points of a vtkPointSet. Raises ElevationSurfaceError for faces of no elevation surface.
     """
+    from .reading.vtk_files import with_hidden_nodes
+
     faces = faces_of(points)
     try:
-        return Cloud(points, notes_on_faces(faces) if faces else ())
+        return Cloud(with_hidden_nodes(points), notes_on_faces(faces) if faces else ())
     except ElevationSurfaceError as error:
         raise ElevationSurfaceError(
             f"points: the mesh {error}, or give its points alone, as an array"
@@ -244,6 +247,8 @@ class Reconstruction:
         """
         from .writing.grids import grid_of
 
+        if self.cloud.plane:
+            raise ElevationSurfaceError("a surface with plane=best is no grid over x,y")
         try:
             step = None if step is None else KINDS["step"].convert(step)
         except ValueError:
@@ -348,6 +353,8 @@ def run_chain(
     result.removes_unused = given.get("remove_unused_points", True)
     if result.removes_unused:
         result.surface = without_unused(ranks, result.complete, last_id(ranks, cloud.points))
+    if cloud.plane:
+        turn_back(result)
     return result
 
 
@@ -357,6 +364,7 @@ def reconstruct_cloud(cloud, lines, names, given, *, strict=False, ranks=None, *
     lines, names  as fitted() takes them
     """
     check_spacing(least_reach(cloud.points, ranks), given.get("spacing", 0.0))
+    cloud, lines = in_plane(cloud, lines, given, ranks)
     lines, notes = fitted(cloud, lines, names, given, strict, ranks)
     boundary, faults = lines.get("boundary"), lines.get("faults")
     result = run_chain(cloud, boundary, faults, given, strict=strict, ranks=ranks, **options)

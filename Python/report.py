@@ -14,6 +14,7 @@ from .names import option
 from .properties import LATTICE_MODES
 from .ranks import all_values, extremes, total
 from .spreading import (
+    HIDDEN,
     IN_NO_TRIANGLE,
     NOT_FINITE,
     OUT_OF_OUTLINE,
@@ -30,6 +31,7 @@ REASONS = {
     SAME_PLACE: "same x,y as another point",
     NOT_FINITE: "not finite",
     WITHIN_ERROR: "within the elevation error",
+    HIDDEN: "marked as hidden",
     OUT_OF_OUTLINE: OUTSIDE,
     IN_NO_TRIANGLE: "in no triangle below the edge limit",
 }
@@ -136,7 +138,7 @@ def report_of_trimming(outward, trim, boundary_name, rings):
 def distance_of(result, reasons, ids):
     """The distance of all points that the user wants in the surface, used or not."""
     coordinates = result.coordinates
-    measured = numpy.isfinite(coordinates).all(axis=1)
+    measured = numpy.isfinite(coordinates).all(axis=1) & (reasons != HIDDEN)
     if result.boundary_name:
         measured &= reasons != OUT_OF_OUTLINE
     began = time.perf_counter()

@@ -24,8 +24,8 @@ IDS = "PlaceInInput"  # made for the way, where points have no global ids
 GHOSTS = vtkDataSetAttributes.GhostArrayName()
 OF_A_RANK = ("WorkOfRank", "WorkOfTrim")  # field data
 TAG = 20
-# Why a point is in no triangle, by number; the first three are those of vtkGridDelaunay2D.
-SAME_PLACE, NOT_FINITE, WITHIN_ERROR, OUT_OF_OUTLINE, IN_NO_TRIANGLE = 1, 2, 3, 4, 5
+# Why a point is in no triangle, by number; the first four are those of vtkGridDelaunay2D.
+SAME_PLACE, NOT_FINITE, WITHIN_ERROR, HIDDEN, OUT_OF_OUTLINE, IN_NO_TRIANGLE = 1, 2, 3, 4, 5, 6
 
 
 def update(algorithm, ranks):

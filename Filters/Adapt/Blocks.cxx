@@ -185,7 +185,8 @@ vtkSmartPointer<vtkPolyData> JoinBlocks(vtkDataObject* input, const std::string&
   auto* const tree = vtkDataObjectTree::SafeDownCast(input);
   if (!tree)
   {
-    return vtkPolyData::SafeDownCast(input);
+    auto* const lines = vtkPolyData::SafeDownCast(input);
+    return lines ? WithoutHiddenCells(lines) : nullptr;
   }
   std::vector<vtkSmartPointer<vtkPolyData>> parts;
   auto each = vtk::TakeSmartPointer(tree->NewIterator());
@@ -199,6 +200,7 @@ vtkSmartPointer<vtkPolyData> JoinBlocks(vtkDataObject* input, const std::string&
         "; lines and polygons are in a vtkPolyData.");
     }
     CheckArrays(parts.back(), "The " + name + (name.back() == 's' ? "'" : "'s"));
+    parts.back() = WithoutHiddenCells(parts.back());
   }
   return parts.empty() ? vtkSmartPointer<vtkPolyData>::New() : Append(parts);
 }

@@ -5,6 +5,7 @@
 #include "Kernel/Messages/Messages.h"
 #include "Requests.h"
 
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
@@ -63,6 +64,21 @@ void AddUnusedPoints(
 }
 
 } // namespace
+
+void NameHidden(vtkUnsignedCharArray* marks, Triangulation& triangulation)
+{
+  for (std::size_t i = 0; marks && i < triangulation.UnusedPoints.size(); ++i)
+  {
+    UnusedReason& reason = triangulation.UnusedReasons[i];
+    if (reason == UnusedReason::NotFinite &&
+      (marks->GetValue(triangulation.UnusedPoints[i]) & vtkDataSetAttributes::HIDDENPOINT))
+    {
+      reason = UnusedReason::Hidden;
+      ++triangulation.NumberOfHidden;
+      --triangulation.NumberOfNotFinite;
+    }
+  }
+}
 
 void AddReport(
   const ConstrainedTriangulation& constrained, const Progress& progress, vtkFieldData* fieldData)

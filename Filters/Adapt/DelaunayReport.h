@@ -17,6 +17,9 @@ namespace elevation
 /** @throws Error naming a property that cannot be used, or two that exclude each other */
 void CheckOptions(const DelaunayOptions& options);
 
+/** Tells points that are hidden, and so had no place, from those that are not finite. */
+void NameHidden(vtkUnsignedCharArray* marks, Triangulation& triangulation);
+
 /** Adds the field data on points, lines and lattice. */
 void AddReport(
   const ConstrainedTriangulation& constrained, const Progress& progress, vtkFieldData* fieldData);

@@ -21,6 +21,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkTypeInt32Array.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkVariant.h"
 
 #include <algorithm>
@@ -39,6 +40,41 @@ namespace
 constexpr vtkIdType TuplesAtOnce = 65536;
 } // namespace
 
+namespace
+{
+/** Which tuples have a mark of vtkDataSetAttributes. */
+bool IsMarked(vtkUnsignedCharArray* marks, vtkIdType tuple, int mark)
+{
+  return marks && tuple < marks->GetNumberOfTuples() && (marks->GetValue(tuple) & mark) != 0;
+}
+
+bool IsAnyMarked(vtkUnsignedCharArray* marks, int mark)
+{
+  return marks && marks->GetNumberOfComponents() == 1 &&
+    std::any_of(marks->GetPointer(0), marks->GetPointer(0) + marks->GetNumberOfTuples(),
+      [mark](unsigned char value) { return (value & mark) != 0; });
+}
+} // namespace
+
+vtkSmartPointer<vtkDataArray> WithoutHidden(vtkDataArray* coordinates, vtkUnsignedCharArray* marks)
+{
+  constexpr int hidden = vtkDataSetAttributes::HIDDENPOINT;
+  if (!IsAnyMarked(marks, hidden))
+  {
+    return coordinates;
+  }
+  auto shown = vtk::TakeSmartPointer(coordinates->NewInstance());
+  shown->DeepCopy(coordinates);
+  for (vtkIdType i = 0; i < shown->GetNumberOfTuples(); ++i)
+  {
+    for (int c = 0; IsMarked(marks, i, hidden) && c < 3; ++c)
+    {
+      shown->SetComponent(i, c, vtkMath::Nan());
+    }
+  }
+  return shown;
+}
+
 PointsOfDataSet ViewPoints(vtkPointSet* input)
 {
   PointsOfDataSet points;
@@ -53,6 +89,10 @@ PointsOfDataSet ViewPoints(vtkPointSet* input)
       std::to_string(MaximumNumberOfPoints) + " can be handled at once. Cut it into parts.");
   }
   points.Owner = input->GetPoints()->GetData();
+  if (IsFloatingPoint(points.Owner))
+  {
+    points.Owner = WithoutHidden(points.Owner, GhostsOf(input->GetPointData()));
+  }
   points.View.Count = static_cast<Index>(count);
   if (auto* floats = vtkFloatArray::FastDownCast(points.Owner))
   {
@@ -64,8 +104,8 @@ PointsOfDataSet ViewPoints(vtkPointSet* input)
   if (!doubles)
   {
     converted->DeepCopy(points.Owner);
-    points.Owner = converted;
-    doubles = converted;
+    points.Owner = WithoutHidden(converted, GhostsOf(input->GetPointData()));
+    doubles = vtkDoubleArray::FastDownCast(points.Owner);
   }
   points.View.Double = doubles->GetPointer(0);
   return points;
@@ -154,6 +194,44 @@ void CheckArrays(vtkPolyData* input, const std::string& owner)
   CheckCells(input, owner, input->GetNumberOfPolys() < 0);
   CheckTuples(input->GetCellData(), input->GetNumberOfCells(),
     owner + (owner.empty() ? "Cell" : " cell"), "cells");
+}
+
+vtkSmartPointer<vtkPolyData> WithoutHiddenCells(vtkPolyData* input)
+{
+  vtkUnsignedCharArray* const ofCells = GhostsOf(input->GetCellData());
+  vtkUnsignedCharArray* const ofPoints = GhostsOf(input->GetPointData());
+  constexpr int hidden = vtkDataSetAttributes::HIDDENCELL;
+  if (!IsAnyMarked(ofCells, hidden) && !IsAnyMarked(ofPoints, vtkDataSetAttributes::HIDDENPOINT))
+  {
+    return input;
+  }
+  CheckArrays(input);
+  CheckCells(input);
+  auto shown = vtkSmartPointer<vtkPolyData>::New();
+  shown->ShallowCopy(input);
+  shown->EditableOn();
+  shown->DeleteCells(); // the map of cells, which may be the input's
+  shown->BuildCells();
+  vtkNew<vtkIdList> corners;
+  bool isAny = false;
+  for (vtkIdType cell = 0; cell < shown->GetNumberOfCells(); ++cell)
+  {
+    shown->GetCellPoints(cell, corners);
+    if (IsMarked(ofCells, cell, hidden) ||
+      std::any_of(corners->begin(), corners->end(), [ofPoints](vtkIdType point) {
+        return IsMarked(ofPoints, point, vtkDataSetAttributes::HIDDENPOINT);
+      }))
+    {
+      shown->DeleteCell(cell);
+      isAny = true;
+    }
+  }
+  if (!isAny)
+  {
+    return input;
+  }
+  shown->RemoveDeletedCells();
+  return shown;
 }
 
 vtkIdType FirstPolygon(vtkPolyData* input)

@@ -29,7 +29,15 @@ struct PointsOfDataSet
 };
 
 /**
- * Views float and double points in place; any other type is converted to double.
+ * Coordinates in which points with the mark of hidden ones are NaN, so that nothing uses them; the array
+ * itself if there is none. @param[in] marks  nullptr: none
+ */
+vtkSmartPointer<vtkDataArray> WithoutHidden(
+  vtkDataArray* coordinates, vtkUnsignedCharArray* marks);
+
+/**
+ * Views float and double points in place; any other type is converted to double. Hidden points have no
+ * place.
  * @throws Error when there are more points than the kernel's Index holds.
  */
 PointsOfDataSet ViewPoints(vtkPointSet* input);
@@ -43,6 +51,12 @@ PointsOfDataSet ViewPoints(vtkPointSet* input);
  */
 void CheckPointArrays(vtkPointSet* input, const std::string& owner = "");
 void CheckArrays(vtkPolyData* input, const std::string& owner = "");
+
+/**
+ * A data set without cells that are marked as hidden or have a point that is, as VTK takes them; itself
+ * if there is none. @throws Error as CheckArrays() where there are marks of hidden ones
+ */
+vtkSmartPointer<vtkPolyData> WithoutHiddenCells(vtkPolyData* input);
 
 /** Triangles of a polydata as the kernel reads them; Points and Converted hold the memory. */
 struct TrianglesOfDataSet

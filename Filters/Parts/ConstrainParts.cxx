@@ -97,7 +97,7 @@ void AddedLines::ListNear(std::vector<Message>& warnings)
         this->LargestId = std::max(this->LargestId, rows.Ids[i]);
       }
       const std::vector<Index> near =
-        ListNearLines(ViewOf(rows), this->Given, SubProgress(ofPart, 0.5, 1.0));
+        ListNearLines(ViewOf(rows).View, this->Given, SubProgress(ofPart, 0.5, 1.0));
       const Bytes packed = rows.Pack(std::vector<vtkIdType>(near.begin(), near.end()));
       this->Near.Unpack(&packed, 1);
       std::transform(
@@ -148,7 +148,7 @@ void AddedLines::ShareNear()
 void AddedLines::Cut()
 {
   this->All.Agree([&]() {
-    this->Pieces = CutLines(ViewOf(this->Near), this->Given, this->Options.Duplicates,
+    this->Pieces = CutLines(ViewOf(this->Near).View, this->Given, this->Options.Duplicates,
       this->All.Watched(this->Fraction(0.5, 0.9)));
   });
 }
@@ -217,12 +217,13 @@ LinesOfParts AddedLines::Result() const
 {
   LinesOfParts lines;
   const Index near = static_cast<Index>(this->Near.Count());
+  const PointsOfDataSet places = ViewOf(this->Near);
   const auto numberOf = [&](Index id) {
     const PlaceInPart& at = id < near ? this->PlacesOfNear[id] : this->PlacesOfAdded[id - near];
     return this->Store.FirstOf(at.Part) + at.Place;
   };
   const auto placeOf = [&](Index id) {
-    return id < near ? ViewOf(this->Near).At(id) : this->Pieces.Added[id - near].Position;
+    return id < near ? places.View.At(id) : this->Pieces.Added[id - near].Position;
   };
   for (const Segment& piece : this->Pieces.Pieces)
   {

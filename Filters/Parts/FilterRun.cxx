@@ -210,7 +210,7 @@ double FilterRun::GatherSpreadBlocks(
     try
     {
       Message why;
-      this->NumberPoints(own, ranks);
+      this->PrepareParts(own, ranks);
       if (!this->RunSpread(own, ranks, second, ofBlock, why))
       {
         std::vector<Message> warnings;
@@ -247,13 +247,20 @@ void FilterRun::AddMessages(const std::vector<Place*>& places, const std::vector
   }
 }
 
-/** Gives the parts of a block original ids. */
-void FilterRun::NumberPoints(const std::vector<Place*>& places, const Ranks& ranks) const
+/** What the filter works on: without hidden cells, and with original ids where they are wanted. */
+vtkSmartPointer<vtkPointSet> FilterRun::ShownOf(vtkPointSet* input, vtkIdType first) const
 {
-  if (this->CleanedOutputs == 0)
+  vtkSmartPointer<vtkPointSet> shown = input;
+  if (this->KindOfParts() == PartKind::Mesh)
   {
-    return;
+    shown = WithoutHiddenCells(vtkPolyData::SafeDownCast(input));
   }
+  return this->CleanedOutputs > 0 ? WithOriginalIds(shown, first) : shown;
+}
+
+/** Makes the parts of a block what the filter works on. */
+void FilterRun::PrepareParts(const std::vector<Place*>& places, const Ranks& ranks) const
+{
   std::vector<vtkIdType> counts(1, 0);
   for (vtkPointSet* part : PartsOf(places))
   {
@@ -267,7 +274,7 @@ void FilterRun::NumberPoints(const std::vector<Place*>& places, const Ranks& ran
       if (HasPoints(*place))
       {
         auto* const points = vtkPointSet::SafeDownCast(place->Input);
-        place->Own = WithOriginalIds(points, first);
+        place->Own = this->ShownOf(points, first);
         first += points->GetNumberOfPoints();
         place->Input = place->Own;
       }
@@ -400,11 +407,8 @@ Message FilterRun::RunPlace(
       throw Error(std::string("It is a ") + place.Input->GetClassName() + ", but a " + required +
         " is needed.");
     }
-    vtkSmartPointer<vtkPointSet> input = vtkPointSet::SafeDownCast(place.Input);
-    if (this->CleanedOutputs > 0)
-    {
-      input = WithOriginalIds(input, 0);
-    }
+    const vtkSmartPointer<vtkPointSet> input =
+      this->ShownOf(vtkPointSet::SafeDownCast(place.Input), 0);
     block.Input = input;
     body(block);
     this->RemoveUnused(block, Ranks());

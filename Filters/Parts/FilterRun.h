@@ -95,7 +95,8 @@ private:
   /** Works on the blocks that are spread over ranks. @return the progress that has been made */
   double GatherSpreadBlocks(
     std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress);
-  void NumberPoints(const std::vector<Place*>& places, const Ranks& ranks) const;
+  vtkSmartPointer<vtkPointSet> ShownOf(vtkPointSet* input, vtkIdType first) const;
+  void PrepareParts(const std::vector<Place*>& places, const Ranks& ranks) const;
   void RemoveUnused(Block& block, const Ranks& ranks) const;
   bool RunSpread(const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second,
     const Progress& progress, Message& whyGathered);

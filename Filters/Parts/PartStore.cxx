@@ -278,7 +278,7 @@ void PartStore::ForEachRows(const std::function<void(const PointTable&)>& visit)
 PointSlices PartStore::Slices() const
 {
   return { static_cast<double>(this->CountOfOwn()), [this](const auto& visit) {
-            this->ForEachRows([&visit](const PointTable& rows) { visit(ViewOf(rows)); });
+            this->ForEachRows([&visit](const PointTable& rows) { visit(ViewOf(rows).View); });
           } };
 }
 

@@ -9,11 +9,14 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkPolyData.h"
 #include "vtkStringArray.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -168,17 +171,33 @@ PointTable::PointTable(const std::vector<ArrayKind>& kinds)
   {
     this->Arrays.push_back(MakeArray(kind, 0));
   }
+  const auto marks = std::find_if(this->Arrays.begin(), this->Arrays.end(),
+    [](const auto& array) { return IsGhostArray(array); });
+  this->PlaceOfMarks = marks - this->Arrays.begin();
+}
+
+vtkUnsignedCharArray* PointRows::Marks() const
+{
+  return this->PlaceOfMarks < this->Arrays.size()
+    ? vtkUnsignedCharArray::SafeDownCast(this->Arrays[this->PlaceOfMarks])
+    : nullptr;
 }
 
 bool PointTable::IsFinite(std::size_t place) const
 {
   const double* const p = this->At(place);
-  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+  vtkUnsignedCharArray* const marks = this->Marks();
+  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]) &&
+    !(marks && (marks->GetValue(place) & vtkDataSetAttributes::HIDDENPOINT));
 }
 
 void PointTable::Read(vtkPointSet* points, vtkIdType first, const Progress& progress)
 {
-  const PointView view = ViewPoints(points).View;
+  // Hidden points keep their places.
+  vtkNew<vtkPolyData> bare;
+  bare->SetPoints(points->GetPoints());
+  const PointsOfDataSet all = ViewPoints(bare);
+  const PointView& view = all.View;
   const std::size_t count = static_cast<std::size_t>(view.Count);
   this->Coordinates.Resize(3 * count);
   this->Ids.Resize(count);
@@ -376,12 +395,17 @@ void PointTable::Choose(const std::vector<vtkIdType>& places)
   *this = std::move(chosen);
 }
 
-PointView ViewOf(const PointTable& rows)
+PointsOfDataSet ViewOf(const PointTable& rows)
 {
-  PointView view;
-  view.Double = rows.Coordinates.data();
-  view.Count = static_cast<Index>(rows.Count());
-  return view;
+  vtkNew<vtkDoubleArray> coordinates;
+  coordinates->SetNumberOfComponents(3);
+  coordinates->SetArray(const_cast<double*>(rows.Coordinates.data()),
+    static_cast<vtkIdType>(rows.Coordinates.size()), /*save=*/1);
+  PointsOfDataSet points;
+  points.Owner = WithoutHidden(coordinates, rows.Marks());
+  points.View.Double = vtkDoubleArray::FastDownCast(points.Owner)->GetPointer(0);
+  points.View.Count = static_cast<Index>(rows.Count());
+  return points;
 }
 
 } // namespace elevation

@@ -53,7 +53,10 @@ public:
   std::size_t Count() const { return this->Ids.size(); }
   const double* At(std::size_t place) const { return this->Coordinates.data() + 3 * place; }
 
+  /** Whether it has a place, and is not hidden. */
   bool IsFinite(std::size_t place) const;
+  /** The flags of ghosts, or nullptr. */
+  vtkUnsignedCharArray* Marks() const;
 
   /** Takes points, numbered from @a first; their arrays are not copied. */
   void Read(vtkPointSet* points, vtkIdType first, const Progress& progress);
@@ -75,10 +78,11 @@ public:
 
 private:
   void View(vtkPointData* data);
+  std::size_t PlaceOfMarks = 0; // among the arrays; their number: there are none
 };
 
-/** The positions, in place. */
-PointView ViewOf(const PointTable& rows);
+/** The positions, in place unless some are hidden: these have none. */
+PointsOfDataSet ViewOf(const PointTable& rows);
 
 } // namespace elevation
 

@@ -139,11 +139,12 @@ SettledParts Settling::SettleAll()
     this->SettleOn(nullptr);
   }
   std::vector<vtkIdType> sums = { this->Found.Duplicates, this->Found.NotFinite,
-    this->Found.Triangles + static_cast<vtkIdType>(this->Found.OfSeams.size()) };
+    this->Found.Hidden, this->Found.Triangles + static_cast<vtkIdType>(this->Found.OfSeams.size()) };
   this->All.Sum(sums);
   this->Found.Duplicates = sums[0];
   this->Found.NotFinite = sums[1];
-  this->Found.Triangles = sums[2];
+  this->Found.Hidden = sums[2];
+  this->Found.Triangles = sums[3];
   return std::move(this->Found);
 }
 
@@ -170,7 +171,7 @@ void Settling::SettleOnGiven(const Progress& progress)
 bool Settling::IsByChance(const SharedLattice& lattice) const
 {
   std::vector<vtkIdType> sums = { this->Store.CountOfOwn() - this->Found.Duplicates -
-      this->Found.NotFinite,
+      this->Found.NotFinite - this->Found.Hidden,
     this->Found.Triangles + static_cast<vtkIdType>(this->Found.OfSeams.size()) };
   this->All.Sum(sums);
   return sums[1] == 0 || IsLatticeByChance(static_cast<double>(sums[0]), lattice.Tolerance());
@@ -223,11 +224,13 @@ void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress
 {
   const Progress reading = SubProgress(progress, 0.0, 0.0);
   this->Store.WithOwn(part, reading, [&](const SurfacePart& own) {
-    SettledCell settled = SettleCell(ViewOf(own.Own), this->Store.FirstOf(part),
+    SettledCell settled = SettleCell(ViewOf(own.Own).View, this->Store.FirstOf(part),
       this->Plane.CellOf(part, part + 1), this->OptionsWith(progress), lattice);
+    NameHidden(own.Own.Marks(), settled.Result);
     this->Found.Triangles += static_cast<vtkIdType>(settled.Result.Triangles.size() / 3);
     this->Found.Duplicates += settled.Result.NumberOfDuplicates;
     this->Found.NotFinite += settled.Result.NumberOfNotFinite;
+    this->Found.Hidden += settled.Result.NumberOfHidden;
     this->Found.SeamPoints += settled.Seam.Count();
     this->Store.KeepSettled(part, own, settled);
     this->Seams[part] = std::move(settled.Seam);

@@ -35,7 +35,7 @@ struct SettledParts
   std::vector<GlobalTriangle> OfSeams; ///< that this rank has settled
   Index SeamPoints = 0;                ///< of the cells of this rank
   // Of all ranks:
-  vtkIdType Duplicates = 0, NotFinite = 0;
+  vtkIdType Duplicates = 0, NotFinite = 0, Hidden = 0;
   vtkIdType Triangles = 0; ///< those of seams included
   bool LatticeFound = false;
   Lattice Steps; ///< if found

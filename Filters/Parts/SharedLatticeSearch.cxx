@@ -192,7 +192,8 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
     steps = StepsOfGiven(options.GivenLattice);
     const Progress looking = ranks.Watched(SubProgress(progress, 0.0, 0.0));
     forEachRows([&](const PointTable& rows) {
-      const PointView view = ViewOf(rows);
+      const PointsOfDataSet points = ViewOf(rows);
+      const PointView& view = points.View;
       const Extent extent = FindExtent(view, threads, looking, [](Index, const Point2&) {});
       own.Join(extent);
       const Index first = FirstOffLattice(view, extent.NotFinite, steps, tolerance, looking);

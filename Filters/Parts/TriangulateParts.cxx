@@ -100,6 +100,7 @@ std::vector<GlobalTriangle> TriangulateParts::Settle()
   SettledParts settled = SettleParts(*this->Store, *this->Plane, this->Options);
   this->Total.Duplicates = settled.Duplicates;
   this->Total.NotFinite = settled.NotFinite;
+  this->Total.Hidden = settled.Hidden;
   this->Total.Settled = this->Total.Triangles = settled.Triangles;
   this->Total.LatticeFound = settled.LatticeFound;
   this->Total.Steps = settled.Steps;
@@ -231,7 +232,8 @@ void TriangulateParts::LimitEdges(const Progress& progress)
   this->Everybody.Sum(sums);
   EffectOfLimit& effect = this->Total.Effect;
   this->Total.Triangles = sums[0];
-  effect.Vertices = this->Store->Part.Bases.back() - this->Total.Duplicates - this->Total.NotFinite;
+  effect.Vertices = this->Store->Part.Bases.back() - this->Total.Duplicates -
+    this->Total.NotFinite - this->Total.Hidden;
   effect.Missing = sums[1];
   if (!this->Crew->IsInFiles() && effect.AreMostMissing())
   {

@@ -81,7 +81,7 @@ public:
   {
     vtkIdType Points = 0; ///< without those that constraints add
     vtkIdType AddedPoints = 0;
-    vtkIdType Duplicates = 0, NotFinite = 0;
+    vtkIdType Duplicates = 0, NotFinite = 0, Hidden = 0;
     vtkIdType Settled = 0;   ///< triangles, also those with an edge above MaximumEdgeLength
     vtkIdType Triangles = 0; ///< without these
     EffectOfLimit Effect; ///< if there is a limit; the lengths of edges for parts in memory alone

@@ -7,13 +7,14 @@ import re
 import warnings
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import (
     vtkDataSetAttributes,
     vtkImageData,
     vtkPointSet,
     vtkPolyData,
     vtkRectilinearGrid,
+    vtkStructuredGrid,
 )
 
 from ..clouds import Cloud, crs_of, make_points, marked_points, rounding_note
@@ -147,6 +148,7 @@ def read_points(path, options):
             return points_of_grid(path, data)
         if not isinstance(data, vtkPointSet):
             raise FileError(f"{path}: holds a {data.GetClassName()}, which has no points")
+        data = with_hidden_nodes(data)
         cloud = Cloud(data, crs=crs_of(data))
         vertices = data.GetNumberOfVerts() if isinstance(data, vtkPolyData) else 0
         if data.GetNumberOfCells() > vertices:
@@ -260,6 +262,23 @@ def places_of_image(path, grid):
     first, (columns, rows, _) = grid.GetPoint(0), grid.GetDimensions()
     across, up = numpy.meshgrid(numpy.arange(columns), numpy.arange(rows))
     return [first[k] + steps[0][k] * across + steps[1][k] * up for k in (0, 1)]
+
+
+def with_hidden_nodes(data):
+    """A point set; of a flat structured grid, nodes of which all cells are blanked are marked, too."""
+    if not isinstance(data, vtkStructuredGrid) or data.GetDimensions()[2] != 1:
+        return data
+    hidden, mark = hidden_nodes(data).ravel(), vtkDataSetAttributes.HIDDENPOINT
+    if (hidden == marked_points(data, mark)).all():
+        return data
+    given = data.GetPointData().GetArray(vtkDataSetAttributes.GhostArrayName())
+    marks = numpy.where(hidden, mark, 0).astype("u1") | (0 if given is None else vtk_to_numpy(given))
+    array = numpy_to_vtk(marks, deep=True)
+    array.SetName(vtkDataSetAttributes.GhostArrayName())
+    result = data.NewInstance()
+    result.ShallowCopy(data)
+    result.GetPointData().AddArray(array)
+    return result
 
 
 def hidden_nodes(grid):

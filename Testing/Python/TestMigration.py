@@ -41,7 +41,7 @@ from vtkelevationsurface import (
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkCommonTransforms import vtkTransform
-from vtkmodules.vtkFiltersCore import vtkDelaunay2D
+from vtkmodules.vtkFiltersCore import vtkDelaunay2D, vtkStaticCleanPolyData
 from vtkmodules.vtkFiltersGeneral import vtkTransformFilter
 from vtkmodules.vtkFiltersModeling import vtkFillHolesFilter
 
@@ -75,7 +75,7 @@ def names():
         "points": data(), "lines": data(Lines=CORNERS[:2]), "ring": data(Polys=CORNERS),
         "surface": reconstruct(XYZ, fill=False).surface, "transform": transform, "spacing": 2.6,
         "read": read, "reconstruct": reconstruct, "vtkTransformFilter": vtkTransformFilter,
-        "vtkDelaunay2D": vtkDelaunay2D, "vtkFillHolesFilter": vtkFillHolesFilter,
+        "vtkDelaunay2D": vtkDelaunay2D, "vtkStaticCleanPolyData": vtkStaticCleanPolyData, "vtkFillHolesFilter": vtkFillHolesFilter,
         "vtkGridDelaunay2D": vtkGridDelaunay2D, "vtkFillElevationHoles": vtkFillElevationHoles,
     }
 
@@ -103,7 +103,7 @@ def delaunay_of(code, kind):
     if last.GetNumberOfInputConnections(0) == 0:
         last.SetInputData(known["points"])
     last.Update()
-    return {**known, "result": last.GetOutput()}
+    return {"result": last.GetOutput(), **known}
 
 
 @checks("vtkDelaunay2D", "delaunay = vtkDelaunay2D()")
@@ -113,6 +113,25 @@ def _(test, there, here):
     test.assertGreater(len(same & own), 0.95 * len(own))
     unused = here["result"].GetFieldData().GetArray("UnusedPointIds")
     test.assertEqual(vtk_to_numpy(unused).tolist(), [len(XYZ) - 2])
+
+
+@checks("vtkDelaunay2D", "delaunay.SetTolerance(0.002)")
+def _(test, there, here):
+    left = len(numpy.unique(triangles(there["result"])))
+    test.assertLess(abs(left - here["clean"].GetOutput().GetNumberOfPoints()), 3)
+    test.assertLess(left, len(XYZ) - 1)
+
+
+@checks("vtkDelaunay2D", "delaunay.SetProjectionPlaneMode(2)")
+def _(test, there, here):
+    test.assertLess(abs(area(there["result"]) / HULL - 1), 0.02)
+    test.assertLess(abs(area(here["result"].surface) / HULL - 1), 0.01)
+
+
+@checks("vtkDelaunay2D", "delaunay.SetBoundingTriangulation(True)")
+def _(test, there, here):
+    test.assertGreater(area(there["result"]), 1.5 * HULL)
+    test.assertLess(abs(area(here["result"]) / HULL - 1), 1e-9)
 
 
 @checks("vtkDelaunay2D", "delaunay.SetSourceData(lines)")
@@ -211,7 +230,7 @@ def _(test, there, here):
 @checks("PyVista", "points.delaunay_2d()")
 @checks("PyVista", "points.delaunay_2d(edge_source=lines)")
 def _(test, there, here):
-    test.assertAlmostEqual(area(here.surface), HULL, 6)
+    test.assertLess(abs(area(here.surface) / HULL - 1), 0.01 if here.cloud.plane else 1e-9)
     if here.delaunay.GetSource():
         test.assertIn(tuple(sorted(CORNERS[:2])), edges(here.surface))
     if there is not None:

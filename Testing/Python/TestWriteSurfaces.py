@@ -243,7 +243,7 @@ class LargeSurfaces(unittest.TestCase):
     def test_a_sample_of_many_points_is_measured_and_told(self):
         xyz = numpy.array([(x, y, 0.0) for x in range(40) for y in range(40)])
         twice = numpy.concatenate((xyz, xyz + (0, 0, 3)))
-        surface = reconstruct(twice, duplicates="keep-first").surface
+        surface = reconstruct(twice, duplicates="keep-first").complete
         chosen = numpy.ones(len(twice), dtype=bool)
         most = distance.MOST_MEASURED
         self.addCleanup(setattr, distance, "MOST_MEASURED", most)

@@ -20,7 +20,8 @@ enum class UnusedReason : unsigned char
 {
   Duplicate = 1,
   NotFinite = 2,
-  WithinError = 3 ///< within MaximumElevationError of the surface
+  WithinError = 3, ///< within MaximumElevationError of the surface
+  Hidden = 4       ///< marked as such by who has given it at no place
 };
 
 /** Whether points on a lattice are triangulated in the metric of its steps. */
@@ -86,6 +87,7 @@ struct Triangulation
   std::vector<UnusedReason> UnusedReasons; ///< one per unused point
   Index NumberOfDuplicates = 0;
   Index NumberOfNotFinite = 0;
+  Index NumberOfHidden = 0;    ///< as NameHidden() tells: not among those that are not finite
   Index NumberOfRedundant = 0; ///< points within MaximumElevationError
   /** No vertical distance of such a point is larger; it is no larger than MaximumElevationError. */
   double LargestElevationError = 0.0;

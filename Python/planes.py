@@ -1,0 +1,117 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Clouds that lie in a plane other than x,y, on a wall say: how they are noticed, and turned."""
+
+import numpy
+
+from .clouds import bare_lines, coordinates_of, make_points
+from .messages import ElevationSurfaceError
+from .names import argument, option
+from .ranks import all_values
+
+MOST_SAMPLES = 20_000  # points of each rank
+# A cloud is on a wall when its best plane is steeper than this, and its scatter off the plane is at
+# most a part of that along it. A survey along one line is none: its scatter along the plane differs more.
+STEEP = 60.0  # degrees
+THIN = 0.1
+LEAST_WIDTH = 0.2  # of the plane's length
+LEAST_POINTS = 20
+OUTLYING = 3.0  # spans of the middle half beside it: heights of nulls and blunders
+
+
+class Plane:
+    """A plane through a point, and the turn around it that makes it level.
+
+    axes  rows of three directions: two in the plane, the first of them level, and the normal, upwards
+    """
+
+    def __init__(self, middle, normal):
+        normal = normal * (-1.0 if tuple(normal[::-1]) < (0.0, 0.0, 0.0) else 1.0)
+        first = numpy.cross((0.0, 0.0, 1.0), normal)
+        length = numpy.linalg.norm(first)
+        first = first / length if length > 1e-12 else numpy.array((1.0, 0.0, 0.0))
+        self.middle, self.axes = middle, numpy.array([first, numpy.cross(normal, first), normal])
+
+    def levelled(self, data):
+        """Data with the plane at z of its middle."""
+        return moved(data, (coordinates_of(data) - self.middle) @ self.axes.T + self.middle)
+
+    def back(self, data):
+        """What levelled() has turned, in its old place."""
+        return moved(data, (coordinates_of(data) - self.middle) @ self.axes + self.middle)
+
+
+def moved(data, coordinates):
+    """The same data set with its points in other places."""
+    result = data.NewInstance()
+    result.ShallowCopy(data)
+    if len(coordinates):
+        result.SetPoints(make_points(coordinates).GetPoints())
+    return result
+
+
+def sample_of(points, ranks=None):
+    """(n, 3), some finite points of all ranks, without heights of nulls and blunders."""
+    xyz = coordinates_of(points)
+    xyz = xyz[:: max(1, len(xyz) // MOST_SAMPLES)].astype("f8")
+    xyz = xyz[numpy.isfinite(xyz).all(axis=1)]
+    xyz = all_values(ranks, xyz.ravel(), "f8").reshape(-1, 3)
+    if not len(xyz):
+        return xyz
+    low, high = numpy.quantile(xyz[:, 2], (0.25, 0.75))
+    reach = OUTLYING * (high - low)
+    return xyz[(xyz[:, 2] >= low - reach) & (xyz[:, 2] <= high + reach)]
+
+
+def best_plane(points, ranks=None):
+    """(the Plane that fits best, (3,) scatter off it, across and along it) of the points of all ranks."""
+    xyz = sample_of(points, ranks)
+    if len(xyz) < 3:
+        raise ElevationSurfaceError(f"{argument('plane')}: there are fewer than three finite points")
+    middle = xyz.mean(axis=0)
+    squares, directions = numpy.linalg.eigh(numpy.cov((xyz - middle).T))
+    return Plane(middle, directions[:, 0]), numpy.sqrt(numpy.maximum(squares, 0.0))
+
+
+def wall_note(points, ranks=None):
+    """A line for the user where the points lie on a wall, else None."""
+    if len(sample_of(points, ranks)) < LEAST_POINTS:
+        return None
+    plane, (off, across, along) = best_plane(points, ranks)
+    steepness = numpy.degrees(numpy.arccos(min(1.0, plane.axes[2][2])))
+    if steepness < STEEP or off > THIN * across or not across > LEAST_WIDTH * along:
+        return None
+    return (
+        f"the points lie on a wall: their best plane is {steepness:.0f} degrees steep, and they scatter "
+        f"{off:.3g} off it and {across:.3g} along it; z is taken as the height above x,y all the same: "
+        f"{option('plane')} best turns the plane level, and back afterwards"
+    )
+
+
+def in_plane(cloud, lines, given, ranks=None):
+    """(Cloud, lines) as they are reconstructed: with plane=best, turned into their best plane."""
+    if not given.get("plane"):
+        note = wall_note(cloud.points, ranks)
+        if note:
+            cloud = cloud.copy()
+            cloud.notes.append(note)
+        return cloud, lines
+    for name, data in lines.items():
+        if bare_lines(data).any():
+            raise ElevationSurfaceError(
+                f"{argument('plane')} best needs lines with z, which the {name} lacks"
+                if name == "boundary" else
+                f"{argument('plane')} best needs lines with z, which the {name} lack", name)
+    turned = cloud.copy()
+    turned.grid = turned.pixels = None
+    turned.plane = best_plane(cloud.points, ranks)[0]
+    turned.points = turned.plane.levelled(cloud.points)
+    return turned, {name: turned.plane.levelled(data) for name, data in lines.items()}
+
+
+def turn_back(result):
+    """Brings what a Reconstruction has made in the plane of its Cloud to where the points were."""
+    for name in ("surface", "complete", "points", "boundary", "holes"):
+        data = getattr(result, name)
+        if data is not None:
+            setattr(result, name, result.cloud.plane.back(data))

@@ -1,0 +1,129 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Points on a wall or in a tilted plane: a note tells of them, and plane="best" makes their surface."""
+
+import os
+import tempfile
+import unittest
+import warnings
+
+import numpy
+
+import meshes
+from vtkelevationsurface import ElevationSurfaceError, read, reconstruct
+from vtkelevationsurface.clouds import make_points
+from vtkelevationsurface.command import main
+from vtkelevationsurface.planes import wall_note
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Data")
+RANDOM = numpy.random.default_rng(11)
+
+
+def relief(count=3000, size=100.0, rough=1.0):
+    """Points over a square, with small hills."""
+    x, y = RANDOM.uniform(0, size, (2, count))
+    return numpy.column_stack((x, y, rough * numpy.sin(x / 9) * numpy.cos(y / 7)))
+
+
+def tilted(xyz, degrees, turn=0.7):
+    a = numpy.radians(degrees)
+    lean = numpy.array([(1, 0, 0), (0, numpy.cos(a), -numpy.sin(a)), (0, numpy.sin(a), numpy.cos(a))])
+    c, s = numpy.cos(turn), numpy.sin(turn)
+    return xyz @ (numpy.array([(c, -s, 0), (s, c, 0), (0, 0, 1)]) @ lean).T + (500.0, 800.0, 30.0)
+
+
+def area(surface):
+    """In space."""
+    a, b, c = vtk_to_numpy(surface.GetPoints().GetData())[meshes.triangles_of(surface)].swapaxes(0, 1)
+    return 0.5 * float(numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1).sum())
+
+
+def note(xyz):
+    return wall_note(make_points(numpy.asarray(xyz, "f8")))
+
+
+class Walls(unittest.TestCase):
+    def test_a_note_tells_of_walls(self):
+        for degrees in (65, 75, 90):
+            self.assertIn(f"{degrees} degrees", note(tilted(relief(), degrees)) or "")
+
+    def test_none_tells_of_terrain(self):
+        lines = numpy.array([(x, y, 3 * numpy.sin(x / 50)) for y in range(0, 900, 300) for x in range(900)])
+        along = numpy.arange(1000.0)
+        cases = {
+            "relief": relief(), "slope": tilted(relief(), 40), "lines": lines,
+            "a line": numpy.column_stack((along, RANDOM.normal(0, 1, 1000), 30 * numpy.sin(along / 90))),
+            "a corridor": relief(4000) * (100, 0.1, 40),
+            "degrees": relief() * (1e-4, 1e-3, 300) + (9, 50, 0),
+            "nulls": numpy.vstack((relief(900) * (100, 5, 9), relief(90) * (100, 5, 0) + (0, 0, -9999))),
+            "few": tilted(relief(9), 90), "no point": numpy.zeros((0, 3)),
+            "one place": numpy.ones((50, 3)),
+        }
+        for name, xyz in cases.items():
+            self.assertIsNone(note(xyz), name)
+        for name in os.listdir(DATA):
+            if name.endswith((".vtp", ".xyz", ".csv", ".txt", ".dat")) and "boundary" not in name:
+                with self.subTest(name=name):
+                    try:
+                        points = read(os.path.join(DATA, name)).points
+                    except ElevationSurfaceError:
+                        continue  # no points
+                    self.assertIsNone(wall_note(points))
+
+    def test_reconstruct_warns(self):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            result = reconstruct(tilted(relief(), 80))
+        self.assertTrue(any("lie on a wall" in note for note in result.report["notes"]))
+        del caught
+
+
+class BestPlane(unittest.TestCase):
+    def test_the_surface_is_that_of_the_points_before_they_were_tilted(self):
+        level = relief()
+        expected = reconstruct(level)
+        for degrees in (0, 35, 90, 120):
+            result = reconstruct(tilted(level, degrees), plane="best")
+            self.assertAlmostEqual(area(result.surface) / area(expected.surface), 1.0, delta=0.002)
+            places = vtk_to_numpy(result.surface.GetPoints().GetData())
+            ids = vtk_to_numpy(result.surface.GetPointData().GetArray("OriginalPointIds"))
+            away = places[ids >= 0] - tilted(level, degrees)[ids[ids >= 0]]
+            self.assertLess(abs(away).max(), 1e-9)
+            self.assertLess(result.report["distance"]["maximum"], 10.0)
+
+    def test_lines_turn_along(self):
+        level = relief()
+        ring = numpy.array([(20, 20, 0), (80, 25, 0), (75, 80, 0), (25, 70, 0)], "f8")
+        inside = area(reconstruct(level, boundary=ring).surface)
+        result = reconstruct(tilted(level, 90), boundary=tilted(ring, 90), plane="best")
+        self.assertAlmostEqual(area(result.surface) / inside, 1.0, delta=0.02)
+        with self.assertRaisesRegex(ElevationSurfaceError, "plane.*boundary"):
+            reconstruct(tilted(level, 90), boundary=ring[:, :2], plane="best")
+
+    def test_what_needs_x_and_y_is_refused(self):
+        result = reconstruct(tilted(relief(300), 90), plane="best")
+        with self.assertRaisesRegex(ElevationSurfaceError, "plane=best"):
+            result.to_grid(1.0)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "wall.xyz")
+            numpy.savetxt(path, tilted(relief(300), 90))
+            for more in (["--grid", "2"], ["--contours", "2"], ["--pieces", "2"]):
+                with self.assertRaises(SystemExit):
+                    main([path, "--plane", "best", *more])
+            out = os.path.join(folder, "wall.vtp")
+            main([path, "--plane", "best", "-o", out, "--no-picture"])
+            self.assertGreater(area_of_file(out), 7000.0)
+
+
+def area_of_file(path):
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(path)
+    reader.Update()
+    return area(reader.GetOutput())
+
+
+if __name__ == "__main__":
+    unittest.main()
