@@ -229,6 +229,7 @@ class ReadOptions:
 
     columns: object = None  # None, or three names or numbers (from 1) of the x, y and z columns
     no_data: object = None  # None, or the elevation that marks missing values
+    skip_bad_lines: bool = False  # lines of a text that are no rows are left out
     keep_nulls: bool = False  # usual null values are kept, though they stand apart
     depth: bool = False  # z counts downwards; it is turned over
     progress: object = no_progress  # is called with the fraction read; what it raises ends it
@@ -236,6 +237,7 @@ class ReadOptions:
     layer: object = None  # None, or the name of a layer or variable, of files that hold several
     classes: object = None  # None, or the numbers of the classes of a LAS file to read
     where: object = None  # None, or what conditions_of() takes: which points to read, by columns
+    project: bool = False  # degrees become metres, of a UTM zone
     points_only: bool = False  # points of a mesh are wanted, whatever its triangles are
 
     def __post_init__(self):
