@@ -25,6 +25,6 @@ configure_file("${CMAKE_CURRENT_SOURCE_DIR}/Documentation/Doxyfile.in" "${es_dox
 
 add_custom_target(Documentation
   COMMAND           "${DOXYGEN_EXECUTABLE}" "${es_doxyfile}"
-  WORKING_DIRECTORY "${es_documentation_folder}"
+  WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" # by which links to documents are found
   COMMENT           "Pages of the classes: ${es_documentation_folder}/html/index.html"
   VERBATIM)

@@ -208,6 +208,26 @@ if (ES_WRAP_PYTHON)
     DESTINATION "${es_python_package}"
     COMPONENT   "${es_python_component}")
 
+  # Stubs for editors and type checkers, where this VTK has what makes them.
+  set(es_no_stubs ON)
+  if (NOT ES_PARAVIEW AND NOT ES_SANITIZE AND NOT CMAKE_CROSSCOMPILING)
+    execute_process(COMMAND "${Python3_EXECUTABLE}" -c "import vtkmodules.generate_pyi"
+      RESULT_VARIABLE es_no_stubs OUTPUT_QUIET ERROR_QUIET)
+  endif ()
+  if (NOT es_no_stubs)
+    set(es_stubs "${CMAKE_BINARY_DIR}/${es_python_package}/vtkElevationSurface.pyi")
+    add_custom_command(
+      OUTPUT  "${es_stubs}"
+      COMMAND "${CMAKE_COMMAND}" -E env "PYTHONPATH=${CMAKE_BINARY_DIR}/${es_python_destination}:$ENV{PYTHONPATH}"
+              "${Python3_EXECUTABLE}" -m vtkmodules.generate_pyi -p vtkelevationsurface vtkElevationSurface
+      DEPENDS vtkElevationSurfacePython
+      VERBATIM)
+    add_custom_target(ElevationSurfaceStubs ALL DEPENDS "${es_stubs}")
+    install(FILES "${es_stubs}"
+      DESTINATION "${es_python_package}"
+      COMPONENT   "${es_python_component}")
+  endif ()
+
   # The entry points of pyproject.toml, by which PyVista finds the package; pip writes its own.
   if (NOT ES_PARAVIEW AND NOT SKBUILD)
     set(es_metadata "${es_python_package}-${PROJECT_VERSION}.dist-info")
