@@ -176,7 +176,7 @@ PointTable::PointTable(const std::vector<ArrayKind>& kinds)
   this->PlaceOfMarks = marks - this->Arrays.begin();
 }
 
-vtkUnsignedCharArray* PointRows::Marks() const
+vtkUnsignedCharArray* PointTable::Marks() const
 {
   return this->PlaceOfMarks < this->Arrays.size()
     ? vtkUnsignedCharArray::SafeDownCast(this->Arrays[this->PlaceOfMarks])

@@ -275,9 +275,11 @@ void TestChainTellsOnce()
   tooShort->SetName("TooShort");
   tooShort->InsertNextValue(1);
   wrong->GetPointData()->AddArray(tooShort);
+  const auto right = MakeCloud(0.0, 0);
+  vtkNew<vtkPolyData> pointless;
   vtkNew<vtkMultiBlockDataSet> nothing, empty;
   nothing->SetNumberOfBlocks(2);
-  empty->SetBlock(1, vtkNew<vtkPolyData>());
+  empty->SetBlock(1, pointless);
   const auto check = [](const std::vector<std::string>& messages, const std::string& part) {
     Check(messages.size() == 1 && messages.front().find(part) != std::string::npos,
       "one message with '" + part + "'; they were " + std::to_string(messages.size()) + ": " +
@@ -286,8 +288,8 @@ void TestChainTellsOnce()
   check(MessagesOfChain(two), "the 2 input points");
   check(MessagesOfChain(wrong), "TooShort");
   check(MessagesOfChain(MakeCloud(0.0, 0), 0.01), "MaximumEdgeLength");
-  for (vtkDataObject* input : std::initializer_list<vtkDataObject*>{
-         MakeCloud(0.0, 0), vtkNew<vtkPolyData>(), nothing, empty })
+  for (vtkDataObject* input :
+    std::initializer_list<vtkDataObject*>{ right, pointless, nothing, empty })
   {
     Check(MessagesOfChain(input).empty(), "a cloud, and an empty input, pass in silence");
   }
