@@ -16,7 +16,8 @@ file(GLOB es_documented_headers CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/F
 list(FILTER es_documented_headers INCLUDE REGEX "/vtk[A-Z][a-z][^/]*$") # not VTKVersions.h, in any case
 set(es_documentation_main_page "\"${CMAKE_CURRENT_SOURCE_DIR}/Documentation/Reference.md\"")
 list(TRANSFORM es_documented_headers REPLACE "(.+)" "\"\\1\"" OUTPUT_VARIABLE es_documented_files)
-list(APPEND es_documented_files "${es_documentation_main_page}")
+list(APPEND es_documented_files "${es_documentation_main_page}"
+  "\"${CMAKE_CURRENT_SOURCE_DIR}/Documentation/Filters.md\"")
 list(JOIN es_documented_files " " es_documented_files)
 set(es_documentation_folder "${CMAKE_BINARY_DIR}/Documentation")
 set(es_doxyfile "${es_documentation_folder}/Doxyfile")

@@ -114,35 +114,17 @@ Every unused point and every hole that stays open is told.
 ")
 if (ES_PARAVIEW)
   es_next_version(es_next "${ParaView_VERSION}" 1)
-  # ParaView reads paraview.conf when it starts. The package brings one that names the plugin too,
-  # in place of the distribution's, which dpkg puts aside.
-  get_filename_component(es_conf "${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}" DIRECTORY)
-  if (EXISTS "${ParaView_PREFIX_PATH}/${es_conf}/paraview.conf")
-    file(READ "${ParaView_PREFIX_PATH}/${es_conf}/paraview.conf" es_conf_lines)
-    get_filename_component(es_plugins_name "${PARAVIEW_PLUGIN_SUBDIR}" NAME)
-    string(APPEND es_conf_lines "${es_plugins_name}/vtkelevationsurface.xml\n")
-  else () # Debian 12: beside the programs, where there is none
-    set(es_conf "${CMAKE_INSTALL_BINDIR}")
-    set(es_conf_lines
-      "../${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/vtkelevationsurface.xml\n")
-  endif ()
-  file(WRITE "${es_package_folder}/paraview.conf" "${es_conf_lines}")
-  install(
-    FILES       "${es_package_folder}/paraview.conf"
-    DESTINATION "${es_conf}"
-    COMPONENT   paraview_plugins
-    EXCLUDE_FROM_ALL)
-  set(es_diverted "/usr/${es_conf}/paraview.conf")
   set(es_python_folder "/usr/${es_library_destination}")
   es_package(paraview_plugins paraview-elevationsurface
     SECTION     science
     SUMMARY     "elevation surfaces from scattered points: ParaView plugin"
-    DESCRIPTION "The plugin loads by itself in ParaView's client, pvpython, pvbatch, pvserver: a
-reader of files of points, and the menu Filters > Elevation Surface."
+    DESCRIPTION "The plugin has a reader of files of points, and the menu Filters > Elevation Surface.
+To load it when ParaView starts, tick Auto Load in Tools > Manage Plugins, or
+set PV_PLUGIN_PATH=/usr/${es_library_destination}."
     DEPENDS     "python3-paraview (>= ${ParaView_VERSION}), python3-paraview (<< ${es_next})"
                 "python3-numpy"
     RECOMMENDS  "python3-gdal"
-    CONTROL     preinst.plugin postrm.plugin postinst.plugin prerm.python)
+    CONTROL     postinst.python prerm.python)
 else ()
   set(es_soname "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
   set(es_library_package "libvtkelevationsurface${es_soname}")

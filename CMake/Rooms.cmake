@@ -111,9 +111,8 @@ set(es_Adapt
   Requests
   TrimmedSurface)
 set(es_headers_Adapt
-  Adapt VTKVersions)
+  Adapt VTKClasses VTKVersions)
 set(es_Parts
-  BorderOfParts
   BoundaryZone
   CommonPoints
   ConstrainParts
@@ -124,23 +123,24 @@ set(es_Parts
   Gathering
   HoleNeighborhoods
   Joining
-  LatticeOfRanks
   PackedData
   PartStore
   PointKeys
-  PointRows
   PointSource
+  PointTable
   RankNotes
   Ranks
   ReconstructParts
   SettleParts
+  SharedBorder
   SharedHoles
+  SharedLatticeSearch
   SpoolFile
   SpreadBlocks
   SurfacePart
   SurfaceParts
   TriangulateParts
-  TrimOfPart
+  TrimmedPart
   TrimParts)
 set(es_headers_Parts
   Bytes Parts)

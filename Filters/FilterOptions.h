@@ -11,11 +11,14 @@
 #include "Kernel/Fill/Fill.h"
 #include "Kernel/Trim/Trim.h"
 
+#include "vtkElevationSurfaceABI.h"
 #include "vtkElevationSurfaceModule.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkFillElevationHoles;
 class vtkGridDelaunay2D;
 class vtkTrimOutwardTriangles;
+VTK_ABI_NAMESPACE_END
 
 namespace elevation
 {

@@ -44,6 +44,7 @@ FillOptions OptionsOf(vtkFillElevationHoles* filter)
 
 } // namespace elevation
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkFillElevationHoles);
 vtkCxxSetObjectMacro(vtkFillElevationHoles, Controller, vtkMultiProcessController);
 
@@ -64,7 +65,7 @@ using elevation::FillResult;
 using elevation::Holes;
 using elevation::Index;
 using elevation::Mesh;
-using elevation::Part;
+using elevation::SubProgress;
 using elevation::Report;
 } // namespace
 
@@ -130,13 +131,13 @@ int vtkFillElevationHoles::RequestData(
     const elevation::PointsOfDataSet points = elevation::ViewPoints(input);
     const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
     Mesh mesh;
-    elevation::ToMesh(input, mesh, Part(progress, 0.0, 0.15));
-    mesh.ConnectTwins(firstPolygon, Part(progress, 0.15, 0.4));
-    Holes found = elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.4, 0.5));
+    elevation::ToMesh(input, mesh, SubProgress(progress, 0.0, 0.15));
+    mesh.ConnectTwins(firstPolygon, SubProgress(progress, 0.15, 0.4));
+    Holes found = elevation::FindHoles(mesh, firstPolygon, SubProgress(progress, 0.4, 0.5));
     Mesh opened;
     const bool isOpened = this->MaximumEdgeLength > 0.0 &&
       elevation::OpenLongTriangles(
-        mesh, this->MaximumEdgeLength, found, opened, Part(progress, 0.5, 0.55));
+        mesh, this->MaximumEdgeLength, found, opened, SubProgress(progress, 0.5, 0.55));
     const bool isToBeFilled = found.Count() > 0;
 
     FillOptions options = elevation::OptionsOf(this);
@@ -150,14 +151,14 @@ int vtkFillElevationHoles::RequestData(
       options.OnBoundary.assign(
         marks->GetPointer(0), marks->GetPointer(0) + marks->GetNumberOfTuples());
     }
-    const elevation::Progress filling = Part(progress, 0.55, isToBeFilled ? 0.85 : 0.55);
+    const elevation::Progress filling = SubProgress(progress, 0.55, isToBeFilled ? 0.85 : 0.55);
     options.Monitor = filling;
     const FillResult patches =
       elevation::FillHoles(isOpened ? opened : mesh, points.View, std::move(found), options);
 
     MakeSurface(input, mesh, patches, this->InterpolatePointData,
-      Part(progress, isToBeFilled ? 0.85 : 0.55, 0.97), block.Outputs[0]);
-    MakeReport(input, patches, Part(progress, 0.97, 1.0), block.Outputs[1]);
+      SubProgress(progress, isToBeFilled ? 0.85 : 0.55, 0.97), block.Outputs[0]);
+    MakeReport(input, patches, SubProgress(progress, 0.97, 1.0), block.Outputs[1]);
     AddHoleCounts(patches, block.Outputs);
     block.Warnings = WarningsOf(patches);
     if (mesh.NumberOfTriangles() == 0 && elevation::NeedsWarning(input))
@@ -196,3 +197,4 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfFilledHoles: " << this->NumberOfFilledHoles << "\n";
   os << indent << "Messages: " << this->Messages->GetNumberOfTuples() << " rows\n";
 }
+VTK_ABI_NAMESPACE_END

@@ -4,147 +4,65 @@
  * @class   vtkFillElevationHoles
  * @brief   fills the holes of an elevation surface with new points and triangles, and lists them
  *
- * Input: a vtkPolyData of triangles, an elevation surface from any source, of one or more
- * components. x,y is the plane of projection, z the elevation.
- *
- * @par What is a hole:
  * A hole is an empty region that the surface encloses. The outer boundary of a component is never a
  * hole. A component that lies inside a hole, an island, stays, and the ring around it is filled.
- * Holes may be nested, pinched, and may share vertices.
- *
  * Voids that triangles with long edges bridge are no holes: see MaximumEdgeLength, which opens them.
- * What a boundary given to vtkTrimOutwardTriangles has cut out is a hole that stays open: see
- * FillCutOuts.
  *
- * @par Output 0, the surface:
- * The points and cells of the input first, with their ids, then the new points and triangles.
- * (Where MaximumEdgeLength lets patches replace triangles of the input, these are left out, and the
- * ids of later cells are lower.) The triangles are counter-clockwise seen from +z: a clockwise one
- * of the input is turned over (its last two points change places); nothing else of the input
- * changes.
- * - Point array FilledPoint (vtkUnsignedCharArray): 1 for new points, else 0.
- * - Point array FilledError (vtkDoubleArray): the standard error of the z of new points, in units of
- *   z, 0 for points of the input: of 100 new points some 68 are within one of the truth, some 95
- *   within two. It follows from the errors that the method makes beside the hole, where the surface
- *   is known, by distance from the hole's boundary. NaN where there is no such place, and with
- *   NEIGHBOR_MEAN, which is not tried.
- * - Cell array HoleId (vtkIdTypeArray): the hole a new triangle lies in, -1 for cells of the input.
- * - Other point arrays: see InterpolatePointData. Other cell arrays: new triangles get NaN
- *   (floating-point numbers), 0 (integers), or an empty string. Arrays of the input called
- *   FilledPoint, FilledError or HoleId are replaced.
- * - Global ids of new points and triangles go on after the largest. Pedigree ids are -1 there (the
- *   largest number of an unsigned type, NaN, an empty string), as are global ids whose type has no
- *   more numbers, which are no longer marked as such.
- * - The marks of a point array OnBoundary are 0 at new points.
- * - Points are float or double as in the input. The x,y of new points are rounded to the type
- *   before they are triangulated, so that the result stays exact.
+ * @par Input:
+ * A vtkPolyData of triangles, an elevation surface from any source, of one or more components. x,y is
+ * the plane of projection, z the elevation.
  *
- * @par Output 1, the report:
- * One closed line for each hole, filled or not, its rim, counter-clockwise. Cell data:
- * - HoleId (vtkIdTypeArray): 0, 1, 2, ...
- * - Status (vtkUnsignedCharArray): see HoleStatusType.
- * - NumberOfEdges (vtkIdTypeArray): boundary edges, those of the rim and of the islands; in a
- *   region of MaximumEdgeLength, no others.
- * - Perimeter (vtkDoubleArray): the length of all these edges in x,y.
- * - Area (vtkDoubleArray): in x,y, inside the rim and outside the islands; NaN where the extent of
- *   the hole is above 1e150 or below 1e-150.
- * - NumberOfInsertedPoints (vtkIdTypeArray).
- * - Interpolation (vtkUnsignedCharArray): how z was found, see InterpolationType. In place of
- *   ADAPTIVE it is the method that was chosen; of mixed methods, the one with the largest share. 0
- *   also where there are no new points.
+ * @par Outputs:
+ * - 0, the surface: the points and cells of the input first, with their ids, then the new points and
+ *   triangles, counter-clockwise seen from +z. Point arrays FilledPoint (vtkUnsignedCharArray, 1 for
+ *   new points) and FilledError (vtkDoubleArray, the standard error of z of new points, 0 for points
+ *   of the input, NaN where nothing tells it); cell array HoleId (vtkIdTypeArray, -1 for cells of
+ *   the input). Other point arrays: see InterpolatePointData.
+ * - 1, the report: one closed line for each hole, filled or not, its rim, counter-clockwise. Cell data
+ *   HoleId, Status (HoleStatusType), NumberOfEdges, Perimeter, Area, NumberOfInsertedPoints,
+ *   Interpolation (the one used).
  *
- * @par Field data of both outputs:
- * NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
+ * Field data of both: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
- * @par The method, for each hole on its own:
- * 1. If the surface's points lie on a lattice, no spacing is given, and half of the triangles at
- *    the hole's boundary have an area of at most 1.75 cells (a thinned lattice has too many nodes),
- *    new points lie on the nodes of the lattice. Else they are put into the hole in rows, one
- *    spacing apart, every second row shifted by half a spacing; points nearer to the boundary than
- *    0.6 spacings are left out. Unless given, the spacing is the mean length of the hole's boundary
- *    edges. Where the mean of eight consecutive edges is more than three times as large at one
- *    place of the boundary as at another, points are graded between the two. A small hole may get
- *    none.
- * 2. They are joined with the boundary by a constrained Delaunay triangulation.
- * 3. Where points are not on a lattice, a triangle with an angle below 20 degrees, or with an edge
- *    of more than 1.6 spacings that is not a boundary edge, gets a point at its circumcentre.
- *    Boundary edges are not split, and no point comes nearer to them than 0.3 spacings; so such
- *    triangles remain where the circumcentre lies nearer to the boundary than that, or beyond it.
- * 4. The z of new points is found from the surface around the hole, see Interpolation.
+ * @par Guarantees:
+ * A patch covers its hole exactly and overlaps nothing; every boundary edge gets its second triangle
+ * and no edge a third one; patches are constrained Delaunay. New points and triangles do not depend
+ * on the order of the input's points and cells, only their ids do; nor on the number of threads or
+ * ranks. Holes that stay open are listed, with the reason.
  *
- * @par What can be relied on:
- * A patch covers its hole exactly and overlaps nothing; every boundary edge gets its second
- * triangle and no edge a third one; patches are constrained Delaunay. New points and triangles do
- * not depend on the order of the input's points and cells, only their ids do.
+ * Errors leave empty outputs and name the cell or array: an input that is no elevation surface is
+ * refused. An abort also leaves empty output, which counts as up to date: call Modified() to start
+ * again. A composite input gives outputs of the same structure, each block filled on its own.
  *
- * @par Warnings and errors:
- * A hole is left open, with status FAILED and a warning that says why, when
- * - it might take more new points than smaller holes leave of MaximumNumberOfInsertedPoints, or of
- *   the 357,913,941 points that a surface has at most;
- * - its extent is above 1e150, or its extent or spacing is below 1e-150, so that squares leave the
- *   range of double;
- * - the spacing is below what the coordinates can tell apart (4 steps of float or double);
- * - borders touch in it without sharing a point: a point lies inside another border edge, or
- *   two points have the same x,y. Merge such points (vtkCleanPolyData), or split the edge. A
- *   border of that kind may also join a hole to the outside, so that it is no hole; a
- *   warning names such a point.
+ * @par Example:
+ * @code
+ * vtkNew<vtkFillElevationHoles> fill;
+ * fill->SetInputConnection(trim->GetOutputPort());
+ * fill->SetMaximumHoleSize(2000.0); // larger ones stay open
+ * fill->Update();
+ * vtkPolyData* holes = fill->GetOutput(1);
+ * @endcode
  *
- * An input that is not an elevation surface gives empty output, and an error that names the cell:
- * cells other than triangles, triangles that are flat in x,y, an edge with more than two triangles,
- * cells that overlap in x,y. So does an invalid vtkCellArray, and a point or cell array whose
- * number of tuples is not that of the points or cells; the error names the array. So do more new
- * points than MaximumNumberOfExpectedPoints. A surface without holes passes; an input without triangles
- * passes with a warning (none where it has no points, or vtkGridDelaunay2D has made it and told why).
- * An abort also leaves empty output, which counts as up to date: call Modified() to start again.
- *
- * @par Composite input:
- * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives outputs
- * of the same structure: each block (each partition) is filled on its own, and has its own holes
- * and field data. Counts of getters are sums. Messages name the block; one with an error is empty,
- * the others stay.
- *
- * @par Several ranks:
- * On several ranks (processes), a block may be spread over them. Each hole is filled on one of them,
- * the largest first, on the one with least work; only the triangles around it are sent there. The
- * triangles and new points of all ranks are those of one, to the last bit; holes are numbered with
- * the triangles rank after rank. A rank has its points and triangles in their places, then other
- * ranks' points that its new triangles have, and new points, whose global ids, if there are any,
- * follow the largest of all ranks in the order of the holes. Points that several ranks have are
- * marked on all but one of them (vtkGhostType). Points
- * with the same global id are one, or, where not all ranks have global ids, those with the same
- * x,y,z. Field data are those of the rank, with the counts of all. Output 1 is on one rank.
- *
- * With vertices, lines or cells marked as another rank's, where borders touch without sharing a
- * point, where not all ranks have the same arrays and type of points, and for messages of what is
- * wrong, the triangles are gathered on the rank with most of them, which gets
- * the result, with a warning unless there is an error; the others have empty output with the same
- * arrays. Points are in the order of their global ids then. Cells marked as another rank's are left
- * out, and arrays that not all ranks have, with a warning.
- *
- * Partitions of one vtkPartitionedDataSet are one block in this. Getters tell the counts of all
- * ranks; rank 0 reports errors and warnings of all. An error or abort in a block ends it on all
- * ranks. This holds where data are asked for in several pieces and vtkMultiProcessController's global
- * controller has several processes. All ranks have to update then, as in ParaView: where a source
- * before the filter fails on one rank, VTK does not run the filter there, and the others wait for
- * it for ever.
- *
- * @par Cost:
- * Linear in the size of the input and in the number of new points, plus sorting the border.
- *
- * @par Source:
+ * @par As published:
  * The method is the hole filling of Nguyen, "A Complete Method for Reconstructing an Elevation
  * Surface of 3D Point Clouds": spacing by its eq. 1; z by its eq. 2 with Interpolation
  * NEIGHBOR_MEAN.
+ *
+ * The arrays in full, the method, all warnings and errors, and cost:
+ * [Documentation/Filters.md](Documentation/Filters.md); how accurate it is:
+ * Documentation/FillAccuracy.md. Several ranks: Documentation/ManyRanks.md.
  *
  * @sa vtkGridDelaunay2D vtkTrimOutwardTriangles vtkFillHolesFilter
  */
 #ifndef vtkFillElevationHoles_h
 #define vtkFillElevationHoles_h
 
+#include "vtkElevationSurfaceABI.h"
 #include "vtkElevationSurfaceModule.h" // for export macro
 #include "vtkNew.h"
 #include "vtkPolyDataAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkMultiProcessController;
 class vtkStringArray;
 
@@ -316,7 +234,7 @@ public:
   ///@{
   /**
    * Distance of new points in x,y, in input units. 0 (default): that of the lattice, or for each
-   * hole the mean length of its boundary edges, see above; negative values are taken as 0.
+   * hole the mean length of its boundary edges; negative values are taken as 0.
    */
   vtkSetClampMacro(Spacing, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Spacing, double);
@@ -328,7 +246,7 @@ public:
    * as z is, by the method that was chosen for z (where values around the hole are not finite, by
    * NEIGHBOR_MEAN, which leaves NaN out; normals are brought to unit length); integers, strings and
    * other arrays get the value of the nearest point of the hole's boundary. Off: NaN, 0, or
-   * nothing. New points are never marked as ghosts, and never have ids, see above.
+   * nothing. New points are never marked as ghosts, and never have ids.
    */
   vtkSetMacro(InterpolatePointData, bool);
   vtkGetMacro(InterpolatePointData, bool);
@@ -412,5 +330,6 @@ private:
 
   vtkNew<vtkStringArray> Messages;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

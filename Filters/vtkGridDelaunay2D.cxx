@@ -54,6 +54,7 @@ DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter)
 
 } // namespace elevation
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkGridDelaunay2D);
 vtkCxxSetObjectMacro(vtkGridDelaunay2D, Controller, vtkMultiProcessController);
 
@@ -61,7 +62,7 @@ namespace
 {
 using elevation::ConstraintLines;
 using elevation::Index;
-using elevation::Part;
+using elevation::SubProgress;
 using elevation::Progress;
 using elevation::ReportStep;
 
@@ -70,10 +71,10 @@ ConstraintLines LinesOf(vtkPolyData* source, const elevation::PointsOfDataSet& o
   const elevation::PointView& points, int threads, const Progress& progress,
   std::vector<elevation::Message>& warnings)
 {
-  const ConstraintLines lines = elevation::ToLines(source, own, Part(progress, 0.0, 0.5));
+  const ConstraintLines lines = elevation::ToLines(source, own, SubProgress(progress, 0.0, 0.5));
   const elevation::Box box =
     elevation::FindExtent(points, elevation::ResolveNumberOfThreads(threads),
-      Part(progress, 0.5, 1.0), [](Index, const elevation::Point2&) {});
+      SubProgress(progress, 0.5, 1.0), [](Index, const elevation::Point2&) {});
   elevation::CheckLines(lines, box, warnings);
   return lines;
 }
@@ -92,9 +93,9 @@ elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
   }
   elevation::CheckPointArrays(source, "The constraints'");
   const elevation::PointsOfDataSet own = elevation::ViewPoints(source);
-  const ConstraintLines lines =
-    LinesOf(source, own, points, options.NumberOfThreads, Part(progress, 0.0, 0.02), warnings);
-  options.Monitor = Part(progress, 0.02, 1.0);
+  const ConstraintLines lines = LinesOf(
+    source, own, points, options.NumberOfThreads, SubProgress(progress, 0.0, 0.02), warnings);
+  options.Monitor = SubProgress(progress, 0.02, 1.0);
   return elevation::TriangulateConstrained(points, lines, options);
 }
 
@@ -134,7 +135,7 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   elevation::EffectOfLimit effect;
   effect.Vertices = static_cast<vtkIdType>(ids - found.UnusedPoints.size());
   effect.Missing =
-    effect.Vertices - CountInTriangles(found.Triangles, ids, Part(progress, 0.0, 0.05));
+    effect.Vertices - CountInTriangles(found.Triangles, ids, SubProgress(progress, 0.0, 0.05));
   if (!effect.AreMostMissing())
   {
     return;
@@ -144,12 +145,12 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   options.MaximumEdgeLength = 0.0;
   std::vector<elevation::Message> again;
   const elevation::ConstrainedTriangulation full =
-    TriangulateWith(source, points, options, Part(progress, 0.05, 0.7), again);
+    TriangulateWith(source, points, options, SubProgress(progress, 0.05, 0.7), again);
   const auto placeOf = [&](Index id) {
     return id < points.Count ? points.At(id) : full.Added[id - points.Count].Position;
   };
   elevation::LengthsOfEdges lengths =
-    elevation::MeasureEdges(full.Result.Triangles, ids, placeOf, Part(progress, 0.7, 1.0));
+    elevation::MeasureEdges(full.Result.Triangles, ids, placeOf, SubProgress(progress, 0.7, 1.0));
   std::vector<double>& limits = lengths.Limits;
   limits.erase(std::remove(limits.begin(), limits.end(), std::numeric_limits<double>::infinity()),
     limits.end());
@@ -210,7 +211,7 @@ elevation::ConstrainedTriangulation TriangulateSpread(
     {
       return;
     }
-    const Progress progress = ranks.Watched(Part(options.Monitor, 1.0, 1.0));
+    const Progress progress = ranks.Watched(SubProgress(options.Monitor, 1.0, 1.0));
     vtkPolyData* const output = block.Outputs.front();
     elevation::SurfacePart part = parts.Take(parts.FirstOwn(), progress);
     counts.Added.resize(static_cast<std::size_t>(part.AddedPoints));
@@ -318,12 +319,12 @@ int vtkGridDelaunay2D::RequestData(
     // Little, as a limit seldom needs advice.
     const double triangulated = this->MaximumEdgeLength > 0.0 ? told - 0.09 : told;
     elevation::ConstrainedTriangulation constrained = TriangulateWith(
-      source, points.View, options, Part(progress, 0.0, triangulated), block.Warnings);
+      source, points.View, options, SubProgress(progress, 0.0, triangulated), block.Warnings);
     elevation::Triangulation& triangulation = constrained.Result;
-    WarnOfMissing(source, points.View, options, constrained, Part(progress, triangulated, told),
-      block.Warnings);
+    WarnOfMissing(source, points.View, options, constrained,
+      SubProgress(progress, triangulated, told), block.Warnings);
     elevation::PassPoints(
-      block.Input, source, constrained.Added, Part(progress, told, split), output);
+      block.Input, source, constrained.Added, SubProgress(progress, told, split), output);
     output->GetFieldData()->PassData(block.Input->GetFieldData());
     output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles),
       elevation::ResolveNumberOfThreads(this->NumberOfThreads)));
@@ -332,7 +333,7 @@ int vtkGridDelaunay2D::RequestData(
       elevation::CheckPointArrays(draped, "The constraints'");
       std::vector<elevation::Message> ofLines;
       LinesOf(draped, elevation::ViewPoints(draped), points.View, this->NumberOfThreads,
-        Part(progress, split, split), ofLines);
+        SubProgress(progress, split, split), ofLines);
       for (const elevation::Message& message : ofLines)
       {
         const bool isOfOutside = message.GetCode() == elevation::sentences::LinesFarOutside.Code;
@@ -341,9 +342,9 @@ int vtkGridDelaunay2D::RequestData(
             : elevation::MakeMessage<elevation::sentences::LinesNotDraped>("constraints"));
       }
       constrained.Added.resize(static_cast<std::size_t>(elevation::SplitSurface(
-        output, draped, this->NumberOfThreads, Part(progress, split, 1.0))));
+        output, draped, this->NumberOfThreads, SubProgress(progress, split, 1.0))));
     }
-    elevation::AddReport(constrained, Part(progress, 1.0, 1.0), output->GetFieldData());
+    elevation::AddReport(constrained, SubProgress(progress, 1.0, 1.0), output->GetFieldData());
     if (this->MaximumElevationError > 0.0)
     {
       elevation::AddSimplification(triangulation, output->GetFieldData());
@@ -406,3 +407,4 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfAddedPoints: " << this->NumberOfAddedPoints << "\n";
   os << indent << "Messages: " << this->Messages->GetNumberOfTuples() << " rows\n";
 }
+VTK_ABI_NAMESPACE_END

@@ -4,164 +4,71 @@
  * @class   vtkGridDelaunay2D
  * @brief   exact Delaunay triangulation of points in the x,y plane, grown over a grid
  *
- * Input 0: a vtkPointSet (float or double); only its points are used, its cells are ignored. x,y is
- * the plane of projection, z the elevation. Input 1, optional: constraints, see below.
+ * x,y is the plane of projection, z the elevation. Lines become edges of the triangulation.
  *
- * Output: a vtkPolyData with the same points in the same order (shared with the input,
- * never written), all point data and field data, and the triangles in Polys,
- * counter-clockwise seen from +z.
+ * @par Inputs:
+ * - 0: a vtkPointSet (float or double), whose cells are ignored.
+ * - 1, optional (SetSourceConnection, SetSourceData): a vtkPolyData whose lines and polygon edges must
+ *   be edges of the result: breaklines, faults, outlines. Nothing is cut out along polygons.
  *
- * @par What can be relied on:
- * Without constraints and with MaximumEdgeLength 0 the triangulation is
- * - Exact: no point lies inside the circle through the corners of a triangle, decided by exact
- *   arithmetic; the triangles cover the whole convex hull; every point that is finite and not a
- *   duplicate is a vertex. On a lattice (below) this holds for its nodes.
- * - Unique: where four or more points lie on one empty circle, their polygon is cut into the fan of
- *   its lowest point (least y, then least x). The set of triangles depends on the positions of the
- *   points alone, not on their order.
- * - Complete: points that are not vertices are counted, and listed in the field data.
- *   Coordinates may be of any size a double holds.
- *
- * @par Lattices:
- * Ideally, the points of a grid, such as inlines and crosslines in map coordinates or the pixels of
- * an elevation model, are on the nodes of a lattice. But rounding moves each of them a little, so
- * that their exact triangulation cuts the cells at random and has thin triangles along the border.
- * With LatticeMode Automatic (default) the filter looks for a lattice: an origin and two step
- * vectors, which may be turned, sheared, of unequal lengths, with any number of nodes missing (down
- * to about 1 in 64 of the nodes around the points). Where every point lies on its own node, within
- * LatticeTolerance, the result is the exact Delaunay triangulation of the nodes, in the metric of
- * the two steps and in integers, which is faster, too. Steps that are perpendicular or equal to
- * within a ten-thousandth count as such. "Lowest" is then by row of the lattice, then column; on a
- * lattice parallel to the axes with exact coordinates the triangles are the same in both modes. No
- * triangle is inverted or flat in the coordinates of the points; where one would be, or a point
- * does not fit, the coordinates are triangulated as they are.
- *
- * @par Constraints:
- * Input 1 (SetSourceConnection, SetSourceData) is a vtkPolyData whose lines and polygon edges must
- * be edges of the result: breaklines, faults, outlines. Polygons count as closed lines, nothing is
- * cut out; vertex cells are ignored. The result is the constrained Delaunay triangulation: all
- * edges but those of the lines are locally Delaunay. It is exact and unique as above, whatever the
- * order and direction of the lines. A segment that runs exactly through points is a chain of edges.
- * - A point of a line with the x,y of an input point is that point, with the input's z. Any
- *   other is added behind the input's points, with its own z (of several with the same x,y the
- *   first). So is the only point of a line of one point. Segments of no length are ignored.
- * - Segments that cross are split at the crossing, rounded to the nearest doubles, where a point is
- *   added if there is none. Its z is interpolated along the segment that comes first in the order
- *   of cells, between the points next to it on that segment. Crossings are counted as pairs of
- *   distinct segments that have one point in common, which is an end of neither.
- * - When points are added, the output has points and point data of its own. Points stay float only
- *   if the added ones are exact in it, else they become double. Arrays get their values at added
- *   points from the constraints' array with the same name and number of components (for integers
- *   and strings also of the same type); at crossings these are interpolated as z, and normals
- *   brought to unit length. Where there are none, the value is NaN (float and double), 0 (in pedigree
- *   ids -1, or the largest number of an unsigned type) or an empty string. Global ids of added
- *   points go on after the largest; pedigree ids are those of the constraints' array, if any.
- * - The coordinates are triangulated as they are, never as a lattice: far from lines the triangles
- *   are those of LatticeMode Off without constraints. So on a lattice that rounding has moved, each
- *   cell is cut according to its own rounding, unlike without lines, even far from them.
- * - MaximumEdgeLength applies to the constrained triangulation, also to edges of lines.
- * - Several blocks of a composite are taken as one.
- *
- * @par Few points:
- * With a MaximumElevationError, the surface is simplified while it is made. The corners of the convex
- * hull are vertices, with constraints the ends of their pieces (SimplifyConstraints leaves out some
- * of these); then the point farthest above or below the surface, as far as there is one beyond the
- * error, and so on [Garland & Heckbert 1995]. Several places are worked on at once, which takes a few
- * hundredths more vertices than strictly one point at a time. At the end each point that is left out
- * is measured once more, and what rounding may have taken from its distance is added; so the error is
- * certain. Points that are duplicates are not measured.
- *
- * The triangles are those of the chosen points alone, unless DataDependentEdges is on. On a
- * lattice, where a point at the border may lie beside its node and so beside the surface, it is
- * measured from the triangle there; and where a long triangle of few nodes would be flat, also of a
- * given lattice, the coordinates are triangulated. The choice does not depend on the order of
- * points, nor on the number of threads. Several ranks gather the block on one of them, with a
- * warning. Where coordinates or elevations are beyond some 1e-150 or 1e38, more points are kept,
- * and the time may grow with their square.
- *
- * @par Composite input:
- * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives output
- * of the same structure: each block (each partition) is a surface of its own, with its own field
- * data. Counts of getters are sums. Messages name the block; one with an error is empty, the others
- * stay.
- *
- * @par Several ranks:
- * On several ranks (processes), a block may be spread over them. They triangulate it together: each
- * gets the points in a part of the plane, all with about as many, and the triangles of all ranks are
- * those of one, each on one of them. A rank has the points of its part first, then those of other
- * ranks that its triangles have, marked as such (vtkGhostType), both in the order of their global
- * ids and with all their values. Global ids are those of the input, if all ranks with points have
- * them, else the points are numbered rank after rank; DuplicatePolicy goes by them. Points that are
- * marked as another rank's, or have the same global id, count once. Points that are not finite stay
- * on their rank. Field data are those of the rank's part. Arrays that not all ranks have are left
- * out, with a warning. Partitions of one vtkPartitionedDataSet are one block in this.
- * Constraints may be on other ranks than the points, or spread over them: each rank gets them all;
- * those that are the same on several ranks count once. The points that they add have global ids
- * after the largest, and are in the parts of the plane where they lie; the triangles that meet a
- * line which is no edge yet go to one rank, which makes it one. Getters tell the counts of all ranks; rank
- * 0 reports errors and warnings of all. An error or abort in a block ends it on all ranks. This
- * holds where data are asked for in several pieces and vtkMultiProcessController's global
- * controller has several processes. All ranks have to update then, as in ParaView: where a source
- * before the filter fails on one rank, VTK does not run the filter there, and the others wait for
- * it for ever.
- *
- * @par Warnings and errors:
- * Warnings tell of fewer than three distinct points, or points all on one line, which give the
- * points and no triangle; a MaximumEdgeLength that leaves more than half of the points without a
- * triangle (it tells one that does not, for which it triangulates once more); constraints of which
- * more than half lies farther outside the points' bounding box than a tenth of its size, or which
- * have polygons: vtkDelaunay2D would cut along these.
- *
- * Errors leave empty output. They are: a MaximumEdgeLength that is no length, a
- * MaximumElevationError that is no distance, or both; more points than can be handled
- * (357,913,941); a point array whose number of tuples is not that of the points; constraints
- * without a line or polygon, all beside the points' bounding box, with triangle strips, an invalid
- * vtkCellArray, or a point that does not exist or is not finite (the error names it).
- * An abort also leaves empty output, which counts as up to date: call Modified() to start again.
- *
- * @par Field data of the output:
+ * @par Output:
+ * A vtkPolyData with the same points in the same order (shared with the input, never written), all
+ * point data and field data, and the triangles in Polys, counter-clockwise seen from +z. Points that
+ * constraints add come behind those of the input. Field data:
  * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;
  * - UnusedPointReasons (vtkUnsignedCharArray): for each of them, 1 = duplicate (another point with
  *   the same x,y is the vertex), 2 = not finite (x, y or z), 3 = within MaximumElevationError;
- * - NumberOfDuplicatePoints, NumberOfNonFinitePoints (vtkIdTypeArray, one value);
- * - NumberOfRedundantPoints (vtkIdTypeArray, one value), LargestElevationError (vtkDoubleArray, one
- *   value), only with a MaximumElevationError;
+ * - NumberOfDuplicatePoints, NumberOfNonFinitePoints, NumberOfConstraintCrossings,
+ *   NumberOfAddedPoints, with a MaximumElevationError NumberOfRedundantPoints (vtkIdTypeArray, one
+ *   value) and LargestElevationError (vtkDoubleArray, one value);
  * - Lattice (vtkDoubleArray, one tuple of 6), only when one was found: the lowest occupied node
- *   x,y, the first step x,y, the second step x,y, counter-clockwise from it, in input units;
- * - NumberOfConstraintCrossings, NumberOfAddedPoints (vtkIdTypeArray, one value);
- * - WorkOfRank (vtkIdTypeArray, one tuple of 4), only where a block is spread over ranks: the points
- *   in the part of this rank, those that it had to pass on for triangles across the border of its
- *   part, the bytes it has sent, and in how many exchanges of all ranks.
+ *   x,y, the first step x,y, the second step x,y, counter-clockwise from it, in input units.
  *
- * @par Cost:
- * Linear expected time for points of even density, n log n where density is very uneven, which is
- * also the worst case. Memory during the run, above input and output: about 35 bytes a point with
- * one thread, 45 with several; less than 10 on a lattice that is well filled. Points on which
- * growing would take longer, such as thousands on one circle, are triangulated by divide and
- * conquer instead, which takes some 90 bytes more. Constraints take linear time on one thread, time
- * for what their segments cross, and some 120 bytes a point. A MaximumElevationError that few of
- * many points are needed for takes up to twice the time of triangulating them all, and some 60
- * bytes a point.
+ * @par Guarantees:
+ * Without constraints and with MaximumEdgeLength 0 the triangulation is
+ * - Exact: no point lies inside the circle through the corners of a triangle, decided by exact
+ *   arithmetic; the triangles cover the whole convex hull; every point that is finite and not a
+ *   duplicate is a vertex. On a lattice (LatticeMode) this holds for its nodes.
+ * - Unique: where four or more points lie on one empty circle, their polygon is cut into the fan of
+ *   its lowest point (least y, then least x). The set of triangles depends on the positions of the
+ *   points alone, not on their order, nor on the number of threads or ranks.
+ * - Complete: points that are not vertices are counted, and listed in the field data.
+ *   Coordinates may be of any size a double holds.
  *
- * @par Source:
+ * With constraints it is the constrained Delaunay triangulation, exact and unique in the same way.
+ *
+ * Errors leave empty output and name the point, cell or value; an abort also leaves empty output,
+ * which counts as up to date: call Modified() to start again. A composite input gives output of the
+ * same structure, each block a surface of its own.
+ *
+ * @par Example:
+ * @code
+ * vtkNew<vtkGridDelaunay2D> delaunay;
+ * delaunay->SetInputConnection(reader->GetOutputPort());
+ * delaunay->SetSourceData(faults);
+ * delaunay->SetMaximumEdgeLength(35.0);
+ * delaunay->Update();
+ * @endcode
+ *
+ * @par As published:
  * The method is the grid triangulation of Nguyen, "A Complete Method for Reconstructing an
- * Elevation Surface of 3D Point Clouds": the third point of an edge is looked for by its voxel
- * traversal search, or by its search for the most compact triangle (SearchStrategy).
+ * Elevation Surface of 3D Point Clouds". SearchStrategy chooses between its two searches, voxel
+ * traversal and the most compact triangle, which give the same triangles.
  *
- * [Dyn, Levin & Rippa 1990] Data Dependent Triangulations for Piecewise Linear Interpolation, IMA
- * Journal of Numerical Analysis 10(1):137-154.
- * [Garland & Heckbert 1995] Fast Polygonal Approximation of Terrains and Height Fields, Carnegie
- * Mellon University, CMU-CS-95-181.
+ * Lattices, constraints, few points, all warnings and errors, and cost: [Documentation/Filters.md](Documentation/Filters.md).
+ * Several ranks: Documentation/ManyRanks.md.
  *
  * @sa vtkTrimOutwardTriangles vtkFillElevationHoles vtkDelaunay2D
  */
 #ifndef vtkGridDelaunay2D_h
 #define vtkGridDelaunay2D_h
 
+#include "vtkElevationSurfaceABI.h"
 #include "vtkElevationSurfaceModule.h" // for export macro
 #include "vtkNew.h"
 #include "vtkPolyDataAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkMultiProcessController;
 class vtkStringArray;
 
@@ -177,7 +84,7 @@ public:
 
   ///@{
   /**
-   * The constraints, input 1, see above. Default: none. nullptr takes them away again. GetSource()
+   * The constraints, input 1. Default: none. nullptr takes them away again. GetSource()
    * is nullptr also where they are a composite.
    */
   void SetSourceConnection(vtkAlgorithmOutput* output);
@@ -222,7 +129,7 @@ public:
    * (in the units of z): few points, if not always the fewest possible. The others stay in the output,
    * and are listed as unused. 0 (default): off; all points become vertices. A negative value, or one
    * that is not finite, is an error, and so is a MaximumEdgeLength with it: fewer points make longer
-   * edges. See above for what is kept, and how well.
+   * edges.
    */
   vtkSetMacro(MaximumElevationError, double);
   vtkGetMacro(MaximumElevationError, double);
@@ -302,7 +209,7 @@ public:
   };
 
   ///@{
-  /** Whether a lattice is looked for, see above; default AUTOMATIC. */
+  /** Whether a lattice (Documentation/Filters.md) is looked for; default AUTOMATIC. */
   vtkSetClampMacro(LatticeMode, int, AUTOMATIC, OFF);
   vtkGetMacro(LatticeMode, int);
   void SetLatticeModeToAutomatic() { this->SetLatticeMode(AUTOMATIC); }
@@ -361,7 +268,7 @@ public:
    */
   vtkGetMacro(LargestElevationError, double);
 
-  /** After Update(): pairs of segments of the constraints that cross, see above. */
+  /** After Update(): pairs of segments of the constraints that cross. */
   vtkGetMacro(NumberOfConstraintCrossings, vtkIdType);
 
   /** After Update(): points that constraints have added behind those of the input. */
@@ -434,5 +341,6 @@ private:
 
   vtkNew<vtkStringArray> Messages;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

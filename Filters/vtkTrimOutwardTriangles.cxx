@@ -47,13 +47,14 @@ TrimOptions OptionsOf(vtkTrimOutwardTriangles* filter)
 
 } // namespace elevation
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkTrimOutwardTriangles);
 vtkCxxSetObjectMacro(vtkTrimOutwardTriangles, Controller, vtkMultiProcessController);
 
 namespace
 {
 using elevation::Index;
-using elevation::Part;
+using elevation::SubProgress;
 using elevation::Progress;
 using elevation::Report;
 using elevation::Trimmed;
@@ -79,7 +80,7 @@ void PassSides(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles,
 {
   const int threads = elevation::ResolveNumberOfThreads(options.NumberOfThreads);
   const bool arePieces = !trimmed.Inserted.empty();
-  elevation::PassPoints(input, trimmed, Part(progress, 0.0, 0.25), kept);
+  elevation::PassPoints(input, trimmed, SubProgress(progress, 0.0, 0.25), kept);
   if (lines)
   {
     elevation::PassBoundary(*lines, trimmed.OnBoundary, options, kept);
@@ -90,9 +91,10 @@ void PassSides(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles,
   kept->SetLines(input->GetLines());
   PassTriangles(input, triangles, trimmed.Kept, threads, kept);
   PassTriangles(input, triangles, trimmed.Outward, threads, outward);
+  elevation::PassCellData(input, elevation::FirstPolygon(input), trimmed.Kept, arePieces,
+    SubProgress(progress, 0.4, 0.7), kept);
   elevation::PassCellData(
-    input, elevation::FirstPolygon(input), trimmed.Kept, arePieces, Part(progress, 0.4, 0.7), kept);
-  elevation::PassCellData(input, 0, trimmed.Outward, arePieces, Part(progress, 0.7, 1.0), outward);
+    input, 0, trimmed.Outward, arePieces, SubProgress(progress, 0.7, 1.0), outward);
   kept->GetFieldData()->PassData(input->GetFieldData());
   outward->GetFieldData()->PassData(input->GetFieldData());
 }
@@ -106,14 +108,14 @@ bool TrimSpread(const elevation::Ranks& ranks, elevation::TrimOptions options,
   elevation::Block& block, elevation::TrimCounts& counts)
 {
   const auto isFit = [](vtkPolyData*) { return true; };
-  options.Monitor = Part(block.Progress, 0.0, 0.88);
+  options.Monitor = SubProgress(block.Progress, 0.0, 0.88);
   return elevation::WorkOnParts(block, ranks, isFit, [&](const elevation::SurfaceParts& surface) {
     elevation::TrimParts parts(surface, 0, block.Second, options);
     if (!parts.Trim())
     {
       return false;
     }
-    const Progress writing = Part(block.Progress, 0.88, 1.0);
+    const Progress writing = SubProgress(block.Progress, 0.88, 1.0);
     surface.Crew.ForEach(writing, [&](int part, const Progress& progress) {
       parts.Write(part, progress, block.Outputs[0], block.Outputs[1]);
       block.Outputs[2]->ShallowCopy(parts.Boundary());
@@ -231,12 +233,12 @@ int vtkTrimOutwardTriangles::RequestData(
     elevation::BoundaryLines lines;
     if (isGiven)
     {
-      lines = elevation::ToLines(given, Part(progress, 0.0, 0.02));
+      lines = elevation::ToLines(given, SubProgress(progress, 0.0, 0.02));
     }
     // Cell data take time to pass, all else is shared.
     const double trimmedAt = input->GetCellData()->GetNumberOfArrays() > 0 ? 0.85 : 0.95;
     options.ReturnParents = input->GetCellData()->GetNumberOfArrays() > 0;
-    options.Monitor = Part(progress, 0.02, trimmedAt);
+    options.Monitor = SubProgress(progress, 0.02, trimmedAt);
     Trimmed trimmed = elevation::Trim(triangles.View, given ? &lines : nullptr, options);
     if (triangles.View.Count == 0 && elevation::NeedsWarning(input))
     {
@@ -248,10 +250,10 @@ int vtkTrimOutwardTriangles::RequestData(
     }
 
     PassSides(input, triangles, isGiven ? &lines : nullptr, options, trimmed,
-      Part(progress, trimmedAt, 0.98), block.Outputs[0], block.Outputs[1]);
+      SubProgress(progress, trimmedAt, 0.98), block.Outputs[0], block.Outputs[1]);
     block.Outputs[2]->GetPointData()->CopyAllOn();
-    elevation::PassRings(
-      trimmed.Boundary, isGiven ? given : input, Part(progress, 0.98, 1.0), block.Outputs[2]);
+    elevation::PassRings(trimmed.Boundary, isGiven ? given : input,
+      SubProgress(progress, 0.98, 1.0), block.Outputs[2]);
     const elevation::TrimCounts counts(trimmed);
     elevation::AddCounts(counts, block.Outputs);
     Report(progress, 1.0);
@@ -288,3 +290,4 @@ void vtkTrimOutwardTriangles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfInsertedPoints: " << this->NumberOfInsertedPoints << "\n";
   os << indent << "Messages: " << this->Messages->GetNumberOfTuples() << " rows\n";
 }
+VTK_ABI_NAMESPACE_END

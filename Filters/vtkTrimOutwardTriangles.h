@@ -7,164 +7,66 @@
  * A Delaunay triangulation covers the convex hull of its points; a surface seldom does. This filter
  * takes away the triangles outside its boundary. x,y is the plane of projection, z the elevation.
  *
- * Input 0: a vtkPolyData of triangles that covers no place of the x,y plane twice.
+ * @par Inputs:
+ * - 0: a vtkPolyData of triangles that covers no place of the x,y plane twice.
+ * - 1, optional (SetBoundaryConnection, SetBoundaryData): the boundary, a vtkPolyData of closed lines,
+ *   of lines that join each other to closed rings, and of polygons. A place is inside when an odd
+ *   number of rings goes around it, so rings may nest (a lake, an island in it). They may touch, but
+ *   not cross. The boundary may be drawn anywhere, and its z plays no part.
  *
- * @par The boundary:
- * Input 1, optional: the boundary, a vtkPolyData of
- * - closed lines (the last point is the first, by its id or by its x,y),
- * - lines that join each other to closed rings, and
- * - polygons.
- * A place is inside when an odd number of rings goes around it, so rings may nest (a lake, an
- * island in it), in any order and direction. They may touch; edges that two rings share cancel out,
- * so that two parcels side by side are one surface. A ring that is there twice counts once, with a
- * warning. They may not cross, not even in a point or along edges that they share; nor may a ring
- * cross itself.
- *
- * The boundary may be drawn anywhere, and its z plays no part. It becomes edges of the mesh:
- * - A point of it with exactly the x,y of a corner of the mesh is that corner.
- * - Any other point within the mesh is inserted: it cuts the triangle that it is in into three, or
- *   the triangles beside the edge that it is on into two each. Its z and point data are those of
- *   the surface there: linear on the triangle or edge; values that are not floating point (pedigree
- *   ids, strings, integers) are those of the nearest corner. So inserting does not change the
- *   surface. Global ids go on after the largest.
- * - Parts outside the mesh or in one of its holes need no edges: what is kept is both inside the
- *   boundary and in the mesh. Where an edge of the boundary leaves the mesh, a point is
- *   inserted in the border, at the crossing, rounded to double precision. (An edge that follows a
- *   border so closely that rounding folds the border over is an error that names it.)
- * - An edge of the boundary that is not an edge of the mesh is split where it crosses edges of the
- *   mesh, at places rounded to double precision: so the surface stays as it was. (In places where
- *   triangles are too thin for that, some units in the last place, a piece of the edge is recovered as
- *   one.)
- * - With BoundaryEdges STRAIGHT it is recovered as one edge instead: the triangles that it crosses are
- *   replaced by as many others with the same corners. Their edges are
- *   constrained Delaunay on each side of the boundary's edge, and in the whole mesh if it was
- *   Delaunay and no point has been inserted. Only there does the surface change between its points.
- * - An edge that runs through points of the mesh, exactly or within rounding, is cut there.
- *
- * @par Without a boundary:
- * Without input 1 the boundary is extracted from the triangulation. A triangle is surface when its
- * longest edge is at most GapTolerance times the spacing of the points there; so dense and thin
- * parts of a cloud are both outlined well. The details:
- * - The spacing at a point is half the distance to its 6th nearest point: at the rim of a
- *   gap, where points are on one side only, one step of a square lattice, or the mean spacing
- *   of random points. The spacing of a triangle is the median of those of its three points, but
- *   at most twice the least.
- * - Where points lie much denser along lines than across, as on survey lines and tracks, the
- *   spacing is multiplied by the scale at which they form a surface: about a third of how many times
- *   as far apart the lines are as their points. Lines up to hundreds of spacings apart, jittered,
- *   uneven, interrupted or crossed, are a surface; roads and swaths with three rows of points or
- *   more stay themselves, also beside such lines. A single line beside a surface is left out.
- * - Only doubtful triangles are measured in this way: those whose longest edge is more than about
- *   half of GapTolerance times the mean of the four shortest edges at their points, and which lie
- *   together where there could be room for a lake, or at the border.
- * - Slivers, triangles at the border whose height is less than a tenth of the mean of the four
- *   shortest edges at their points, are not surface, nor are further ones behind them (unless the
- *   whole surface is so thin, or their longest edge leans on surface). A wavering line of points
- *   that leads away from the others makes them.
- * - An opening is a lake only if its area exceeds that of a square with a side of GapTolerance
- *   spacings. A smaller one is surface. So is a bay as small, whose edges are at most 1.6 times
- *   as long as those of other triangles may be: the outline does not follow each point inwards.
- * - A piece of six points or fewer is not surface (unless all pieces are as small).
- * - On a grid, missing nodes that touch the outside are outside: see GridSteps.
- * - The input should be a Delaunay triangulation. Its holes stay open and are part of the boundary.
+ * Without input 1 the boundary is extracted: a triangle is surface when its longest edge is at most
+ * GapTolerance times the spacing of the points there.
  *
  * @par Outputs:
  * - 0: the triangles inside. Vertices and lines of the input come first.
  * - 1: the triangles outside. With a given boundary, both have a point array OnBoundary
- *   (vtkUnsignedCharArray): 1 for points on its edges, else 0. A 1 that an input has in
- *   an array of this name and type stays. By it vtkFillElevationHoles leaves open what the boundary
- *   has cut out. Where a ring is in a hole of the mesh, an edge of this hole is marked, too, so that
- *   it stays open.
- * - 2: the boundary used: one closed line (its last point is its first) for each ring, with the
- *   points and point data of input 1, or of input 0 when it was extracted (counter-clockwise around
- *   surface, clockwise around lakes, starting at the lowest y).
+ *   (vtkUnsignedCharArray): 1 for points on its edges, else 0. By it vtkFillElevationHoles leaves
+ *   open what the boundary has cut out.
+ * - 2: the boundary used: one closed line (its last point is its first) for each ring.
  *
  * Outputs 0 and 1 share the input's points and pass its point data; their triangles are
- * counter-clockwise seen from +z and keep their cell data and order. Together they are the
- * triangles of the input, with boundary edges recovered. A triangle that recovery made has the cell
- * data of one of the triangles that it replaces, the k-th new one that of the k-th old one. Where
- * points are inserted, they come after the input's, and points are in double precision; the
- * parts of a cut triangle have its cell data, and all but one come after the input's triangles.
- * Field data passes to outputs 0 and 1. Nothing is written to the inputs.
+ * counter-clockwise seen from +z and keep their cell data and order. Where points are inserted, they
+ * come after the input's. Field data of all outputs: NumberOfOutwardTriangles, NumberOfRecoveredEdges,
+ * NumberOfPointsLeftOut, NumberOfInsertedPoints (vtkIdTypeArray, one value), EffectiveGapTolerance
+ * (vtkDoubleArray, one value).
  *
- * @par Composite input:
- * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives outputs
- * of the same structure: each block (each partition) is trimmed on its own, along the same boundary
- * if one is given, and has its own field data. Counts of getters are sums. Messages name the block;
- * one with an error is empty, the others stay. Several blocks of a composite input 1 are one
- * boundary.
+ * @par Guarantees:
+ * All decisions of OutwardTest EXACT are exact. The triangles of output 0 cover exactly what is
+ * inside the boundary and covered by the mesh (apart from the rounding of crossings); interior holes
+ * of the mesh stay. Outputs 0 and 1 together are the triangles of the input, with boundary edges
+ * recovered. The result does not depend on the number of threads or ranks. Nothing is written to the
+ * inputs.
  *
- * @par Several ranks:
- * On several ranks (processes), a block may be spread over them. Each rank trims its own triangles;
- * only those near the boundary, and the border of each rank's part, are brought together on one rank.
- * Without a boundary, these are triangles that may not be surface, and some rows along the border
- * of each part; the tolerance is one for all ranks. The triangles of all ranks are those of one, each where it was, with the
- * order and cell data that one rank would give to them rank after rank. A rank has its points in
- * their places, then those that its triangles have got. Points that are corners on several ranks
- * are marked on all but one of them (vtkGhostType); those with the same global id are one, or,
- * where not all ranks have global ids, those with the same x,y,z. Field data are those of the
- * rank. Output 2 is on one rank. Cells marked as another rank's are left out.
+ * Errors leave empty outputs and name the cell, point or edge; an abort also leaves empty output,
+ * which counts as up to date: call Modified() to start again. A composite input gives outputs of the
+ * same structure, each block trimmed on its own, along the same boundary.
  *
- * With INWARD_NORMAL, where not all ranks have the same arrays, where triangles are not counter-
- * clockwise, for messages of what is wrong, and mostly where lines of points give a tolerance above
- * 4.5, the triangles are gathered on the rank with most of them, which gets the result, with a
- * warning unless there is an error; the others have empty output with the same arrays. Points are
- * in the order of their global ids then, else rank after rank, as cells are; messages name both by
- * these numbers. Arrays that not all ranks have are left out, with a warning.
+ * @par Example:
+ * @code
+ * vtkNew<vtkTrimOutwardTriangles> trim;
+ * trim->SetInputConnection(delaunay->GetOutputPort());
+ * trim->SetBoundaryData(outline); // left out: found from the points
+ * trim->Update();
+ * @endcode
  *
- * Partitions of one vtkPartitionedDataSet are one block in this. A boundary may be on other ranks
- * than the triangles, or in pieces on several: each rank gets all of it; one that is the same on
- * several ranks counts once. Getters tell the counts of all ranks; rank 0 reports errors and
- * warnings of all. An error or abort in a block ends it on all ranks. This holds where data are
- * asked for in several pieces and vtkMultiProcessController's global controller has several
- * processes. All ranks have to update then, as in ParaView: where a source before the filter fails
- * on one rank, VTK does not run the filter there, and the others wait for it for ever.
- *
- * @par What can be relied on:
- * With OutwardTest EXACT all decisions are exact. The triangles of output 0 cover exactly what is
- * inside the boundary and covered by the mesh (apart from the rounding of crossings); interior
- * holes of the mesh stay.
- *
- * @par Field data of all outputs:
- * NumberOfOutwardTriangles, NumberOfRecoveredEdges, NumberOfPointsLeftOut, NumberOfInsertedPoints
- * (vtkIdTypeArray, one value), EffectiveGapTolerance (vtkDoubleArray, one value). Of output 0,
- * where a block stays spread over ranks: WorkOfTrim (vtkIdTypeArray, one tuple of 4), the triangles
- * of this rank's part, those of them that count as near the boundary, the bytes it has sent, and in
- * how many exchanges of all ranks.
- *
- * @par Warnings and errors:
- * When an extracted boundary leaves out more than 5 % of the points or half of the area, a warning
- * tells how much, and which GapTolerance would keep it. One that leaves out every point is an
- * error.
- *
- * Errors leave empty outputs and name the cell, point or edge: a cell that is not a triangle, a
- * mesh that covers a place twice, a boundary that is not closed or has a point that is not finite,
- * a ring of fewer than three points, edges or rings that cross each other, a boundary that encloses
- * no triangle; also an invalid vtkCellArray, and a point or cell array of an input whose number of
- * tuples is not that of the points or cells. A mesh without triangles passes with a warning (none
- * where it has no points, or vtkGridDelaunay2D has made it and told why), and the lines of input 1
- * are ignored; so does a mesh in which no triangle is surface (all are outward
- * then). Where borders of the mesh coincide without common points, as between tiles, a ring that
- * passes there may be refused: merge the points, as vtkStaticCleanPolyData does. An abort also
- * leaves empty output, which counts as up to date: call Modified() to start again.
- *
- * @par Cost:
- * Linear in the number of triangles, plus the triangles crossed by boundary edges; one more sweep
- * over the triangles where points are inserted.
- *
- * @par Source:
+ * @par As published:
  * The removal of outward triangles of Nguyen, "A Complete Method for Reconstructing an Elevation
- * Surface of 3D Point Clouds"; its test is INWARD_NORMAL.
+ * Surface of 3D Point Clouds"; its test is OutwardTest INWARD_NORMAL.
+ *
+ * How the boundary becomes edges and how it is extracted, all warnings and errors, and cost:
+ * [Documentation/Filters.md](Documentation/Filters.md). Several ranks: Documentation/ManyRanks.md.
  *
  * @sa vtkGridDelaunay2D vtkFillElevationHoles
  */
 #ifndef vtkTrimOutwardTriangles_h
 #define vtkTrimOutwardTriangles_h
 
+#include "vtkElevationSurfaceABI.h"
 #include "vtkElevationSurfaceModule.h" // for export macro
 #include "vtkNew.h"
 #include "vtkPolyDataAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkMultiProcessController;
 class vtkStringArray;
 
@@ -396,5 +298,6 @@ private:
 
   vtkNew<vtkStringArray> Messages;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

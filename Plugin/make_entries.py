@@ -16,7 +16,7 @@ sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 from Python.description import DESCRIBED, titled  # noqa: E402
 
 TAGS = {"double": "Double", "int": "Int", "bool": "Int", "string": "String"}
-PLACES = {"AnElevationPointsReader": "reader", "ReconstructElevationSurface": "chain"}
+PLACES = {"ElevationPointsReader": "reader", "ReconstructElevationSurface": "chain"}
 
 
 def element(parent, tag, words=None, **attributes):

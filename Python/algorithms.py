@@ -21,8 +21,6 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandD
 from .block_reports import (
     CONTENTS,
     RECOGNISED,
-    account_of,
-    account_of_error,
     counts_of,
     fill_table,
     in_block,
@@ -30,6 +28,8 @@ from .block_reports import (
     lines_to_show,
     once,
     recognised,
+    report_of_block,
+    report_of_failed_block,
     report_rows,
     report_text,
 )
@@ -247,30 +247,30 @@ class ReconstructElevationSurface(ReportingAlgorithm):
                 lines[name] = joined(shared(controller, lambda: lines_of(given, name)))
         parts, surfaces = surfaces_of(controller, parts_of(data))
         results = {}
-        accounts = self.reconstruct_surfaces(surfaces, lines, results)
-        accounts = once(together(controller, lambda: accounts))
+        reports = self.reconstruct_surfaces(surfaces, lines, results)
+        reports = once(together(controller, lambda: reports))
         self.put(data, parts, results, outputs)
-        self._text = report_text(accounts)
+        self._text = report_text(reports)
         if controller and controller.GetLocalProcessId() > 0:
             return []  # the first rank tells of all
-        return self.tell(accounts, any(has_failed_reader(part.data) for part in parts), outputs)
+        return self.tell(reports, any(has_failed_reader(part.data) for part in parts), outputs)
 
     def reconstruct_surfaces(self, surfaces, lines, results):
         """Adds the Reconstruction of each Surface to results, by the Part whose place it takes. Returns
-        their accounts."""
-        accounts = []
+        their reports."""
+        reports = []
         for i, surface in enumerate(surfaces):
             self._share = (i / len(surfaces), 1.0 / len(surfaces))
             try:
                 result, told = agreed(surface.ranks, lambda: self.result_of(surface, lines))
                 if result:
                     results[surface.part] = result
-                    accounts.append(account_of(surface, result, told))
+                    reports.append(report_of_block(surface, result, told))
             except (ElevationSurfaceError, ValueError) as error:
-                accounts.append(account_of_error(surface, getattr(error, "message", str(error))))
+                reports.append(report_of_failed_block(surface, getattr(error, "message", str(error))))
             except MemoryError:
-                accounts.append(account_of_error(surface, "there is not enough memory"))
-        return accounts
+                reports.append(report_of_failed_block(surface, "there is not enough memory"))
+        return reports
 
     def result_of(self, surface, lines):
         """(the Reconstruction of a Surface, what its reader has found out). The Reconstruction is None on
@@ -317,13 +317,13 @@ class ReconstructElevationSurface(ReportingAlgorithm):
                     one.ShallowCopy(getattr(results[part], name) or vtkPolyData())
             put_parts(vtkDataObject.GetData(outputs, port), data, parts, made)
 
-    def tell(self, accounts, reader_has_told, outputs):
+    def tell(self, reports, reader_has_told, outputs):
         """Fills the table, and sends warnings and errors. Returns the lines to show."""
-        errors = [account for account in accounts if "error" in account]
-        made = [account for account in accounts if "error" not in account]
-        for account in made:
-            for note in account["warnings"]:
-                self.warn(in_block(account, note))
+        errors = [report for report in reports if "error" in report]
+        made = [report for report in reports if "error" not in report]
+        for report in made:
+            for note in report["warnings"]:
+                self.warn(in_block(report, note))
         if errors:
             self.error(joined_errors(errors, len(made)))
         elif not made and reader_has_told:
@@ -332,8 +332,8 @@ class ReconstructElevationSurface(ReportingAlgorithm):
             raise ElevationSurfaceError("the input has no points")
         if not made:
             return []
-        fill_table(vtkTable.GetData(outputs, 3), report_rows(accounts))
-        return [f"{self.TITLE}: {', '.join(counts_of(made))}", *lines_to_show(accounts)]
+        fill_table(vtkTable.GetData(outputs, 3), report_rows(reports))
+        return [f"{self.TITLE}: {', '.join(counts_of(made))}", *lines_to_show(reports)]
 
 
 def has_failed_reader(data):

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What became of each block of an input: accounts, which are plain values that ranks can exchange,
-and the report that they make together."""
+"""What became of each block of an input: a report of plain values, which ranks can exchange, for each
+block, and the report that these make together."""
 
 from vtkmodules.vtkCommonCore import vtkStringArray
 
@@ -28,8 +28,8 @@ def recognised(points, ranks=None):
     return lines
 
 
-def account_of(surface, result, told):
-    """The account of a Surface that became a Reconstruction; told: recognised() of its points."""
+def report_of_block(surface, result, told):
+    """The report of a Surface that became a Reconstruction; told: recognised() of its points."""
     # A panel always says which of several heights is taken, so that nobody has decided it.
     notes = result.decided + result.notes
     return {
@@ -43,8 +43,8 @@ def account_of(surface, result, told):
     }
 
 
-def account_of_error(surface, error):
-    """The account of a Surface that became nothing."""
+def report_of_failed_block(surface, error):
+    """The report of a Surface that became nothing."""
     return {"place": surface.place, "name": surface.name, "error": error}
 
 
@@ -63,61 +63,61 @@ def sums_of(result):
     return sums
 
 
-def once(accounts):
-    """Accounts of all ranks in the order of the blocks, each block once."""
-    places = {tuple(account["place"]): account for account in reversed(accounts)}
+def once(reports):
+    """Reports of all ranks in the order of the blocks, each block once."""
+    places = {tuple(report["place"]): report for report in reversed(reports)}
     return [places[place] for place in sorted(places)]
 
 
-def in_block(account, words):
-    return f"{account['name']}: {words}" if account["name"] else words
+def in_block(report, words):
+    return f"{report['name']}: {words}" if report["name"] else words
 
 
 def joined_errors(errors, others):
     """The errors of blocks as one message; once where it is the same in all."""
-    if not others and len({account["error"] for account in errors}) == 1:
+    if not others and len({report["error"] for report in errors}) == 1:
         return errors[0]["error"]
-    lines = [in_block(account, account["error"]) for account in errors[:MOST_ERRORS]]
+    lines = [in_block(report, report["error"]) for report in errors[:MOST_ERRORS]]
     if len(errors) > MOST_ERRORS:
         lines.append(f"And {len(errors) - MOST_ERRORS} more like these.")
     return "\n".join(lines)
 
 
-def made_of(accounts):
-    """The accounts of blocks that became a surface."""
-    return [account for account in accounts if "error" not in account]
+def made_of(reports):
+    """The reports of blocks that became a surface."""
+    return [report for report in reports if "error" not in report]
 
 
-def all_blocks(accounts):
+def all_blocks(reports):
     """[(item, text)] of what all blocks have together."""
-    columns = zip(*(account["sums"] for account in made_of(accounts)))
+    columns = zip(*(report["sums"] for report in made_of(reports)))
     sums = [(*column[0][::2], sum(number for _, number, _ in column)) for column in columns]
     return [(item, f"{count:,} {words}".strip()) for item, words, count in sums]
 
 
-def counts_of(accounts):
+def counts_of(reports):
     """What one wants to know first, as a list of words."""
-    made = made_of(accounts)
+    made = made_of(reports)
     if len(made) == 1:
         return made[0]["counts"]
     rows = [row for row in all_blocks(made)[:3] if row[0] != "unused"]
     return [counted(len(made), "block"), *(f"{text.split()[0]} {item}" for item, text in rows)]
 
 
-def report_rows(accounts):
+def report_rows(reports):
     """[(block, item, value)] of the report; none where no block became a surface."""
-    made = made_of(accounts)
+    made = made_of(reports)
     rows = [("all blocks", *row) for row in all_blocks(made)] if len(made) > 1 else []
-    for account in accounts if made else ():
-        for item, value in account.get("rows") or [("error", account["error"])]:
-            rows.append((account["name"], item, value))
+    for report in reports if made else ():
+        for item, value in report.get("rows") or [("error", report["error"])]:
+            rows.append((report["name"], item, value))
     return rows
 
 
-def report_text(accounts):
+def report_text(reports):
     """The report, one line each."""
     lines, last = [], ""
-    for block, item, value in report_rows(accounts):
+    for block, item, value in report_rows(reports):
         if block != last:
             lines.append(f"{block}:")
             last = block
@@ -125,12 +125,12 @@ def report_text(accounts):
     return "\n".join(lines)
 
 
-def lines_to_show(accounts):
+def lines_to_show(reports):
     """The lines of the report without those that were shown: warnings, and what a reader told."""
-    shown = {line for account in accounts for line in account.get("shown", ())}
+    shown = {line for report in reports for line in report.get("shown", ())}
     return [
         f"{block}: {item:<10} {value}" if block else f"{item:<10} {value}"
-        for block, item, value in report_rows(accounts)
+        for block, item, value in report_rows(reports)
         if item != "error" and (item != "note" or value not in shown)
     ]
 

@@ -322,10 +322,7 @@ def parts_of_lines(data):
     """(names, parts) of the lines and polygons of vtkPolyData, as make_lines() takes them."""
     if data.GetPoints() is None:
         return [], []
-    xyz = vtk_to_numpy(data.GetPoints().GetData()).astype("f8")
-    words = data.GetCellData().GetAbstractArray(LINE_NAMES)
-    is_named = isinstance(words, vtkStringArray)
-    is_named = is_named and words.GetNumberOfValues() == data.GetNumberOfCells()
+    xyz, named = vtk_to_numpy(data.GetPoints().GetData()).astype("f8"), names_of_cells(data)
     first, names, parts = data.GetNumberOfVerts(), [], []
     for cells, kind in ((data.GetLines(), "line"), (data.GetPolys(), "polygon")):
         ids, ends = (
@@ -334,10 +331,23 @@ def parts_of_lines(data):
         for begin, end in zip(ends[:-1], ends[1:]):
             part = xyz[ids[begin:end]]
             if len(part):
-                names.append(words.GetValue(first) if is_named else f"{kind} (cell {first})")
+                cell = f"{kind} (cell {first})"
+                names.append(named.get(cell, cell))
                 parts.append(numpy.vstack((part, part[:1])) if kind == "polygon" else part)
             first += 1
     return names, parts
+
+
+def names_of_cells(data):
+    """{how the filters call a line or polygon: its name}; empty where make_lines() was given no names."""
+    words = data.GetCellData().GetAbstractArray(LINE_NAMES)
+    if not isinstance(words, vtkStringArray) or words.GetNumberOfValues() != data.GetNumberOfCells():
+        return {}
+    first, polygon = data.GetNumberOfVerts(), data.GetNumberOfVerts() + data.GetNumberOfLines()
+    return {
+        f"{'line' if cell < polygon else 'polygon'} (cell {cell})": words.GetValue(cell)
+        for cell in range(first, words.GetNumberOfValues())
+    }
 
 
 def bare_lines(data):

@@ -28,7 +28,7 @@ def report_of_holes(outlines, bridged, fill, why_opened=None, ranks=None):
     """The part of the report on holes.
 
     outlines    vtkPolyData, with the report of the filter as cell data
-    bridged     see are_bridged()
+    bridged     of each outline, see BridgedVoids
     fill        the filter
     why_opened  where the length from that of the filter is from
     ranks       the controller of those that have some outlines each, or None
@@ -91,28 +91,39 @@ def hole_counts(ranks, result):
     return result.fill.GetNumberOfHoles() - left, result.fill.GetNumberOfFilledHoles()
 
 
-def are_bridged(surface, outlines, ranks=None):
-    """Which outlines are of voids that triangles bridge, or did until they were filled: (n,) bool.
+class BridgedVoids:
+    """Which outlines are of voids that triangles bridge, or did until they were filled.
 
     A hole is on the left of its outline. Where a triangle is there, on any rank, it bridges a void.
+
+    outlines  those that this rank has, of the holes of all
     """
-    status = column_of(outlines, "Status")
-    bridged = status == 4
-    left = numpy.flatnonzero((status != 0) & ~bridged)
-    own = before(ranks, len(left))
-    lines = outlines.GetLines()
-    starts = vtk_to_numpy(lines.GetOffsetsArray())[left]
-    ids = vtk_to_numpy(lines.GetConnectivityArray())
-    ends = coordinates_of(outlines)[:, :2][numpy.stack((ids[starts], ids[starts + 1]), 1)] if len(left) else ()
-    first, second = all_values(ranks, numpy.ravel(ends), "f8").view("c16").reshape(-1, 2).T
-    places = complex_places(surface)
-    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    corners = corners[numpy.isin(places, first)[corners].any(axis=1)]
-    ends = places[numpy.roll(corners, -1, axis=1)]
-    edges = set(zip(places[corners].ravel().tolist(), ends.ravel().tolist()))
-    here = [float(edge in edges) for edge in zip(first.tolist(), second.tolist())]
-    bridged[left] = summed(ranks, numpy.array(here))[own : own + len(left)] > 0
-    return bridged
+
+    def __init__(self, outlines, ranks=None):
+        self.ranks, self.status = ranks, column_of(outlines, "Status")
+        self.left = numpy.flatnonzero((self.status != 0) & (self.status != 4))
+        lines = outlines.GetLines()
+        starts = vtk_to_numpy(lines.GetOffsetsArray())[self.left]
+        ids, places = vtk_to_numpy(lines.GetConnectivityArray()), coordinates_of(outlines)[:, :2]
+        ends = places[numpy.stack((ids[starts], ids[starts + 1]), 1)] if len(self.left) else ()
+        self.edges = all_values(ranks, numpy.ravel(ends), "f8").view("c16").reshape(-1, 2)
+        self.are_there = numpy.zeros(len(self.edges))
+
+    def see(self, surface):
+        """Takes the triangles of this rank, or some of them."""
+        places = complex_places(surface)
+        corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        corners = corners[numpy.isin(places, self.edges[:, 0])[corners].any(axis=1)]
+        ends = places[numpy.roll(corners, -1, axis=1)]
+        edges = set(zip(places[corners].ravel().tolist(), ends.ravel().tolist()))
+        self.are_there += [edge in edges for edge in map(tuple, self.edges.tolist())]
+
+    def find(self):
+        """(n,) bool of the outlines of this rank, once all have seen all triangles."""
+        bridged, own = self.status == 4, before(self.ranks, len(self.left))
+        found = summed(self.ranks, self.are_there)[own : own + len(self.left)]
+        bridged[self.left] = found > 0
+        return bridged
 
 
 def complex_places(data):

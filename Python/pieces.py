@@ -17,6 +17,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import reading
 from .clouds import Cloud, corner_flags, faults_note, heights_of, make_points, set_crs, slices
@@ -24,7 +25,7 @@ from .description import DESCRIBED
 from .draping import check_given_z
 from .given_lines import in_system
 from .heights import HeightsOfPieces
-from .holes import report_of_holes
+from .holes import BridgedVoids, report_of_holes
 from .mending import mended
 from .messages import ElevationSurfaceError, FileError, Messages
 from .opening import lattice_of
@@ -35,10 +36,10 @@ from .reading.slicing import check_sliced, read_files
 from .reading.unpacking import is_plain
 from .reconstruction import AS_GIVEN, least_reach
 from .report import MOST_LISTED, OUTSIDE, REASONS, facts_of, report_of_faults, report_of_trimming
-from .results import Failure, WrongOption, write_report
+from .results import Failure, write_report
 from .spreading import IN_NO_TRIANGLE
-from .steps import STEPS, in_our_names, is_of_constraints
-from .supervisor import note_partial_file
+from .steps import STEPS, boundary_of, in_our_names, is_of_constraints
+from .supervisor import note_partial_file, rank_and_size
 from .vtkElevationSurfacePieces import vtkReconstructPieces
 from .writing.xml_writer import write_vtp
 
@@ -70,7 +71,12 @@ def pieces_within(memory, points, fill=False, processes=1):
 
 def check_given(options, error):
     """Calls error(words) where options of the command line do not go with pieces."""
-    name = "--pieces" if options.pieces is not None else "--memory"
+    name, processes = "--pieces" if options.pieces is not None else "--memory", rank_and_size()[1]
+    if options.pieces and options.pieces % processes:
+        error(
+            f"--pieces: {options.pieces} cannot be made by {processes} processes, each as many: take a "
+            f"multiple of {processes}, such as {options.pieces + -options.pieces % processes}"
+        )
     for other, one in DESCRIBED.items():
         if not one.in_pieces and getattr(options, other) not in (None, False, 0.0):
             words = one.words["pieces"]
@@ -79,8 +85,8 @@ def check_given(options, error):
             error(f"{option_of(other)} {words}")
     if options.fill and not options.boundary and options.open_edge_length is None:
         error(
-            f"{name} cannot tell which triangles bridge what is missing: add --open-edge-length 0 "
-            "for none of them, --no-fill or --boundary"
+            f"{name} cannot tell which triangles bridge what is missing: add --open-edge-length, 0 for "
+            "none of them, --no-fill or --boundary"
         )
     options.no_picture = True
 
@@ -184,10 +190,6 @@ class MessagesOfSteps(Messages):
         super().take(event, message)
 
 
-def with_step(message):
-    return f"{STEPS[message.step]}: {in_our_names(message, message.step)}"
-
-
 class Pieces:
     """A run in pieces: reads, triangulates, trims, fills and writes. All ranks call it; the first gets
     the report.
@@ -204,7 +206,8 @@ class Pieces:
         self.unused = {number: numpy.empty(0, "i8") for number in (1, 2)}  # of REASONS
         self.low, self.high = numpy.full(3, numpy.inf), numpy.full(3, -numpy.inf)
         self.range = None  # of z of the points
-        self.lattice = self.told_of = self.holes = None
+        self.lattice = self.told_of = self.voids = None
+        self.outlines = vtkPolyData()  # of the holes, on the first rank
         self.heights, self.several = HeightsOfPieces(self.ranks), None
 
     def __call__(self):
@@ -214,11 +217,6 @@ class Pieces:
     def work(self, folder):
         options, source, run = self.options, self.source, self.run
         rank, ranks = rank_and_count(self.ranks)
-        if options.pieces and options.pieces % ranks:
-            raise WrongOption(
-                f"--pieces: {options.pieces} cannot be made by {ranks} processes, each as many: take a "
-                f"multiple of {ranks}, such as {options.pieces + -options.pieces % ranks}"
-            )
         source.SetFolder(folder_of_rank(folder, rank))
         source.KeepFilesOff()
         source.SetTrimOutward(options.trim)
@@ -264,8 +262,15 @@ class Pieces:
         if problems:
             file = problems[0].step == "trim" and self.options.boundary or self.options.file
             file = self.options.faults if is_of_constraints(problems[0]) else file
-            more = (in_our_names(one, one.step) for one in problems[1:])
-            raise Failure(" ".join([f"{file}: {with_step(problems[0])}", *more]))
+            more = map(self.in_our_names, problems[1:])
+            raise Failure(" ".join([f"{file}: {self.with_step(problems[0])}", *more]))
+
+    def in_our_names(self, message):
+        boundary = boundary_of(self.source.GetTrim()) if message.step == "trim" else None
+        return in_our_names(message, message.step, boundary)
+
+    def with_step(self, message):
+        return f"{STEPS[message.step]}: {self.in_our_names(message)}"
 
     def read(self):
         """Gives the points of this rank to the filter, slice by slice, and lines on the first."""
@@ -338,7 +343,7 @@ class Pieces:
             self.update(piece, count)
             if self.source.GetNumberOfTriangles() == 0 and self.run.is_first:
                 why = self.messages.warnings[0]
-                raise Failure(f"{self.options.file}: no surface: {in_our_names(why, why.step)}")
+                raise Failure(f"{self.options.file}: no surface: {self.in_our_names(why)}")
 
         agreed(self.ranks, first)
 
@@ -346,10 +351,11 @@ class Pieces:
         """Writes all pieces of this rank with points."""
         final = folder_of(self.options.output)
         self.told_of = Points(self.source.GetNumberOfPoints())
+        if self.options.fill:
+            self.outlines.ShallowCopy(self.source.GetOutput(1))  # of piece 0
+            self.voids = BridgedVoids(self.outlines, self.ranks)
         for piece in own:
             data = self.update(piece, count)
-            if piece == 0 and self.options.fill:
-                self.holes = self.holes_of(self.source.GetOutput(1))
             if data.GetNumberOfPoints():
                 self.look_at(data)
                 if self.cloud.crs:
@@ -373,6 +379,7 @@ class Pieces:
             known = numpy.concatenate(collected(ranks, known))
             self.unused[number] = numpy.sort(known)[:MOST_LISTED]
         self.others = self.told_of.others(MOST_LISTED, ranks)
+        self.bridged = self.voids and self.voids.find()
         unused = source.GetNumberOfDuplicatePoints() + source.GetNumberOfNonFinitePoints()
         places, policy = source.GetNumberOfPoints() - unused, self.options.given.get("duplicates")
         try:
@@ -388,6 +395,8 @@ class Pieces:
         flags = corner_flags(corners, len(ids))
         used = vtk_to_numpy(points.GetData())[flags]
         self.told_of.add(ids[flags])
+        if self.voids:
+            self.voids.see(data)
         self.low = numpy.minimum(self.low, used.min(axis=0, initial=numpy.inf))
         self.high = numpy.maximum(self.high, used.max(axis=0, initial=-numpy.inf))
         fields = data.GetFieldData()
@@ -400,12 +409,6 @@ class Pieces:
         for number, known in self.unused.items():
             all_known = numpy.concatenate((known, gone[reasons == number]))
             self.unused[number] = numpy.sort(all_known)[:MOST_LISTED]
-
-    def holes_of(self, outlines):
-        """What became of the holes. No triangles of pieces bridge any."""
-        bridged = numpy.zeros(outlines.GetNumberOfLines(), dtype=bool)
-        why = None if self.options.open_edge_length is None else AS_GIVEN
-        return report_of_holes(outlines, bridged, self.source.GetFill(), why)
 
     def why_in_no_triangle(self):
         """The reason of points that have been left out by trimming, or by the limit of edges."""
@@ -422,7 +425,7 @@ class Pieces:
             REASONS[2]: (source.GetNumberOfNonFinitePoints(), self.unused[2]),
             self.why_in_no_triangle(): self.others,
         }
-        notes = [with_step(warning) for warning in self.messages.warnings]
+        notes = [self.with_step(warning) for warning in self.messages.warnings]
         limits = self.low.tolist(), self.high.tolist()
         self.triangles = {"delaunay": source.GetNumberOfTriangles()}
         report = {
@@ -441,7 +444,8 @@ class Pieces:
             report["faults"] = report_of_faults(options.faults, source)
         if options.fill:
             self.triangles["filled"] = source.GetNumberOfFilledTriangles()
-            report["holes"] = self.holes
+            why = None if options.open_edge_length is None else AS_GIVEN
+            report["holes"] = report_of_holes(self.outlines, self.bridged, source.GetFill(), why)
         return report
 
 

@@ -23,7 +23,7 @@ from .clouds import Cloud, coordinates_of, make_lines, make_points
 from .description import KINDS, listing, view_angles
 from .given_lines import fitted
 from .heights import check_heights, heights_on_ranks
-from .holes import are_bridged, hole_counts
+from .holes import BridgedVoids, hole_counts
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .names import argument
 from .opening import length_to_open
@@ -151,7 +151,7 @@ class Reconstruction:
     points    the output of a filter in which points of the input come first
     reasons   (n,) numbers of these: 0 for points in triangles of the triangulation, or why they are in
               none, as vtkGridDelaunay2D counts reasons; IN_NO_TRIANGLE where it has none
-    bridged   which of the holes are voids that triangles bridge, see are_bridged()
+    bridged   which of the holes are voids that triangles bridge, see BridgedVoids
     hole_counts        (found, filled)
     lattice   that of the triangulation, see lattice_of(), or None
     times     {step: seconds}
@@ -333,7 +333,9 @@ def run_chain(
         result.fill = last = run("fill", filling)
         result.triangles["filled"] = total(ranks, last.GetOutput().GetNumberOfPolys())
         result.holes = filling.GetOutput(1)
-        result.bridged = are_bridged(last.GetOutput(), result.holes, ranks)
+        voids = BridgedVoids(result.holes, ranks)
+        voids.see(last.GetOutput())
+        result.bridged = voids.find()
         result.hole_counts = hole_counts(ranks, result)
     result.surface = last.GetOutput()
     result.points, result.reasons = followed(

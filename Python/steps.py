@@ -7,7 +7,7 @@ import time
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import bare_lines, coordinates_of, joined
+from .clouds import bare_lines, coordinates_of, joined, names_of_cells
 from .messages import ElevationSurfaceError, Messages
 from .names import PANEL, PYTHON, are_for, argument, option
 from .opening import lattice_of
@@ -72,14 +72,14 @@ class Step:
         def end():
             if raised:
                 raise raised[0]
-            return self.report(name, messages)
+            return self.report(name, messages, boundary_of(algorithm) if name == "trim" else None)
 
         for is_on_one_rank, note in together(self.ranks, end):
             notes = self.result.gathered if is_on_one_rank else self.result.notes
             notes += [note] if note not in notes else []
         return algorithm
 
-    def report(self, name, messages):
+    def report(self, name, messages, boundary):
         """Raises the errors of a step. Returns [whether it is OnOneRank, note] of its warnings."""
         warnings = [warning for warning in messages.warnings if warning.code != "OnOneRank"]
         problems = messages.errors or (warnings if self.strict else [])
@@ -89,11 +89,11 @@ class Step:
                 about = "boundary"
             elif name == "delaunay" and is_of_constraints(problems[0]):
                 about = "faults"
-            words = " ".join(in_our_names(one, name) for one in problems)
+            words = " ".join(in_our_names(one, name, boundary) for one in problems)
             raise ElevationSurfaceError(words, about, STEPS[name])
         self.result.warnings += warnings
         return [
-            [warning.code == "OnOneRank", f"{STEPS[name]}: {in_our_names(warning, name)}"]
+            [warning.code == "OnOneRank", f"{STEPS[name]}: {in_our_names(warning, name, boundary)}"]
             for warning in messages.warnings
         ]
 
@@ -106,10 +106,11 @@ def is_of_constraints(message):
 CALLED_IN_PANEL = {"constraints": "faults", "constraints'": "faults'"}
 
 
-def in_our_names(message, step):
+def in_our_names(message, step, boundary=None):
     """A filter's Message, with the names of options where it has names of properties.
 
-    step  delaunay, trim or fill
+    step      delaunay, trim or fill
+    boundary  None, or that of the step, whose lines may have names
     """
 
     def name_of(setter):
@@ -118,7 +119,15 @@ def in_our_names(message, step):
                 return option(name)
         return setter
 
-    return message.named(name_of, CALLED_IN_PANEL if are_for(PANEL) else None)
+    words = dict(CALLED_IN_PANEL) if are_for(PANEL) else {}
+    if boundary is not None:
+        words.update((f"the {cell}", name) for cell, name in names_of_cells(boundary).items())
+    return message.named(name_of, words)
+
+
+def boundary_of(trim):
+    """The boundary that vtkTrimOutwardTriangles is given, or None."""
+    return trim.GetInputDataObject(1, 0) if trim.GetNumberOfInputConnections(1) else None
 
 
 def triangulate(run, lines, error):

@@ -6,6 +6,8 @@
 #     <Room>/<Room>.h;
 #   - of VTK, the kernel includes its Eigen alone; a room around it includes no filter;
 #   - a filter includes faces alone; the class for the Python package also the options of the filters;
+#   - classes of VTK and ours are declared and defined in the namespace that VTK was built with;
+#   - the comment of a filter's class has at most 70 lines: the rest is in Documentation/;
 #   - every file is in a room and is listed, and a file that is listed is there;
 #   - the drawing of the rooms is the one that Utilities/draw-rooms makes.
 # Run as: cmake -DROOT=<top of the source tree> -P IncludeOrder.cmake
@@ -59,6 +61,7 @@ foreach (room IN LISTS es_kernel_rooms es_outer_rooms)
 endforeach ()
 
 file(GLOB filters RELATIVE "${ROOT}/Filters" "${ROOT}/Filters/*.h")
+list(REMOVE_ITEM filters vtkElevationSurfaceABI.h) # no filter: the names of VTK's namespace
 foreach (file IN LISTS filters)
   file(GLOB_RECURSE files RELATIVE "${ROOT}" "${ROOT}/Filters/Adapt/*" "${ROOT}/Filters/Parts/*")
   foreach (inner IN LISTS files)
@@ -71,6 +74,17 @@ endforeach ()
 file(GLOB filters RELATIVE "${ROOT}" "${ROOT}/Filters/*.h" "${ROOT}/Filters/*.cxx")
 foreach (file IN LISTS filters)
   check_file("${file}" "^vtk" ${faces})
+endforeach ()
+
+file(GLOB filters RELATIVE "${ROOT}" "${ROOT}/Filters/vtk*.h")
+foreach (file IN LISTS filters)
+  file(READ "${ROOT}/${file}" text)
+  string(REGEX REPLACE "\\*/.*" "" comment "${text}")
+  string(REGEX MATCHALL "\n" lines "${comment}")
+  list(LENGTH lines count) # and the two lines of the licence less the last one
+  if (comment MATCHES "@class" AND count GREATER 71)
+    list(APPEND wrong "the comment of the class in ${file} has more than 70 lines")
+  endif ()
 endforeach ()
 
 file(GLOB files RELATIVE "${ROOT}" "${ROOT}/Python/Pieces/*.h" "${ROOT}/Python/Pieces/*.cxx")
@@ -89,6 +103,23 @@ endforeach ()
 foreach (file IN LISTS listed)
   if (NOT file IN_LIST found)
     list(APPEND wrong "CMake/Rooms.cmake lists ${file}, which is not there")
+  endif ()
+endforeach ()
+
+file(GLOB_RECURSE files RELATIVE "${ROOT}" "${ROOT}/Filters/*.h" "${ROOT}/Filters/*.cxx" "${ROOT}/Python/Pieces/*.h"
+  "${ROOT}/Python/Pieces/*.cxx")
+foreach (file IN LISTS files)
+  file(STRINGS "${ROOT}/${file}" lines REGEX "^(class ([A-Z]+_EXPORT )?vtk|vtkStandardNewMacro|VTK_ABI_NAMESPACE_)")
+  set(is_inside OFF)
+  foreach (line IN LISTS lines)
+    if (line MATCHES "^VTK_ABI_NAMESPACE_(BEGIN|END)$")
+      string(COMPARE EQUAL "${CMAKE_MATCH_1}" BEGIN is_inside)
+    elseif (NOT is_inside)
+      list(APPEND wrong "${file} has outside of VTK_ABI_NAMESPACE_BEGIN and _END: ${line}")
+    endif ()
+  endforeach ()
+  if (is_inside)
+    list(APPEND wrong "${file} lacks VTK_ABI_NAMESPACE_END")
   endif ()
 endforeach ()
 

@@ -8,16 +8,13 @@
 #define Blocks_h
 
 #include "Kernel/Messages/Messages.h"
+#include "VTKClasses.h"
 
 #include "vtkDataObject.h"
 #include "vtkSmartPointer.h"
 
 #include <string>
 #include <vector>
-
-class vtkInformation;
-class vtkInformationVector;
-class vtkPolyData;
 
 namespace elevation
 {

@@ -127,12 +127,13 @@ void PassPoints(vtkPointSet* input, vtkPolyData* source, const std::vector<Added
 {
   const vtkIdType count = static_cast<vtkIdType>(added.size());
   output->SetPoints(AppendPoints(input->GetPoints(), count, TypeOfPoints(input->GetPoints(), added),
-    Part(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
+    SubProgress(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
       xyz[0] = added[i].Position.X;
       xyz[1] = added[i].Position.Y;
       xyz[2] = added[i].Elevation;
     }));
-  PassExtended(input->GetPointData(), count, output->GetPointData(), Part(progress, 0.4, 1.0),
+  PassExtended(input->GetPointData(), count, output->GetPointData(),
+    SubProgress(progress, 0.4, 1.0),
     [&](vtkAbstractArray* before, vtkAbstractArray* after, const Progress& ofArray) {
       NewValues values;
       values.First = CopyGiven(FindGiven(source->GetPointData(), before), added, ofArray, after);

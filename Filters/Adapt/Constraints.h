@@ -11,12 +11,10 @@
 #include "Kernel/Constrain/Constrain.h"
 #include "Kernel/Messages/Messages.h"
 #include "MeshConversion.h"
+#include "VTKClasses.h"
 
 #include <string>
 #include <vector>
-
-class vtkPointSet;
-class vtkPolyData;
 
 namespace elevation
 {

@@ -9,8 +9,7 @@
 #define DelaunayReport_h
 
 #include "Kernel/Constrain/Constrain.h"
-
-class vtkFieldData;
+#include "VTKClasses.h"
 
 namespace elevation
 {

@@ -648,17 +648,17 @@ void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSet
   {
     vtkAbstractArray* before = input->GetAbstractArray(i);
     const double count = input->GetNumberOfArrays();
-    const Progress ofArray = Part(progress, i / count, (i + 1) / count);
+    const Progress ofArray = SubProgress(progress, i / count, (i + 1) / count);
     const vtkSmartPointer<vtkAbstractArray> after =
-      Extend(before, numberOfNew, IsIdArray(input, before), Part(ofArray, 0.0, 0.5));
+      Extend(before, numberOfNew, IsIdArray(input, before), SubProgress(ofArray, 0.0, 0.5));
     const bool areGlobalIds =
       before == input->GetAbstractAttribute(vtkDataSetAttributes::GLOBALIDS) &&
       NumberNewTuples(numberOfNew, after);
     if (valuesOf && !areGlobalIds && !IsGhostArray(before))
     {
-      const NewValues values = valuesOf(before, after, Part(ofArray, 0.5, 0.7));
+      const NewValues values = valuesOf(before, after, SubProgress(ofArray, 0.5, 0.7));
       const bool areNormals = before == input->GetAbstractAttribute(vtkDataSetAttributes::NORMALS);
-      SetNewTuples(before, values, areNormals, Part(ofArray, 0.7, 1.0), after);
+      SetNewTuples(before, values, areNormals, SubProgress(ofArray, 0.7, 1.0), after);
     }
     const int index = output->AddArray(after);
     for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)

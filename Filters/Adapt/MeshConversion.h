@@ -10,21 +10,13 @@
 
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "VTKClasses.h"
 
 #include "vtkSmartPointer.h"
 
 #include <functional>
 #include <string>
 #include <vector>
-
-class vtkAbstractArray;
-class vtkCellArray;
-class vtkDataArray;
-class vtkDataSetAttributes;
-class vtkPointSet;
-class vtkPoints;
-class vtkPolyData;
-class vtkUnsignedCharArray;
 
 namespace elevation
 {

@@ -10,15 +10,12 @@
 
 #include "Kernel/Fill/Fill.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "VTKClasses.h"
 
 #include "vtkType.h"
 
 #include <string>
 #include <vector>
-
-class vtkAbstractArray;
-class vtkPointData;
-class vtkPolyData;
 
 namespace elevation
 {

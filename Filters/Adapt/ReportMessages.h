@@ -13,11 +13,9 @@
 #define ReportMessages_h
 
 #include "Kernel/Messages/Messages.h"
+#include "VTKClasses.h"
 
 #include <vector>
-
-class vtkAlgorithm;
-class vtkStringArray;
 
 namespace elevation
 {

@@ -9,18 +9,13 @@
 #define Requests_h
 
 #include "Kernel/Base/Base.h"
+#include "VTKClasses.h"
 
 #include "vtkType.h"
 
 #include <exception>
 #include <utility>
 #include <vector>
-
-class vtkAlgorithm;
-class vtkFieldData;
-class vtkInformationVector;
-class vtkPolyData;
-class vtkStringArray;
 
 namespace elevation
 {

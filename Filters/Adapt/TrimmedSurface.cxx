@@ -69,14 +69,14 @@ vtkIdType SplitSurface(
   TrimOptions options;
   options.ReturnParents = false;
   options.NumberOfThreads = threads;
-  options.Monitor = Part(progress, 0.05, 0.9);
+  options.Monitor = SubProgress(progress, 0.05, 0.9);
   Trimmed split = SplitAlong(
-    triangles.View, ToLines(constraints, Part(progress, 0.0, 0.05), "constraints"), options);
+    triangles.View, ToLines(constraints, SubProgress(progress, 0.0, 0.05), "constraints"), options);
   if (!split.Kept.IsWholeList)
   {
     surface->SetPolys(ToCellArray(std::move(split.Kept.Corners), ResolveNumberOfThreads(threads)));
     surface->GetPointData()->Initialize();
-    PassPoints(before, split, Part(progress, 0.9, 1.0), surface);
+    PassPoints(before, split, SubProgress(progress, 0.9, 1.0), surface);
   }
   return static_cast<vtkIdType>(split.Inserted.size());
 }
@@ -87,8 +87,8 @@ void PassPoints(
   const std::vector<InsertedVertex>& inserted = trimmed.Inserted;
   const vtkIdType count = static_cast<vtkIdType>(inserted.size());
   // In double precision; otherwise rounding would move new points off the boundary.
-  output->SetPoints(AppendPoints(
-    input->GetPoints(), count, VTK_DOUBLE, Part(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
+  output->SetPoints(AppendPoints(input->GetPoints(), count, VTK_DOUBLE,
+    SubProgress(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
       xyz[0] = trimmed.Places[i].X;
       xyz[1] = trimmed.Places[i].Y;
       xyz[2] = 0.0;
@@ -97,7 +97,8 @@ void PassPoints(
         xyz[2] += inserted[i].Weights[k] * input->GetPoint(inserted[i].Corners[k])[2];
       }
     }));
-  PassExtended(input->GetPointData(), count, output->GetPointData(), Part(progress, 0.4, 1.0),
+  PassExtended(input->GetPointData(), count, output->GetPointData(),
+    SubProgress(progress, 0.4, 1.0),
     [&](vtkAbstractArray* array, vtkAbstractArray*, const Progress&) {
       NewValues values;
       values.Interpolated = [&inserted, numbers = vtkArrayDownCast<vtkDataArray>(array)](

@@ -10,16 +10,13 @@
 
 #include "Kernel/Base/Base.h"
 #include "Kernel/Trim/Trim.h"
+#include "VTKClasses.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
 #include <string>
 #include <vector>
-
-class vtkPointData;
-class vtkPolyData;
-class vtkUnsignedCharArray;
 
 namespace elevation
 {

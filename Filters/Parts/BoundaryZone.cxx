@@ -27,7 +27,7 @@
 namespace elevation
 {
 
-Bytes TrimmedPart::Pack() const
+Bytes TrimmedZone::Pack() const
 {
   Bytes bytes;
   for (const int side : { 0, 1 })
@@ -48,7 +48,7 @@ Bytes TrimmedPart::Pack() const
   return bytes;
 }
 
-TrimmedPart::TrimmedPart(const Bytes& bytes)
+TrimmedZone::TrimmedZone(const Bytes& bytes)
 {
   const char* from = bytes.data();
   for (const int side : { 0, 1 })
@@ -72,8 +72,8 @@ void BoundaryZone::JoinAll(const Progress& progress)
 {
   std::vector<Message> warnings; // none: all have the same arrays
   this->Common =
-    std::make_unique<CommonPoints>(this->Given, PartKind::Mesh, Part(progress, 0.0, 0.3));
-  this->Whole = Join(this->Given, PartKind::Mesh, Part(progress, 0.3, 1.0), warnings);
+    std::make_unique<CommonPoints>(this->Given, PartKind::Mesh, SubProgress(progress, 0.0, 0.3));
+  this->Whole = Join(this->Given, PartKind::Mesh, SubProgress(progress, 0.3, 1.0), warnings);
   this->FirstTriangles = { 0 };
   for (const auto& part : this->Given)
   {
@@ -85,17 +85,29 @@ void BoundaryZone::JoinAll(const Progress& progress)
 
 bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& options)
 {
-  this->JoinAll(Part(options.Monitor, 0.0, 0.3));
+  this->JoinAll(SubProgress(options.Monitor, 0.0, 0.3));
   const TriangleList& list = this->Triangles.View;
-  if (!this->IsProven(list, boundary, Part(options.Monitor, 0.3, 0.4)))
+  if (!this->IsProven(list, boundary, SubProgress(options.Monitor, 0.3, 0.4)))
   {
     return false;
   }
   TrimOptions ofNear = options;
   ofNear.ReturnParents = true;
-  ofNear.Monitor = Part(options.Monitor, 0.4, 0.9);
+  ofNear.Monitor = SubProgress(options.Monitor, 0.4, 0.9);
+  if (vtkDataArray* const ids = this->Whole->GetPointData()->GetGlobalIds())
+  {
+    const Index count = list.Points.Count;
+    std::int64_t largest = 0; // of all parts, each of which has sent its own
+    for (Index i = 0; i < count; ++i)
+    {
+      largest = std::max<std::int64_t>(largest, ids->GetVariantValue(i).ToTypeInt64());
+    }
+    ofNear.NumberOf = [ids, count, largest](Index id) {
+      return id < count ? ids->GetVariantValue(id).ToTypeInt64() : largest + 1 + id - count;
+    };
+  }
   this->Sides = TrimNear(list, boundary, this->Border, ofNear);
-  PassPoints(this->Whole, this->Sides, Part(options.Monitor, 0.9, 1.0), this->Points);
+  PassPoints(this->Whole, this->Sides, SubProgress(options.Monitor, 0.9, 1.0), this->Points);
   return true;
 }
 
@@ -125,7 +137,7 @@ bool BoundaryZone::TrimOutline(
   std::int64_t innerPoints, std::int64_t triangles, const TrimOptions& options)
 {
   this->IsOutline = true;
-  this->JoinAll(Part(options.Monitor, 0.0, 0.3));
+  this->JoinAll(SubProgress(options.Monitor, 0.0, 0.3));
   const TriangleList& list = this->Triangles.View;
   std::vector<Known> states;
   std::vector<double> spacings(list.Points.Count, std::numeric_limits<double>::quiet_NaN());
@@ -146,7 +158,7 @@ bool BoundaryZone::TrimOutline(
     }
   }
   std::optional<std::vector<BorderEdge>> border =
-    this->ProvenBorder(list.Points, Part(options.Monitor, 0.3, 0.4));
+    this->ProvenBorder(list.Points, SubProgress(options.Monitor, 0.3, 0.4));
   if (!border || !this->AreSamePlaces())
   {
     return false;
@@ -158,13 +170,13 @@ bool BoundaryZone::TrimOutline(
   }
   TrimOptions ofParts = options;
   ofParts.ReturnParents = true;
-  ofParts.Monitor = Part(options.Monitor, 0.4, 0.95);
+  ofParts.Monitor = SubProgress(options.Monitor, 0.4, 0.95);
   std::optional<Trimmed> trimmed = TrimNearOutline(list,
     { states, spacings, std::move(*border), innerPoints + atBorders.Count(), triangles }, ofParts);
   if (trimmed)
   {
     this->Sides = std::move(*trimmed);
-    PassPoints(this->Whole, this->Sides, Part(options.Monitor, 0.95, 1.0), this->Points);
+    PassPoints(this->Whole, this->Sides, SubProgress(options.Monitor, 0.95, 1.0), this->Points);
   }
   return trimmed.has_value();
 }
@@ -174,13 +186,13 @@ bool BoundaryZone::IsProven(
 {
   // Joined points may have other places than the points had.
   if (!this->AreSamePlaces() ||
-    !SweepAlongRings(
-      list, boundary.Points.Places, JoinLines(boundary), list.Count, 1, Part(progress, 0.0, 0.5)))
+    !SweepAlongRings(list, boundary.Points.Places, JoinLines(boundary), list.Count, 1,
+      SubProgress(progress, 0.0, 0.5)))
   {
     return false;
   }
   std::optional<std::vector<BorderEdge>> border =
-    this->ProvenBorder(list.Points, Part(progress, 0.5, 1.0));
+    this->ProvenBorder(list.Points, SubProgress(progress, 0.5, 1.0));
   this->Border = border ? std::move(*border) : std::vector<BorderEdge>();
   return border.has_value();
 }
@@ -228,7 +240,7 @@ std::optional<std::vector<BorderEdge>> BoundaryZone::ProvenBorder(
   const PointView& points, const Progress& progress) const
 {
   std::vector<BorderEdge> all = this->BordersOfParts(), border;
-  Sort(all.begin(), all.end(), std::less<BorderEdge>(), Part(progress, 0.0, 0.4));
+  Sort(all.begin(), all.end(), std::less<BorderEdge>(), SubProgress(progress, 0.0, 0.4));
   for (std::size_t i = 0; i < all.size(); ++i)
   {
     ReportStep(progress, i, 2 * all.size());
@@ -242,14 +254,14 @@ std::optional<std::vector<BorderEdge>> BoundaryZone::ProvenBorder(
       border.push_back(all[i]);
     }
   }
-  return CoversOnce(border, points, Part(progress, 0.6, 1.0))
+  return CoversOnce(border, points, SubProgress(progress, 0.6, 1.0))
     ? std::make_optional(std::move(border))
     : std::nullopt;
 }
 
-std::vector<TrimmedPart> BoundaryZone::Split(const Progress& progress) const
+std::vector<TrimmedZone> BoundaryZone::Split(const Progress& progress) const
 {
-  std::vector<TrimmedPart> splits(this->Given.size());
+  std::vector<TrimmedZone> splits(this->Given.size());
   std::vector<char> areOwned(this->Sides.Inserted.size(), 0);
   for (const int side : { 0, 1 })
   {
@@ -277,7 +289,7 @@ std::vector<TrimmedPart> BoundaryZone::Split(const Progress& progress) const
   };
   far.erase(std::remove_if(far.begin(), far.end(), isInside), far.end());
   const bool byIds = this->Whole->GetPointData()->GetGlobalIds() != nullptr;
-  for (TrimmedPart& split : splits)
+  for (TrimmedZone& split : splits)
   {
     split.FarOnBoundary = KeysOf(this->Whole, byIds, &far);
   }
@@ -294,7 +306,7 @@ std::vector<TrimmedPart> BoundaryZone::Split(const Progress& progress) const
  * Of points that several parts have, the first that does not call it another rank's is the owner.
  * @return joined points that none owns
  */
-std::vector<Index> BoundaryZone::FindOwners(std::vector<TrimmedPart>& splits) const
+std::vector<Index> BoundaryZone::FindOwners(std::vector<TrimmedZone>& splits) const
 {
   constexpr std::size_t nobody = static_cast<std::size_t>(-1);
   std::vector<std::size_t> owners(static_cast<std::size_t>(this->Common->Count()), nobody);
@@ -331,7 +343,7 @@ std::vector<Index> BoundaryZone::FindOwners(std::vector<TrimmedPart>& splits) co
 
 /** @param[in,out] places  of the points in a part; None for all */
 void BoundaryZone::PlaceCorners(std::size_t part, std::vector<Index>& places,
-  std::vector<char>& areOwned, TrimmedPart& split) const
+  std::vector<char>& areOwned, TrimmedZone& split) const
 {
   const vtkIdType count = this->Given[part]->GetNumberOfPoints();
   for (vtkIdType i = count - 1; i >= 0; --i)

@@ -22,13 +22,11 @@
 #include <utility>
 #include <vector>
 
-class vtkPolyData;
-
 namespace elevation
 {
 
 /** What of the near triangles goes back to the part that had them. */
-struct TrimmedPart
+struct TrimmedZone
 {
   /** The sides, kept and outward: near triangles of the rank (by number) that they are parts of. */
   std::vector<Index> Parents[2];
@@ -47,8 +45,8 @@ struct TrimmedPart
   vtkSmartPointer<vtkPolyData> NewPoints;
 
   Bytes Pack() const;
-  explicit TrimmedPart(const Bytes& bytes);
-  TrimmedPart() = default;
+  explicit TrimmedZone(const Bytes& bytes);
+  TrimmedZone() = default;
 };
 
 /**
@@ -81,7 +79,7 @@ public:
     const std::vector<Known>& states, const std::vector<double>& spacings, vtkPolyData* part);
 
   /** What goes back to each part. */
-  std::vector<TrimmedPart> Split(const Progress& progress) const;
+  std::vector<TrimmedZone> Split(const Progress& progress) const;
 
   const Trimmed& Result() const { return this->Sides; }
   vtkPolyData* Joined() const { return this->Whole; }
@@ -93,9 +91,9 @@ private:
   std::optional<std::vector<BorderEdge>> ProvenBorder(
     const PointView& points, const Progress& progress) const;
   std::vector<BorderEdge> BordersOfParts() const;
-  std::vector<Index> FindOwners(std::vector<TrimmedPart>& splits) const;
+  std::vector<Index> FindOwners(std::vector<TrimmedZone>& splits) const;
   void PlaceCorners(std::size_t part, std::vector<Index>& places, std::vector<char>& areOwned,
-    TrimmedPart& split) const;
+    TrimmedZone& split) const;
 
   const Parts Given;
   std::vector<Index> FirstTriangles; // of each part, and the number of all

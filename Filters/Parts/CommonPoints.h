@@ -7,6 +7,7 @@
 #ifndef CommonPoints_h
 #define CommonPoints_h
 
+#include "Adapt/Adapt.h"
 #include "Kernel/Base/Base.h"
 #include "PointKeys.h"
 
@@ -15,8 +16,6 @@
 
 #include <cstddef>
 #include <vector>
-
-class vtkPolyData;
 
 namespace elevation
 {

@@ -53,7 +53,7 @@ public:
 private:
   Progress Fraction(double begin, double end) const
   {
-    return elevation::Part(this->Monitor, begin, end);
+    return SubProgress(this->Monitor, begin, end);
   }
   void PassNear(vtkPolyData* points) const;
 
@@ -65,7 +65,7 @@ private:
   const Progress& Monitor;
   PointsOfDataSet SourcePoints;
   ConstraintLines Given;
-  PointRows Near; // those of this rank; then of all ranks, by their ids
+  PointTable Near; // those of this rank; then of all ranks, by their ids
   std::vector<PlaceInPart> PlacesOfNear, PlacesOfAdded;
   vtkIdType LargestId = -1;
   LinePieces Pieces;
@@ -85,9 +85,9 @@ void AddedLines::ListNear(std::vector<Message>& warnings)
 {
   Box box;
   this->Store.Crew.ForEach(this->Fraction(0.0, 0.5), [&](int part, const Progress& ofPart) {
-    const Progress reading = elevation::Part(ofPart, 0.0, 0.5);
+    const Progress reading = SubProgress(ofPart, 0.0, 0.5);
     this->Store.WithOwn(part, reading, [&](const SurfacePart& own) {
-      const PointRows& rows = own.Own;
+      const PointTable& rows = own.Own;
       for (std::size_t i = 0; i < rows.Count(); ++i)
       {
         if (rows.IsFinite(i))
@@ -97,7 +97,7 @@ void AddedLines::ListNear(std::vector<Message>& warnings)
         this->LargestId = std::max(this->LargestId, rows.Ids[i]);
       }
       const std::vector<Index> near =
-        ListNearLines(ViewOf(rows), this->Given, elevation::Part(ofPart, 0.5, 1.0));
+        ListNearLines(ViewOf(rows), this->Given, SubProgress(ofPart, 0.5, 1.0));
       const Bytes packed = rows.Pack(std::vector<vtkIdType>(near.begin(), near.end()));
       this->Near.Unpack(&packed, 1);
       std::transform(
@@ -130,7 +130,7 @@ void AddedLines::ShareNear()
     this->All.Collect(std::vector<vtkIdType>{ this->LargestId });
   this->LargestId = *std::max_element(largest.begin(), largest.end());
   this->All.Agree([&]() {
-    this->Near = PointRows(this->Store.Part.Kinds);
+    this->Near = PointTable(this->Store.Part.Kinds);
     this->Near.Unpack(packed); // rank by rank, as the places
     std::vector<vtkIdType> order(this->Near.Count());
     std::iota(order.begin(), order.end(), vtkIdType(0));
@@ -187,7 +187,7 @@ void AddedLines::AddPoints()
     PassPoints(near, this->Source, this->Pieces.Added, watched, extended);
     common.TypeOfPoints = extended->GetPoints()->GetDataType();
     const vtkIdType ofNear = static_cast<vtkIdType>(this->Near.Count());
-    PointRows rows(common.Kinds);
+    PointTable rows(common.Kinds);
     rows.Read(extended, this->LargestId + 1 - ofNear, watched);
     std::vector<vtkIdType> counts;
     std::map<int, std::vector<vtkIdType>> added; // rows, for each part
@@ -280,8 +280,8 @@ std::vector<std::size_t> ListMissing(PartStore& store, const LinesOfParts& lines
   });
   store.Crew.ForEach(progress, [&](int part, const Progress& ofPart) {
     Box& extent = extents[part];
-    store.WithWhole(part, elevation::Part(ofPart, 0.0, 0.5), [&](const SurfacePart& whole) {
-      ForEachTriangle(whole, store.FirstOf(part), elevation::Part(ofPart, 0.5, 1.0),
+    store.WithWhole(part, SubProgress(ofPart, 0.0, 0.5), [&](const SurfacePart& whole) {
+      ForEachTriangle(whole, store.FirstOf(part), SubProgress(ofPart, 0.5, 1.0),
         [&](std::size_t, const Index* corners, const GlobalTriangle& triangle) {
           for (int k = 0; k < 3; ++k)
           {
@@ -316,11 +316,11 @@ void SendMeeting(
   PartStore& store, int part, const std::vector<Ends>& pieces, const Progress& progress)
 {
   const CellGrid grid = GridOf(pieces);
-  store.WithWhole(part, elevation::Part(progress, 0.0, 0.5), [&](const SurfacePart& whole) {
+  store.WithWhole(part, SubProgress(progress, 0.0, 0.5), [&](const SurfacePart& whole) {
     const Index ownCount = static_cast<Index>(whole.Own.Count());
     Bytes bytes;
     std::vector<vtkIdType> corners; // own ones
-    ForEachTriangle(whole, store.FirstOf(part), elevation::Part(progress, 0.5, 1.0),
+    ForEachTriangle(whole, store.FirstOf(part), SubProgress(progress, 0.5, 1.0),
       [&](std::size_t t, const Index* c, const GlobalTriangle& triangle) {
         const SentTriangle sent{ part, t, triangle,
           { whole.PointAt(c[0]), whole.PointAt(c[1]), whole.PointAt(c[2]) } };
@@ -421,7 +421,7 @@ bool RecoverLines(PartStore& store, const LinesOfParts& lines, const Progress& p
   Engine& crew = store.Crew;
   std::map<int, Box> extents;
   const std::vector<std::size_t> missing =
-    ListMissing(store, lines, Part(progress, 0.0, 0.4), extents);
+    ListMissing(store, lines, SubProgress(progress, 0.0, 0.4), extents);
   if (missing.empty())
   {
     return false;
@@ -433,7 +433,7 @@ bool RecoverLines(PartStore& store, const LinesOfParts& lines, const Progress& p
       pieces.push_back(lines.Places[i]);
     }
   });
-  crew.ForEach(Part(progress, 0.4, 0.6), [&](int part, const Progress& ofPart) {
+  crew.ForEach(SubProgress(progress, 0.4, 0.6), [&](int part, const Progress& ofPart) {
     const Box& extent = extents[part];
     const auto isThere = [&extent](const Ends& piece) {
       Box box;
@@ -447,7 +447,7 @@ bool RecoverLines(PartStore& store, const LinesOfParts& lines, const Progress& p
     }
   });
   crew.Deliver();
-  crew.ForEach(Part(progress, 0.6, 1.0), [&](int part, const Progress& ofPart) {
+  crew.ForEach(SubProgress(progress, 0.6, 1.0), [&](int part, const Progress& ofPart) {
     if (part == 0)
     {
       const auto sent = ValuesIn<SentTriangle>(crew.At(part, Meeting));

@@ -23,6 +23,7 @@
 #ifndef ConstrainParts_h
 #define ConstrainParts_h
 
+#include "Adapt/Adapt.h"
 #include "Kernel/Cells/Cells.h"
 #include "Kernel/Messages/Messages.h"
 #include "PartStore.h"
@@ -30,8 +31,6 @@
 #include <array>
 #include <cstdint>
 #include <vector>
-
-class vtkPolyData;
 
 namespace elevation
 {

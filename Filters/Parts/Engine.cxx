@@ -144,7 +144,7 @@ void Engine::ForEach(
     const double width = 1.0 / std::max(1, this->EndOwn() - first);
     for (int part = first; part < this->EndOwn(); ++part)
     {
-      step(part, Part(watched, width * (part - first), width * (part + 1 - first)));
+      step(part, SubProgress(watched, width * (part - first), width * (part + 1 - first)));
     }
   });
 }
@@ -161,7 +161,7 @@ void Engine::ForEachInTurn(const Progress& progress, Engine& receiving,
   for (int turn = 0; turn < turns; ++turn)
   {
     const double begin = turn, end = turn + 1;
-    const Progress ofTurn = Part(progress, begin / turns, end / turns);
+    const Progress ofTurn = SubProgress(progress, begin / turns, end / turns);
     const int part = this->FirstOwn() + turn;
     this->Crew.Agree([&]() {
       if (this->IsOwn(part))
@@ -169,7 +169,7 @@ void Engine::ForEachInTurn(const Progress& progress, Engine& receiving,
         step(part, this->Crew.Watched(ofTurn));
       }
     });
-    receiving.Deliver(Part(ofTurn, 1.0, 1.0));
+    receiving.Deliver(SubProgress(ofTurn, 1.0, 1.0));
   }
 }
 

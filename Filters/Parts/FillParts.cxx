@@ -60,11 +60,11 @@ void FillParts::WithPart(int part, const Progress& progress, const Visit& visit)
   if (!one.Input)
   {
     one.Number = part;
-    one.Input = this->Make(part, Part(progress, 0.0, 0.5));
+    one.Input = this->Make(part, SubProgress(progress, 0.0, 0.5));
   }
   if (one.Input)
   {
-    visit(one, Part(progress, 0.5, 1.0));
+    visit(one, SubProgress(progress, 0.5, 1.0));
   }
 }
 
@@ -249,7 +249,7 @@ std::vector<int> FillParts::PartsOfHoles() const
     }
     return BalancedRanks(this->Whole.Extents, have);
   }
-  const BorderOfAll& border = this->Whole.Border;
+  const SharedBorder& border = this->Whole.Border;
   std::vector<int> partOf(border.Keys.size(), 0);
   for (std::size_t i = 0; i < border.RegionEdges.size(); ++i)
   {
@@ -406,8 +406,8 @@ void FillParts::FindQuotas(const Progress& progress)
 {
   std::vector<HoleNeed> needs(this->Whole.Extents.size());
   this->GroupCrew->ForEach(progress, [&](int group, const Progress& ofGroup) {
-    SurroundedHoles& holes = this->HolesOf(group, Part(ofGroup, 0.0, 0.5));
-    const std::vector<HoleNeed> found = holes.Needs(this->Whole, Part(ofGroup, 0.5, 1.0));
+    SurroundedHoles& holes = this->HolesOf(group, SubProgress(ofGroup, 0.0, 0.5));
+    const std::vector<HoleNeed> found = holes.Needs(this->Whole, SubProgress(ofGroup, 0.5, 1.0));
     for (std::size_t i = 0; i < found.size(); ++i)
     {
       needs[holes.Numbers[i]] = found[i];
@@ -421,8 +421,8 @@ void FillParts::FindQuotas(const Progress& progress)
 /** @return false if holes, which are added to those beyond, need more of the surface around them */
 bool FillParts::FillGroup(int group, const Progress& progress, std::vector<vtkIdType>& beyond)
 {
-  SurroundedHoles& holes = this->HolesOf(group, Part(progress, 0.0, 0.1));
-  const std::vector<Index> found = holes.Fill(this->Whole, Part(progress, 0.1, 1.0));
+  SurroundedHoles& holes = this->HolesOf(group, SubProgress(progress, 0.0, 0.1));
+  const std::vector<Index> found = holes.Fill(this->Whole, SubProgress(progress, 0.1, 1.0));
   beyond.insert(beyond.end(), found.begin(), found.end());
   for (const Index hole : this->Groups[group].Holes)
   {
@@ -502,10 +502,10 @@ void FillParts::Pass(int part, const Progress& progress, vtkPolyData* output)
   this->WithPart(part, progress, [&](FilledPart& one, const Progress& ofPart) {
     if (this->Crew.IsInFiles())
     {
-      one.Read(this->Whole.ByIds, this->Whole.LongestEdge, Part(ofPart, 0.0, 0.3));
+      one.Read(this->Whole.ByIds, this->Whole.LongestEdge, SubProgress(ofPart, 0.0, 0.3));
       this->TakePatches(part, one);
     }
-    one.Write(this->Whole, this->AreMarked, this->LargestId, Part(ofPart, 0.3, 1.0), output);
+    one.Write(this->Whole, this->AreMarked, this->LargestId, SubProgress(ofPart, 0.3, 1.0), output);
   });
 }
 
@@ -556,7 +556,7 @@ bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolat
       return false;
     }
     FillOptions filling = options;
-    filling.Monitor = Part(block.Progress, 0.0, 0.82);
+    filling.Monitor = SubProgress(block.Progress, 0.0, 0.82);
     FillParts fill(surface, filling, interpolate, longest, sums[3] == 0);
     constexpr int first = 0;
     try
@@ -573,10 +573,10 @@ bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolat
     }
     fill.Fill();
     surface.Crew.ForEach(block.Progress, [&](int part, const Progress& progress) {
-      fill.Pass(part, Part(progress, 0.82, 0.97), block.Outputs[0]);
+      fill.Pass(part, SubProgress(progress, 0.82, 0.97), block.Outputs[0]);
       if (part == first)
       {
-        fill.PassRims(Part(progress, 0.97, 1.0), block.Outputs[1]);
+        fill.PassRims(SubProgress(progress, 0.97, 1.0), block.Outputs[1]);
       }
     });
     patches = fill.Result();

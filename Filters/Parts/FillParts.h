@@ -39,6 +39,7 @@
 #ifndef FillParts_h
 #define FillParts_h
 
+#include "Adapt/Adapt.h"
 #include "FilledPart.h"
 #include "SharedHoles.h"
 #include "SurfaceParts.h"
@@ -46,8 +47,6 @@
 #include <map>
 #include <memory>
 #include <vector>
-
-class vtkPolyData;
 
 namespace elevation
 {
@@ -105,7 +104,7 @@ private:
 
   Progress Fraction(double begin, double end) const
   {
-    return Part(this->Whole.Options.Monitor, begin, end);
+    return SubProgress(this->Whole.Options.Monitor, begin, end);
   }
   template <typename Visit>
   void WithPart(int part, const Progress& progress, const Visit& visit);

@@ -28,11 +28,11 @@ namespace elevation
 
 void FilledPart::Read(bool byIds, double longest, const Progress& progress)
 {
-  ToMesh(this->Input, this->Own, Part(progress, 0.0, 0.4));
-  this->Own.ConnectTwins(0, Part(progress, 0.4, 0.9));
+  ToMesh(this->Input, this->Own, SubProgress(progress, 0.0, 0.4));
+  this->Own.ConnectTwins(0, SubProgress(progress, 0.4, 0.9));
   if (longest > 0.0)
   {
-    this->RegionOf = NumberRegions(this->Own, longest, Part(progress, 0.9, 1.0));
+    this->RegionOf = NumberRegions(this->Own, longest, SubProgress(progress, 0.9, 1.0));
   }
   this->ListShared(byIds);
 }
@@ -275,9 +275,10 @@ void FilledPart::NumberNewPoints(
 void FilledPart::Write(const SharedHoles& all, bool areMarked, vtkIdType largestId,
   const Progress& progress, vtkPolyData* output) const
 {
-  const vtkSmartPointer<vtkPolyData> input = this->WithCorners(areMarked, Part(progress, 0.0, 0.2));
+  const vtkSmartPointer<vtkPolyData> input =
+    this->WithCorners(areMarked, SubProgress(progress, 0.0, 0.2));
   MakeSurface(input, this->Own, this->PlacedPatches(all, input), all.Interpolate,
-    Part(progress, 0.2, 1.0), output);
+    SubProgress(progress, 0.2, 1.0), output);
   this->NumberNewPoints(all, largestId, output);
 }
 

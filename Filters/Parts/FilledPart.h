@@ -8,14 +8,13 @@
 #ifndef FilledPart_h
 #define FilledPart_h
 
+#include "Adapt/Adapt.h"
 #include "Kernel/Mesh/Mesh.h"
 #include "SharedHoles.h"
 
 #include "vtkSmartPointer.h"
 
 #include <vector>
-
-class vtkPolyData;
 
 namespace elevation
 {

@@ -154,7 +154,7 @@ double FilterRun::GatherSpreadBlocks(
   for (const auto& block : spread)
   {
     const double next = done + share / static_cast<double>(spread.size());
-    const Progress ofBlock = Part(progress, done, next);
+    const Progress ofBlock = SubProgress(progress, done, next);
     done = next;
     std::vector<Place*> own;
     for (Place& place : places)
@@ -246,7 +246,7 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
 {
   const Progress ofAll = ProgressOf(this->Filter);
   const Progress progress =
-    Part(ofAll, this->GatherSpreadBlocks(places, ranks, second, ofAll), 1.0);
+    SubProgress(ofAll, this->GatherSpreadBlocks(places, ranks, second, ofAll), 1.0);
   const auto workOf = [](const Place& place) {
     auto* const points = vtkPointSet::SafeDownCast(place.Input);
     return 1.0 + (points ? points->GetNumberOfPoints() : 0);
@@ -266,7 +266,7 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
     const bool isReported = this->ShouldReport(place, ranks);
     const double next = done + workOf(place);
     Block block{ nullptr, isReported ? second : nullptr, place.Outputs,
-      Part(progress, done / all, next / all), {} };
+      SubProgress(progress, done / all, next / all), {} };
     done = next;
     Message error;
     try
@@ -359,15 +359,6 @@ void FilterRun::ShareResults(const Ranks& ranks)
     // The executive runs an aborted filter again for each output: on all ranks, or on none.
     this->Filter->SetAbortExecute(1);
     IsAbortRequested(this->Filter); // it makes the executive aware
-  }
-  this->ReportAbort();
-}
-
-void FilterRun::ReportAbort()
-{
-  // ParaView updates each output, and VTK runs the filter for each while its abort flag is set.
-  if (this->IsAborted && !this->IsAbortReported() && this->Filter->GetAbortExecute())
-  {
     this->Warnings.push_back(MakeMessage<sentences::Stopped>());
   }
 }

@@ -8,6 +8,7 @@
 #ifndef FilterRun_h
 #define FilterRun_h
 
+#include "Adapt/Adapt.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Messages/Messages.h"
 
@@ -18,15 +19,6 @@
 #include <functional>
 #include <string>
 #include <vector>
-
-class vtkAlgorithm;
-class vtkFieldData;
-class vtkInformation;
-class vtkInformationVector;
-class vtkMultiProcessController;
-class vtkPointSet;
-class vtkPolyData;
-class vtkStringArray;
 
 namespace elevation
 {
@@ -109,7 +101,6 @@ private:
     const std::function<void(Block&)>& body);
   Message RunPlace(const Place& place, Block& block, const std::function<void(Block&)>& body);
   void ShareResults(const Ranks& ranks);
-  void ReportAbort();
   bool IsAbortReported() const;
   void Report(const Ranks& ranks) const;
 

@@ -112,7 +112,7 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
     }
     if (ranks.Own() == home)
     {
-      joined = Join(all, kind, Part(progress, 0.5, 1.0), warnings);
+      joined = Join(all, kind, SubProgress(progress, 0.5, 1.0), warnings);
     }
   });
   return joined;

@@ -7,13 +7,11 @@
 #ifndef Gathering_h
 #define Gathering_h
 
+#include "Adapt/Adapt.h"
 #include "Joining.h"
 #include "Kernel/Messages/Messages.h"
 
 #include <string>
-
-class vtkDataObject;
-class vtkPointSet;
 
 namespace elevation
 {

@@ -7,14 +7,13 @@
 #ifndef HoleNeighborhoods_h
 #define HoleNeighborhoods_h
 
+#include "Adapt/Adapt.h"
 #include "Kernel/Mesh/Mesh.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
 #include <vector>
-
-class vtkPolyData;
 
 namespace elevation
 {

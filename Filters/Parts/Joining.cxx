@@ -272,9 +272,9 @@ vtkSmartPointer<vtkPolyData> Join(
   const Parts& parts, PartKind kind, const Progress& progress, std::vector<Message>& warnings)
 {
   auto joined = vtkSmartPointer<vtkPolyData>::New();
-  const CommonPoints points(parts, kind, Part(progress, 0.0, 1.0));
+  const CommonPoints points(parts, kind, SubProgress(progress, 0.0, 1.0));
   std::vector<Rows> rows = points.Sources();
-  const Progress copying = Part(progress, 1.0, 1.0);
+  const Progress copying = SubProgress(progress, 1.0, 1.0);
   joined->SetPoints(JoinPoints(parts, rows, points.Count(), copying));
   std::vector<vtkDataSetAttributes*> data;
   for (const auto& part : parts)

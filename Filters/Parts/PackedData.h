@@ -7,13 +7,12 @@
 #ifndef PackedData_h
 #define PackedData_h
 
+#include "Adapt/Adapt.h"
 #include "Bytes.h"
 
 #include "vtkSmartPointer.h"
 
 #include <cstddef>
-
-class vtkPolyData;
 
 namespace elevation
 {

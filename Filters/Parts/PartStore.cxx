@@ -21,8 +21,8 @@ const std::vector<std::string>& NamesOfBoxes()
 // where ids are places, and nothing is read.
 void PartStore::Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const Progress& progress)
 {
-  this->Part.Own = PointRows(this->Part.Kinds);
-  this->Part.Others = PointRows(this->Part.Kinds);
+  this->Part.Own = PointTable(this->Part.Kinds);
+  this->Part.Others = PointTable(this->Part.Kinds);
   if (!this->Crew.IsInFiles() || areIdsGiven)
   {
     std::fill(counts.begin(), counts.end(), 0);
@@ -30,7 +30,7 @@ void PartStore::Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const 
       Report(ofPart, 0.0);
       if (this->Crew.IsInFiles())
       {
-        const PointRows own = this->ReadOwn(part, ofPart).Own;
+        const PointTable own = this->ReadOwn(part, ofPart).Own;
         counts[part] = static_cast<vtkIdType>(own.Count());
         std::vector<vtkIdType> places(own.Count());
         std::iota(places.begin(), places.end(), vtkIdType(0));
@@ -88,8 +88,8 @@ SurfacePart PartStore::ReadOwn(int part, const Progress& progress) const
   read.NameOfIds = this->Part.NameOfIds;
   read.TypeOfPoints = this->Part.TypeOfPoints;
   read.Bases = this->Part.Bases;
-  read.Own = PointRows(read.Kinds);
-  read.Others = PointRows(read.Kinds);
+  read.Own = PointTable(read.Kinds);
+  read.Others = PointTable(read.Kinds);
   read.Own.Unpack(this->Crew.At(part, OwnPoints).Copy(progress));
   SortOwn(read);
   return read;
@@ -148,7 +148,7 @@ PartStore::RowsForOthers PartStore::ReadForOthers(int part) const
     const std::vector<Bytes> stretches = this->Crew.At(part, OnSeam).Copy();
     const char* from = stretches.at(0).data();
     TakeList(from, read.Places);
-    read.OnSeam = PointRows(this->Part.Kinds);
+    read.OnSeam = PointTable(this->Part.Kinds);
     read.OnSeam.Unpack(stretches.data() + 1, stretches.size() - 1);
   }
   return read;
@@ -169,7 +169,7 @@ Bytes PartStore::PackForOthers(const RowsForOthers& rows, std::vector<vtkIdType>
 
 SurfacePart PartStore::ReadWhole(int part, const Progress& progress) const
 {
-  SurfacePart read = this->ReadOwn(part, elevation::Part(progress, 0.0, 0.3));
+  SurfacePart read = this->ReadOwn(part, SubProgress(progress, 0.0, 0.3));
   Report(progress, 0.3);
   bool isFirst = true;
   this->Crew.At(part, Settled).ForEach([&](const Bytes& bytes) {
@@ -186,7 +186,7 @@ SurfacePart PartStore::ReadWhole(int part, const Progress& progress) const
     TakeList(from, result.UnusedPoints);
     TakeList(from, result.UnusedReasons);
   });
-  this->PutTogether(part, elevation::Part(progress, 0.6, 1.0), read);
+  this->PutTogether(part, SubProgress(progress, 0.6, 1.0), read);
   return read;
 }
 
@@ -215,7 +215,7 @@ void PartStore::PutTogether(int part, const Progress& progress, SurfacePart& who
 {
   const GlobalId first = this->FirstOf(part);
   whole.OtherNumbers = this->ListOthersOf(part);
-  whole.Others = PointRows(whole.Kinds);
+  whole.Others = PointTable(whole.Kinds);
   whole.Others.Unpack(this->Crew.At(part, Corners).Copy());
   this->CheckCount(whole.Own.Count() + whole.Others.Count());
   AppendTriangles(ValuesIn<GlobalTriangle>(this->Crew.At(part, FromSeams)), first, progress, whole);
@@ -258,7 +258,7 @@ SurfacePart PartStore::TakeWhole(int part, const Progress& progress)
   return taken;
 }
 
-void PartStore::ForEachRows(const std::function<void(const PointRows&)>& visit) const
+void PartStore::ForEachRows(const std::function<void(const PointTable&)>& visit) const
 {
   for (int part = this->Crew.FirstOwn(); part < this->Crew.EndOwn(); ++part)
   {
@@ -268,7 +268,7 @@ void PartStore::ForEachRows(const std::function<void(const PointRows&)>& visit) 
       continue;
     }
     this->Crew.At(part, OwnPoints).ForEach([&](const Bytes& bytes) {
-      PointRows rows(this->Part.Kinds);
+      PointTable rows(this->Part.Kinds);
       rows.Unpack(&bytes, 1);
       visit(rows);
     });
@@ -278,7 +278,7 @@ void PartStore::ForEachRows(const std::function<void(const PointRows&)>& visit) 
 PointSlices PartStore::Slices() const
 {
   return { static_cast<double>(this->CountOfOwn()), [this](const auto& visit) {
-            this->ForEachRows([&visit](const PointRows& rows) { visit(ViewOf(rows)); });
+            this->ForEachRows([&visit](const PointTable& rows) { visit(ViewOf(rows)); });
           } };
 }
 

@@ -34,7 +34,7 @@
 #define PartStore_h
 
 #include "Engine.h"
-#include "LatticeOfRanks.h"
+#include "SharedLatticeSearch.h"
 #include "SurfacePart.h"
 
 #include <cstddef>
@@ -131,7 +131,7 @@ public:
   /** What other parts may ask for; in memory, nothing is read. */
   struct RowsForOthers
   {
-    PointRows OnSeam;              ///< from files
+    PointTable OnSeam;             ///< from files
     std::vector<vtkIdType> Places; ///< of these, increasing
   };
   RowsForOthers ReadForOthers(int part) const;
@@ -165,7 +165,7 @@ public:
   SurfacePart TakeWhole(int part, const Progress& progress);
 
   /** Visits the points of this rank, part after part; from files, stretch after stretch. */
-  void ForEachRows(const std::function<void(const PointRows&)>& visit) const;
+  void ForEachRows(const std::function<void(const PointTable&)>& visit) const;
   PointSlices Slices() const;
 
 private:

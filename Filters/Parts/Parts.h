@@ -10,7 +10,7 @@
 #include "FillParts.h"
 #include "FilterRun.h"
 #include "Joining.h"
-#include "PointRows.h"
+#include "PointTable.h"
 #include "Ranks.h"
 #include "ReconstructParts.h"
 #include "TriangulateParts.h"

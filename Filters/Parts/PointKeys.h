@@ -8,6 +8,7 @@
 #ifndef PointKeys_h
 #define PointKeys_h
 
+#include "Adapt/Adapt.h"
 #include "Kernel/Base/Base.h"
 
 #include "vtkType.h"
@@ -15,9 +16,6 @@
 #include <array>
 #include <cstdint>
 #include <vector>
-
-class vtkDataArray;
-class vtkPolyData;
 
 namespace elevation
 {

@@ -161,8 +161,8 @@ void PointSource::Add(vtkPointSet* points, const Progress& progress)
   std::vector<ArrayKind> kinds = this->Kinds;
   std::string nameOfIds;
   this->AreGiven = TakeKindOfIds(kinds, nameOfIds);
-  this->Rows = PointRows(kinds);
-  this->Read(points, nameOfIds, this->CountOfOwn, Part(progress, 0.0, 0.5));
+  this->Rows = PointTable(kinds);
+  this->Read(points, nameOfIds, this->CountOfOwn, SubProgress(progress, 0.0, 0.5));
   const vtkIdType count = static_cast<vtkIdType>(this->Kept.size());
   for (vtkIdType first = 0; first < count; first += PointsInStretch)
   {
@@ -182,7 +182,7 @@ void PointSource::Add(vtkPointSet* points, const Progress& progress)
     this->SampleStretch(places);
   }
   this->CountOfOwn += static_cast<vtkIdType>(this->Rows.Count());
-  this->Rows = PointRows();
+  this->Rows = PointTable();
   this->Kept.clear();
 }
 
@@ -249,7 +249,7 @@ void PointSource::NumberPoints(const Progress& progress, SurfacePart& common)
   common.TypeOfPoints =
     IsOnAny(this->All, this->TypeOfPoints == VTK_DOUBLE) ? VTK_DOUBLE : VTK_FLOAT;
   this->First = std::accumulate(counts.begin(), counts.begin() + this->All.Own(), vtkIdType(0));
-  this->Rows = PointRows(common.Kinds);
+  this->Rows = PointTable(common.Kinds);
   this->All.Agree([&]() {
     if (this->Input)
     {
@@ -386,7 +386,7 @@ void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Pr
       places[part] = std::vector<vtkIdType>();
     }
   }
-  this->Rows = PointRows();
+  this->Rows = PointTable();
 }
 
 /*
@@ -396,12 +396,12 @@ void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Pr
 Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, SurfacePart& common,
   std::vector<vtkIdType>& counts)
 {
-  this->NumberPoints(Part(progress, 0.0, 0.4), common);
+  this->NumberPoints(SubProgress(progress, 0.0, 0.4), common);
   Cuts plane = this->CutPlane(engine.CountOfParts());
   counts.assign(engine.CountOfParts(), 0);
   double done = 0.0; // points
   auto next = this->Stretches.begin();
-  const Progress sending = Part(progress, 0.4, 1.0);
+  const Progress sending = SubProgress(progress, 0.4, 1.0);
   bool isMore = true;
   while (isMore)
   {
@@ -411,7 +411,7 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
       // A rank whose slices are all sent sends nothing, but delivers.
       if (next != this->Stretches.end())
       {
-        this->Rows = PointRows(common.Kinds);
+        this->Rows = PointTable(common.Kinds);
         this->Rows.Unpack((next++)->Take());
         const double all = static_cast<double>(this->CountOfOwn);
         begin = done / all;
@@ -424,7 +424,7 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
           id += this->AreGiven ? 0 : this->First;
         }
       }
-      this->SendSlice(plane, engine, box, Part(ofSlice, begin, end), counts);
+      this->SendSlice(plane, engine, box, SubProgress(ofSlice, begin, end), counts);
     });
     engine.Deliver();
     isMore = IsOnAny(this->All, next != this->Stretches.end());

@@ -23,9 +23,10 @@
 #ifndef PointSource_h
 #define PointSource_h
 
+#include "Adapt/Adapt.h"
 #include "Engine.h"
 #include "Kernel/Cells/Cells.h"
-#include "PointRows.h"
+#include "PointTable.h"
 #include "SurfacePart.h"
 
 #include "vtkNew.h"
@@ -34,9 +35,6 @@
 #include <memory>
 #include <string>
 #include <vector>
-
-class vtkPointData;
-class vtkPointSet;
 
 namespace elevation
 {
@@ -103,7 +101,7 @@ private:
   std::vector<SampledPoint> Sample;
   std::uint64_t SampleMask = 0;
   // What is written or sent next:
-  PointRows Rows;
+  PointTable Rows;
   std::vector<vtkIdType> Kept; // places of those that count
 };
 

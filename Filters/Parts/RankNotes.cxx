@@ -116,22 +116,15 @@ void RankNotes::Meet(
   };
   const auto end = std::chrono::steady_clock::now() + patience;
   bool isLate = false;
-  while (true)
+  while (!missing.empty())
   {
+    // Before the probe: notes may have come while this process was stopped itself.
+    const bool isOver = std::chrono::steady_clock::now() >= end;
     missing.erase(std::remove_if(missing.begin(), missing.end(), hasCome), missing.end());
-    if (missing.empty())
+    if (isOver && !isLate && !missing.empty())
     {
-      break;
-    }
-    if (!isLate && std::chrono::steady_clock::now() >= end)
-    {
-      // Notes may have come while this process was stopped itself.
-      missing.erase(std::remove_if(missing.begin(), missing.end(), hasCome), missing.end());
       isLate = true;
-      if (!missing.empty())
-      {
-        late(missing);
-      }
+      late(missing);
     }
     std::this_thread::yield();
   }

@@ -13,13 +13,12 @@
 #ifndef RankNotes_h
 #define RankNotes_h
 
+#include "Adapt/Adapt.h"
+
 #include <chrono>
 #include <functional>
 #include <memory>
 #include <vector>
-
-class vtkMPIController;
-class vtkMultiProcessController;
 
 namespace elevation
 {

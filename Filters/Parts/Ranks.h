@@ -7,6 +7,7 @@
 #ifndef Ranks_h
 #define Ranks_h
 
+#include "Adapt/Adapt.h"
 #include "Bytes.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Messages/Messages.h"
@@ -23,11 +24,6 @@
 #include <new>
 #include <string>
 #include <vector>
-
-class vtkInformation;
-class vtkInformationVector;
-class vtkMultiProcessController;
-class vtkPolyData;
 
 namespace elevation
 {

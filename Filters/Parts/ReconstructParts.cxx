@@ -282,16 +282,16 @@ void ReconstructParts::WorkOnAll(const Progress& progress)
   const double filling = this->Set.FillHoles ? 0.7 : 1.0; // where it begins
   const double trimming = this->IsTrimmed() ? 0.6 * filling : filling;
   this->Source->SetProgressText("triangulating");
-  this->Triangulate(Part(progress, 0.0, trimming));
+  this->Triangulate(SubProgress(progress, 0.0, trimming));
   if (this->IsTrimmed())
   {
     this->Source->SetProgressText("trimming");
-    this->Trim(Part(progress, trimming, filling));
+    this->Trim(SubProgress(progress, trimming, filling));
   }
   if (this->Set.FillHoles)
   {
     this->Source->SetProgressText("filling holes");
-    this->Fill(Part(progress, filling, 1.0));
+    this->Fill(SubProgress(progress, filling, 1.0));
   }
 }
 
@@ -441,9 +441,9 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
     {
       this->Set = settings;
       this->Begin(count);
-      this->WorkOnAll(Part(progress, 0.0, 0.9));
+      this->WorkOnAll(SubProgress(progress, 0.0, 0.9));
     }
-    this->Pass(part, Part(progress, 0.9, 1.0), output, rims);
+    this->Pass(part, SubProgress(progress, 0.9, 1.0), output, rims);
     if (!settings.KeepFiles)
     {
       this->Work->Forget(part);

@@ -44,14 +44,6 @@
 #include <string>
 #include <vector>
 
-class vtkAlgorithm;
-class vtkInformation;
-class vtkInformationVector;
-class vtkMultiProcessController;
-class vtkPointSet;
-class vtkPolyData;
-class vtkStringArray;
-
 namespace elevation
 {
 

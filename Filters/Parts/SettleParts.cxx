@@ -3,7 +3,7 @@
 #include "SettleParts.h"
 
 #include "Kernel/Base/Base.h"
-#include "LatticeOfRanks.h"
+#include "SharedLatticeSearch.h"
 
 #include <algorithm>
 #include <map>
@@ -93,7 +93,7 @@ public:
 private:
   Progress Fraction(double begin, double end) const
   {
-    return Part(this->Options.Monitor, begin, end);
+    return SubProgress(this->Options.Monitor, begin, end);
   }
   DelaunayOptions OptionsWith(const Progress& progress) const
   {
@@ -230,7 +230,7 @@ void Settling::WatchLattice(const Step& step)
  */
 void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress& progress)
 {
-  const Progress reading = Part(progress, 0.0, 0.0);
+  const Progress reading = SubProgress(progress, 0.0, 0.0);
   this->Store.WithOwn(part, reading, [&](const SurfacePart& own) {
     SettledCell settled = SettleCell(ViewOf(own.Own), this->Store.FirstOf(part),
       this->Plane.CellOf(part, part + 1), this->OptionsWith(progress), lattice);
@@ -242,7 +242,7 @@ void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress
     this->Seams[part] = std::move(settled.Seam);
   });
   const int count = this->Crew.CountOfParts();
-  const Progress last = Part(progress, 1.0, 1.0);
+  const Progress last = SubProgress(progress, 1.0, 1.0);
   for (int level = Node::Levels(count) - 1; level >= 0; --level)
   {
     const Node node = Node::Of(part, level, count);

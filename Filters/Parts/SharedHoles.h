@@ -7,18 +7,16 @@
 #ifndef SharedHoles_h
 #define SharedHoles_h
 
-#include "BorderOfParts.h"
 #include "CommonPoints.h"
 #include "HoleNeighborhoods.h"
 #include "Kernel/Fill/Fill.h"
-#include "LatticeOfRanks.h"
+#include "SharedBorder.h"
+#include "SharedLatticeSearch.h"
 
 #include "vtkSmartPointer.h"
 
 #include <tuple>
 #include <vector>
-
-class vtkPolyData;
 
 namespace elevation
 {
@@ -42,7 +40,7 @@ struct SharedHoles
   bool Interpolate = true;
   bool ByIds = false; ///< whether points of parts are one by their global ids, or by x,y,z
   double LongestEdge = 0.0; ///< of triangles that are not long; 0: none is long
-  BorderOfAll Border;
+  SharedBorder Border;
   FillResult OfAll; ///< the holes, by points of the border, and reports; no patches
   std::vector<HoleExtent> Extents;
   std::vector<int> Retries;        ///< for each hole: how often it needed triangles beyond its box

@@ -54,7 +54,7 @@ Point2 SurfacePart::PointAt(std::size_t place) const
 
 void SortOwn(SurfacePart& part)
 {
-  PointRows& own = part.Own;
+  PointTable& own = part.Own;
   const auto isIncreasing = [&own](std::size_t i) { return own.Ids[i] < own.Ids[i + 1]; };
   std::size_t i = 0;
   while (i + 1 < own.Count() && isIncreasing(i))
@@ -208,7 +208,7 @@ void MeasureAll(
 }
 void KeepCorners(SurfacePart& part)
 {
-  PointRows& others = part.Others;
+  PointTable& others = part.Others;
   const Index ownCount = static_cast<Index>(part.Own.Count());
   Buffer<Index>& corners = part.Result.Triangles;
   std::vector<Index> placeOf(others.Count(), None);

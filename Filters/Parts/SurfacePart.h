@@ -10,13 +10,11 @@
 #include "Adapt/Adapt.h"
 #include "Engine.h"
 #include "Kernel/Cells/Cells.h"
-#include "PointRows.h"
+#include "PointTable.h"
 
 #include <set>
 #include <string>
 #include <vector>
-
-class vtkPolyData;
 
 namespace elevation
 {
@@ -26,9 +24,9 @@ int OwnerOf(GlobalId number, const std::vector<vtkIdType>& bases);
 
 struct SurfacePart
 {
-  PointRows Own;                 ///< points that this part owns, in the order of their ids
+  PointTable Own;                ///< points that this part owns, in the order of their ids
   Index AddedPoints = 0;         ///< by lines: the last ones of Own
-  PointRows Others;              ///< of other parts, corners of its triangles
+  PointTable Others;             ///< of other parts, corners of its triangles
   std::vector<ArrayKind> Kinds;  ///< of the arrays of both
   std::string NameOfIds;         ///< of the array of global ids
   int TypeOfPoints = 0;          ///< VTK_FLOAT where all ranks have float, else VTK_DOUBLE

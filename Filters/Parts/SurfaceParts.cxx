@@ -4,7 +4,7 @@
 
 #include "Adapt/Adapt.h"
 #include "FilterRun.h"
-#include "PointRows.h"
+#include "PointTable.h"
 
 #include "vtkPolyData.h"
 

@@ -9,13 +9,12 @@
 #ifndef SurfaceParts_h
 #define SurfaceParts_h
 
+#include "Adapt/Adapt.h"
 #include "Engine.h"
 
 #include "vtkSmartPointer.h"
 
 #include <functional>
-
-class vtkPolyData;
 
 namespace elevation
 {

@@ -177,10 +177,10 @@ void TriangulateParts::LimitEdges(const Progress& progress)
   std::map<int, std::vector<vtkIdType>> open; // places without a triangle yet, of each part
   std::vector<vtkIdType> sums(2, 0);          // triangles, and vertices without one
   this->Crew->ForEach(progress, [&](int part, const Progress& ofPart) {
-    const Progress reading = elevation::Part(ofPart, 0.0, 0.5);
+    const Progress reading = SubProgress(ofPart, 0.0, 0.5);
     this->Store->WithWhole(part, reading, [&](const SurfacePart& whole) {
       const Buffer<Index> kept =
-        WithinLimit(this->Options.MaximumEdgeLength, whole, elevation::Part(ofPart, 0.5, 1.0));
+        WithinLimit(this->Options.MaximumEdgeLength, whole, SubProgress(ofPart, 0.5, 1.0));
       const std::size_t ownCount = whole.Own.Count();
       std::vector<char> areMissing(ownCount + whole.Others.Count(), 1);
       for (const Index corner : kept)
@@ -241,11 +241,11 @@ void TriangulateParts::LimitEdges(const Progress& progress)
 // The limit of edges is applied again, which is faster than writing what it leaves.
 SurfacePart TriangulateParts::Take(int part, const Progress& progress)
 {
-  SurfacePart taken = this->Store->TakeWhole(part, elevation::Part(progress, 0.0, 0.7));
+  SurfacePart taken = this->Store->TakeWhole(part, SubProgress(progress, 0.0, 0.7));
   if (this->Options.MaximumEdgeLength > 0.0)
   {
     taken.Result.Triangles =
-      WithinLimit(this->Options.MaximumEdgeLength, taken, elevation::Part(progress, 0.7, 1.0));
+      WithinLimit(this->Options.MaximumEdgeLength, taken, SubProgress(progress, 0.7, 1.0));
   }
   KeepCorners(taken);
   taken.Result.LatticeFound = this->Total.LatticeFound;

@@ -32,6 +32,7 @@
 #ifndef TriangulateParts_h
 #define TriangulateParts_h
 
+#include "Adapt/Adapt.h"
 #include "Engine.h"
 #include "Kernel/Cells/Cells.h"
 #include "Kernel/Messages/Messages.h"
@@ -45,10 +46,6 @@
 #include <set>
 #include <string>
 #include <vector>
-
-class vtkFieldData;
-class vtkPointSet;
-class vtkPolyData;
 
 namespace elevation
 {
@@ -116,7 +113,7 @@ public:
 private:
   Progress Fraction(double begin, double end) const
   {
-    return Part(this->Options.Monitor, begin, end);
+    return SubProgress(this->Options.Monitor, begin, end);
   }
   std::vector<GlobalTriangle> Settle();
   void SendTriangles(std::vector<GlobalTriangle>&& ofSeams);

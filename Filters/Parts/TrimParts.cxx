@@ -89,8 +89,8 @@ CodedError TrimParts::Refusal() const
 template <typename Step>
 void TrimParts::WithPart(int part, const Progress& progress, const Step& step)
 {
-  std::unique_ptr<TrimOfPart> anew;
-  std::unique_ptr<TrimOfPart>& found = this->Crew.IsInFiles() ? anew : this->InMemory;
+  std::unique_ptr<TrimmedPart> anew;
+  std::unique_ptr<TrimmedPart>& found = this->Crew.IsInFiles() ? anew : this->InMemory;
   if (!found)
   {
     vtkSmartPointer<vtkPolyData> made = this->Surface.Make(part, progress);
@@ -98,17 +98,22 @@ void TrimParts::WithPart(int part, const Progress& progress, const Step& step)
     {
       return;
     }
-    found = std::make_unique<TrimOfPart>(std::move(made));
+    found = std::make_unique<TrimmedPart>(std::move(made));
     found->Read();
   }
   step(*found);
 }
 
-void TrimParts::Sweep(TrimOfPart& part, const Progress& progress) const
+void TrimParts::Sweep(TrimmedPart& part, const Progress& progress)
 {
-  const bool isSwept = this->Given ? part.Sweep(this->Lines, static_cast<double>(this->NumberOfAll),
-                                       this->Options.NumberOfThreads, progress)
-                                   : part.SweepForOutline(this->Margin, this->Options, progress);
+  if (this->Given && this->Joined.Count() == 0)
+  {
+    this->Joined = JoinLines(this->Lines);
+  }
+  const bool isSwept = this->Given
+    ? part.Sweep(this->Lines.Points.Places, this->Joined, static_cast<double>(this->NumberOfAll),
+        this->Options.NumberOfThreads, progress)
+    : part.SweepForOutline(this->Margin, this->Options, progress);
   if (!isSwept)
   {
     throw this->Refusal();
@@ -129,7 +134,7 @@ void TrimParts::Read()
     if (!isInFiles)
     {
       this->WithPart(
-        part, progress, [this](TrimOfPart& own) { this->Triangles = own.CountOfTriangles(); });
+        part, progress, [this](TrimmedPart& own) { this->Triangles = own.CountOfTriangles(); });
     }
   });
   if (!isInFiles)
@@ -156,8 +161,8 @@ void TrimParts::FindNear(int margin)
   this->Crew.ForEach(this->Fraction(0.02, this->Swept), [&](int part, const Progress& progress) {
     near.push_back(-1);
     this->NearParts.emplace_back();
-    this->WithPart(part, Part(progress, 0.0, 0.5), [&](TrimOfPart& own) {
-      this->Sweep(own, Part(progress, 0.5, 1.0));
+    this->WithPart(part, SubProgress(progress, 0.0, 0.5), [&](TrimmedPart& own) {
+      this->Sweep(own, SubProgress(progress, 0.5, 1.0));
       near.back() = own.CountOfNear() + (own.CountOfTriangles() > 0 ? 1 : 0);
       this->NearParts.back() = PackData(own.NearPart());
       this->Near += own.CountOfNear();
@@ -224,13 +229,13 @@ void TrimParts::SendBack(const BoundaryZone& zone)
     throw CodedError(NothingEnclosed(this->Extent, this->Lines.Points, JoinLines(this->Lines)));
   }
   const Progress progress = this->Crew.All().Watched(this->Fraction(0.95, 0.97));
-  std::vector<TrimmedPart> backs = zone.Split(progress);
+  std::vector<TrimmedZone> backs = zone.Split(progress);
   auto back = backs.begin();
   for (int part = 0; part < this->Crew.CountOfParts(); ++part)
   {
     if (this->NearOfParts[part] >= 0)
     {
-      const TrimmedPart taken = std::move(*back++);
+      const TrimmedZone taken = std::move(*back++);
       this->Crew.Send(part, Back, taken.Pack());
     }
   }
@@ -250,7 +255,7 @@ void TrimParts::AddUp()
   this->Crew.ForEach(this->Fraction(0.97, 1.0), [&](int part, const Progress& progress) {
     Report(progress, 0.0);
     this->Crew.At(part, Back).ForEach([&](const Bytes& bytes) {
-      const TrimmedPart back(bytes);
+      const TrimmedZone back(bytes);
       const vtkIdType owned = std::count(back.IsOwned.begin(), back.IsOwned.end(), char(1));
       kept += static_cast<vtkIdType>(back.Parents[0].size());
       marked += static_cast<vtkIdType>(back.OfOthers.size() + back.IsOwned.size()) - owned;
@@ -276,17 +281,17 @@ void TrimParts::AddUp()
 
 void TrimParts::Write(int part, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
 {
-  this->WithPart(part, Part(progress, 0.0, 0.3), [&](TrimOfPart& own) {
+  this->WithPart(part, SubProgress(progress, 0.0, 0.3), [&](TrimmedPart& own) {
     if (this->Crew.IsInFiles())
     {
-      this->Sweep(own, Part(progress, 0.3, 0.5));
+      this->Sweep(own, SubProgress(progress, 0.3, 0.5));
       own.NearPart();
     }
     this->Crew.At(part, Back).ForEach([&](const Bytes& bytes) {
-      own.Take(TrimmedPart(bytes), Part(progress, 0.5, 0.6));
+      own.Take(TrimmedZone(bytes), SubProgress(progress, 0.5, 0.6));
     });
     own.Write(this->OfAll.InsertedPoints > 0, this->AreMarked, this->Given ? &this->Lines : nullptr,
-      this->Options, Part(progress, 0.6, 1.0), kept, outward);
+      this->Options, SubProgress(progress, 0.6, 1.0), kept, outward);
   });
 }
 

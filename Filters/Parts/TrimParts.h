@@ -29,7 +29,7 @@
 
 #include "Kernel/Trim/Trim.h"
 #include "SurfaceParts.h"
-#include "TrimOfPart.h"
+#include "TrimmedPart.h"
 
 #include "vtkNew.h"
 #include "vtkPolyData.h"
@@ -76,11 +76,11 @@ public:
 private:
   Progress Fraction(double begin, double end) const
   {
-    return Part(this->Options.Monitor, begin, end);
+    return SubProgress(this->Options.Monitor, begin, end);
   }
   template <typename Step>
   void WithPart(int part, const Progress& progress, const Step& step);
-  void Sweep(TrimOfPart& part, const Progress& progress) const;
+  void Sweep(TrimmedPart& part, const Progress& progress);
   void TrimAll();
   CodedError Refusal() const;
   void Read();
@@ -95,9 +95,10 @@ private:
   const TrimOptions Options;
   const double Swept; // of the progress
   BoundaryLines Lines;
+  elevation::Rings Joined; // of the lines, once a part is swept
   vtkIdType NumberOfAll; // triangles
   int Margin = 0;        // of an outline
-  std::unique_ptr<TrimOfPart> InMemory;
+  std::unique_ptr<TrimmedPart> InMemory;
   std::vector<Bytes> NearParts;       // of this rank, until they are sent
   std::vector<vtkIdType> NearOfParts; // triangles of each part, and 1; -1 if it has no points
   int Home = 0;                       // the part with most of them

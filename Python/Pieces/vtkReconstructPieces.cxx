@@ -16,6 +16,7 @@
 
 #include <algorithm>
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkReconstructPieces);
 
 vtkReconstructPieces::vtkReconstructPieces()
@@ -197,3 +198,4 @@ void vtkReconstructPieces::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Fill:\n";
   this->Fill->PrintSelf(os, indent.GetNextIndent());
 }
+VTK_ABI_NAMESPACE_END

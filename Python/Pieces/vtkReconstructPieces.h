@@ -69,6 +69,7 @@
 #ifndef vtkReconstructPieces_h
 #define vtkReconstructPieces_h
 
+#include "vtkElevationSurfaceABI.h"
 #include "vtkElevationSurfacePiecesModule.h" // For export macro
 #include "vtkNew.h"
 #include "vtkPolyDataAlgorithm.h"
@@ -81,6 +82,8 @@ namespace elevation
 {
 class ReconstructParts;
 } // namespace elevation
+
+VTK_ABI_NAMESPACE_BEGIN
 class vtkFillElevationHoles;
 class vtkGridDelaunay2D;
 class vtkMultiProcessController;
@@ -114,7 +117,6 @@ public:
    * default. Off, the space on disk does not grow while pieces are written.
    */
   vtkSetMacro(KeepFiles, bool);
-  vtkGetMacro(KeepFiles, bool);
   vtkBooleanMacro(KeepFiles, bool);
   ///@}
 
@@ -137,32 +139,21 @@ public:
   vtkFillElevationHoles* GetFill();
   ///@}
 
-  ///@{
   /**
    * Whether the surface is trimmed along its outline where no boundary is given. Off by default; along
    * a given boundary it is always trimmed.
    */
   virtual void SetTrimOutward(bool trim);
-  virtual bool GetTrimOutward() { return this->TrimOutward; }
-  vtkBooleanMacro(TrimOutward, bool);
-  ///@}
 
-  ///@{
   /** Whether holes are filled. Off by default. */
   virtual void SetFillHoles(bool fill);
-  virtual bool GetFillHoles() { return this->FillHoles; }
-  vtkBooleanMacro(FillHoles, bool);
-  ///@}
 
-  ///@{
   /**
    * The memory, in bytes, that filling may take for one hole. Where more is expected for one, an
    * error names a Spacing that would do, before any is filled. 0 (default): no limit; negative values
    * are taken as 0.
    */
   virtual void SetMemoryOfHole(double bytes);
-  virtual double GetMemoryOfHole() { return this->MemoryOfHole; }
-  ///@}
 
   /**
    * Adds points, with their point arrays; all parts need the same arrays. Of points with the same
@@ -235,5 +226,6 @@ private:
   vtkNew<vtkStringArray> Messages;
   std::unique_ptr<elevation::ReconstructParts> Parts;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

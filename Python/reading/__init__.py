@@ -79,7 +79,7 @@ def read_whole(path, options):
     whole = options.progress
     with unpacked(os.fspath(path), whole) as (local, begun):
         options.progress = share(whole, begun, 0.7)
-        cloud = read_any(local, options)
+        cloud = read_by_format(local, options)
     options.progress = whole
     return cloud
 
@@ -116,7 +116,7 @@ def finished(path, cloud, options):
     return cloud
 
 
-def read_any(path, options):
+def read_by_format(path, options):
     """The Cloud of a file as its reader gives it, with its nulls."""
     kind, notes = recognise(path)
     check_use(path, kind, options)

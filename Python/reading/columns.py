@@ -54,7 +54,7 @@ def choose_columns(path, rows, consecutive, number, names, width, columns, neede
     """
     search = Search(path, rows, consecutive, number, names, width, needed, advice)
     if columns:
-        search.as_said(columns)
+        search.use_given(columns)
     elif not search.by_names():
         search.by_values()
     search.look_at_values()
@@ -103,7 +103,7 @@ class Search:
 
     # -- what the user said
 
-    def as_said(self, columns):
+    def use_given(self, columns):
         plain_names = ["".join(plain(in_brackets(name)[0])) for name in self.names or []]
         self.indices = []
         for axis, column in zip(self.axes, columns):
@@ -136,7 +136,7 @@ class Search:
         chosen = {axis: self.best_named(axis) for axis in self.axes}
         if not any(chosen.values()):
             return False
-        self.pair_up(chosen)
+        self.match_x_and_y(chosen)
         for axis, columns in chosen.items():
             if len(columns) > 1:
                 self.refuse_two(
@@ -163,7 +163,7 @@ class Search:
         best = min((self.meanings[i].rank for i in found), default=0)
         return [i for i in found if self.meanings[i].rank == best]
 
-    def pair_up(self, chosen):
+    def match_x_and_y(self, chosen):
         """Of several x and y, those are left whose names have the same words beside."""
         x, y = chosen["x"], chosen["y"]
         if len(x) > 1 or len(y) > 1:

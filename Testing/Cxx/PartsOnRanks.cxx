@@ -3,7 +3,7 @@
 /*
  * Parts of a surface on ranks, in memory and in files: whoever holds them, their triangles are those of
  * all points at once, also trimmed and where holes are filled, and a failure on one rank is that of all.
- * All ranks run this program.
+ * All ranks run this program: PartsOnRanks FOLDER [--ranks].
  */
 #include "Check.h"
 
@@ -149,6 +149,9 @@ std::vector<Corners> AllAtOnce(
   });
 }
 
+/** Where files may be written. */
+std::string Temporary;
+
 /** An empty folder of this rank, or no name, for parts in memory. */
 std::string FolderOf(const Ranks& ranks, int partsOfRank)
 {
@@ -156,9 +159,10 @@ std::string FolderOf(const Ranks& ranks, int partsOfRank)
   {
     return std::string();
   }
-  const std::string folder = "parts-on-rank-" + std::to_string(ranks.Own());
+  const std::string folder = Temporary + "/parts-on-rank-" + std::to_string(ranks.Own()) + "-of-" +
+    std::to_string(ranks.Count());
   std::filesystem::remove_all(folder);
-  std::filesystem::create_directory(folder);
+  std::filesystem::create_directories(folder);
   return folder;
 }
 
@@ -943,18 +947,20 @@ void CheckWaiting(const Ranks& ranks, vtkInformationVector* outputs)
 
 int main(int argc, char** argv)
 {
+  if (argc < 2)
+  {
+    return 1;
+  }
+  Temporary = argv[1];
   int count = 1;
 #if VTK_MODULE_ENABLE_VTK_ParallelMPI
   vtkNew<vtkMPIController> controller;
-  if (argc > 1 && std::string(argv[1]) == "--ranks")
+  if (argc > 2 && std::string(argv[2]) == "--ranks")
   {
     controller->Initialize(&argc, &argv);
     count = controller->GetNumberOfProcesses();
     vtkMultiProcessController::SetGlobalController(controller);
   }
-#else
-  static_cast<void>(argc);
-  static_cast<void>(argv);
 #endif
   {
     vtkNew<vtkInformationVector> outputs;

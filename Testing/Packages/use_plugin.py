@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A file to a surface in ParaView, where nobody has loaded the plugin.
+"""A file to a surface in ParaView, which loads the plugin as PV_PLUGIN_PATH says.
 
 For pvpython or paraview --script. In the environment: POINTS, the file; SERVER, "host port", if a
 server is to do it; PICTURE, a file to draw the surface into, which ends the client.

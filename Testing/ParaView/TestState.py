@@ -17,7 +17,7 @@ state = os.path.join(os.path.dirname(plugin), "ElevationSurface.pvsm")
 from vtkelevationsurface.description import DESCRIBED  # noqa: E402  (the plugin brings it)
 
 saved = xml.etree.ElementTree.parse(state)
-ENTRIES = {"chain": "ReconstructElevationSurface", "reader": "AnElevationPointsReader"}
+ENTRIES = {"chain": "ReconstructElevationSurface", "reader": "ElevationPointsReader"}
 for place, name in ENTRIES.items():
     proxies = [proxy for proxy in saved.iter("Proxy") if proxy.get("type") == name]
     check_equal(len(proxies), 1, "proxies of " + name)

@@ -1138,6 +1138,55 @@ class Command(Program):
                     "bounds", "holes"):
             self.assertEqual(report[key], whole[key], key)
 
+    def test_triangles_above_a_given_length_are_filled_as_by_one_run(self):
+        points = clouds()["random"]
+        places = points[:, :2] - (400600.0, 400500.0)
+        name = self.npy("a.npy", points[numpy.abs(numpy.hypot(*places.T) - 160.0) > 30.0])
+        for options in (("--open-edge-length", "70"), ("--open-edge-length", "70", "--maximum-hole-size", "100")):
+            options += ("--maximum-expected-points", "9000", "--no-trim", "--report")
+            found = []
+            for way in (("--no-picture",), ("--pieces", "4")):
+                done = self.call(name, *options, *way)
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                told = [line.split("  ", 2)[2] for line in done.stdout.splitlines() if "void" in line or "bridge" in line]
+                report = self.json("a_surface.json")
+                for hole in report["holes"]["list"]:
+                    del hole["hole"]  # in the order of triangles
+                report["holes"]["list"].sort(key=lambda hole: hole["centre"])
+                found.append({key: report[key] for key in ("unused_reasons", "triangles", "bounds", "holes")})
+                found[-1]["told"] = [re.sub("void .*", "", line) for line in told]
+            reader = vtkXMLPolyDataReader()
+            reader.SetFileName(self.path("a_surface.vtp"))
+            reader.Update()
+            self.assertEqual(*found)
+            self.assertEqual(found[0]["holes"]["open_edge_length_is"], "as given")
+            self.assertGreater(found[0]["holes"]["by_status"]["replaced"], 5)
+            self.assertEqual(found[0]["holes"]["bridged_left"] > 0, "--maximum-hole-size" in options)
+            numpy.testing.assert_array_equal(
+                sorted_rows(numpy.concatenate([by_places(part) for part in self.parts("a_surface.vtpd")])),
+                by_places(reader.GetOutput()),
+            )
+
+    def test_messages_on_a_boundary_are_those_of_one_run(self):
+        name = self.npy("a.npy", clouds()["random"])
+        corners = "400100 400100\n400900 400150\n400700 400800\n400100 400100\n"
+        self.file("twice.txt", f"{corners}\n400200 400250\n400300 400300\n400300 400200\n400200 400250\n\n{corners}")
+        self.file("thin.txt", "400100.001 400100\n400100.002 400900\n400100.003 400100\n400100.001 400100\n")
+        for options, words in (
+            (("--boundary", "twice.txt"), r"note +trimming: Rings .* \(1 more, the first of them the part from line "
+             r"11 to 14\) count once"),
+            (("--boundary", "twice.txt", "--no-recover-boundary"), r"twice.txt: trimming: The boundary's edge from "
+             r"point \d+ .* is not an edge of the mesh"),
+            (("--boundary", "thin.txt"), "boundary thin.txt, 1 ring"),
+        ):
+            said = []
+            for way in ("--no-picture", "--pieces=4"):
+                done = self.call(name, "--no-fill", *options, way)
+                lines = [line for line in done.stdout.splitlines() if re.match("  (note|triangles|trimmed)", line)]
+                said.append((done.returncode, done.stderr, lines))
+            self.assertEqual(*said)
+            self.assertRegex("\n".join([done.stderr, *lines]), words)
+
     def test_holes_that_fail_are_told_as_by_one_run(self):
         name = self.cloud_with_lakes(2)
         options = (
@@ -1178,10 +1227,6 @@ class Command(Program):
         self.assertEqual(done.returncode, 1)
         found = re.search(r"more than the memory for it, 0.2 GB. A --spacing of (\S+) would do", done.stderr)
         self.assertTrue(found, done.stderr)
-        source = vtkReconstructPieces()
-        self.assertEqual(source.GetMemoryOfHole(), 0.0)
-        source.SetMemoryOfHole(-1.0)
-        self.assertEqual(source.GetMemoryOfHole(), 0.0)
         self.assertGreater(float(found.group(1)), 0.2)
 
     def test_points_in_no_triangle_below_the_limit_are_told(self):
@@ -1245,8 +1290,7 @@ class Command(Program):
         self.file("b.stl", "solid a\n facet normal 0 0 1\n")
         self.file("taken", "a file")
         for options, words in (
-            (("--pieces", "2", "--no-trim"), "add --open-edge-length 0"),
-            (("--pieces", "2", "--no-trim", "--open-edge-length", "9"), "--open-edge-length needs"),
+            (("--pieces", "2", "--no-trim"), "add --open-edge-length, 0 for none"),
             (("--pieces", "0"), "--pieces takes a whole number from 1, not '0'"),
             (("--pieces", "2", "--memory", "2G", *TRIANGULATION_ONLY), "leave one out"),
             (("--pieces", "2", "--grid", "5", *TRIANGULATION_ONLY), "--grid needs the whole"),

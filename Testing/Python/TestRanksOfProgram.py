@@ -225,6 +225,8 @@ class OnRanks(Program):
         self.assertEqual((report["several_heights"]["places"], report["holes"]["filled"]), (50, 1))
         self.assertEqual(report["trim"]["boundary"], "found from the points")
         self.check_pieces("a.npy", "--no-trim", "--no-fill", "--maximum-edge-length", "3")
+        report = self.check_pieces("a.npy", "--open-edge-length", "6", "--maximum-hole-size", "12")
+        self.assertGreater(report["holes"]["bridged_left"], 0)
 
     def test_pieces_of_a_text_that_one_rank_reads_along_a_boundary_and_faults(self):
         self.file("a.txt", cloud(1500))
@@ -262,7 +264,7 @@ class OnRanks(Program):
             ((0, "write_vtpd"), ["a.npy"], 1, "s.vtpd: cannot be written: No space left"),
             ((1, "mkdir"), ["a.npy"], 1, "/1: process 1 cannot make this folder: No space left"),
             ((), ["a.npy", "-o", "none/s.vtpd"], 1, "there is no folder .*/none"),
-            ((), ["a.npy", "--pieces", "4"], 2, "--pieces: 4 cannot be made by 3 .*, such as 6"),
+            ((), ["a.npy", "--pieces", "4"], 2, "--pieces: 4 cannot be made by 3 .*, such as 6; see --help"),
             ((), ["few.txt"], 1, "few.txt: no surface"),
             ((), ["a.npy", "--boundary", "flat.txt"], 1, "flat.txt: the part from line 1 to 4 is not closed"),
         ):

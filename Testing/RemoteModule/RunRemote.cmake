@@ -21,6 +21,7 @@ file(COPY
   "${SOURCE}/vtk.module"
   "${SOURCE}/CMake"
   "${SOURCE}/Filters"
+  "${SOURCE}/Python"
   "${SOURCE}/Testing"
   DESTINATION "${tree}/Remote/ElevationSurface")
 

@@ -126,7 +126,7 @@ private:
  * The sub-interval [begin, end] of a progress, for a step of a longer computation. Keeps a
  * reference to the progress.
  */
-inline Progress Part(const Progress& progress, double begin, double end)
+inline Progress SubProgress(const Progress& progress, double begin, double end)
 {
   if (!progress)
   {

@@ -235,8 +235,8 @@ public:
       this->Own.Nodes.Reserve(
         this->Own.Count / 48); // growing it takes long
     }
-    this->Own.Root = BoxTree::Build(
-      this->Local, this->Rows, this->Own.Points, this->Own.Nodes, Part(this->Monitor, 0.1, 0.6));
+    this->Own.Root = BoxTree::Build(this->Local, this->Rows, this->Own.Points, this->Own.Nodes,
+      SubProgress(this->Monitor, 0.1, 0.6));
     this->SortRows();
     this->SetDuplicatesAside(points, policy);
     if (!this->Own.Duplicates.empty())
@@ -276,7 +276,7 @@ private:
     Index sum = 0;
     this->ForEach(
       this->Bins, 0.05, 0.05, [&](Index bin) { sum += std::exchange(starts[bin + 1], sum); });
-    const Progress here = Part(this->Monitor, 0.05, 0.05);
+    const Progress here = SubProgress(this->Monitor, 0.05, 0.05);
     TouchPages(this->Grid.X, begin, begin + count, here);
     TouchPages(this->Grid.Y, begin, begin + count, here);
     TouchPages(this->Grid.Ids, begin, begin + count, here);
@@ -301,7 +301,7 @@ private:
       if (slots.first < slots.second)
       {
         const double done = 0.6 + 0.3 * row / this->Rows;
-        inSort = Part(this->Monitor, done, done);
+        inSort = SubProgress(this->Monitor, done, done);
         const double low = bins.OriginY + (this->Own.FirstRow + row) * bins.BinHeight;
         sorter.Sort(slots, low, low + bins.BinHeight, this->Order + slots.first);
         lowest = this->Local.Y[this->Order[slots.first]];
@@ -407,13 +407,13 @@ public:
       return;
     }
     this->Lay(extent);
-    const Progress filling = Part(progress, 0.0, 0.875);
-    this->CountInGroups(Part(filling, 0.0, 0.1));
+    const Progress filling = SubProgress(progress, 0.0, 0.875);
+    this->CountInGroups(SubProgress(filling, 0.0, 0.1));
     this->MakeBlocks();
-    this->SortIntoBlocks(Part(filling, 0.1, 0.3));
-    this->FillBlocks(Part(filling, 0.3, 1.0));
-    const Progress joining = Part(progress, 0.875, 1.0);
-    this->CloseGaps(Part(joining, 0.0, 0.0));
+    this->SortIntoBlocks(SubProgress(filling, 0.1, 0.3));
+    this->FillBlocks(SubProgress(filling, 0.3, 1.0));
+    const Progress joining = SubProgress(progress, 0.875, 1.0);
+    this->CloseGaps(SubProgress(joining, 0.0, 0.0));
     this->Join(joining);
   }
 
@@ -578,8 +578,8 @@ private:
     const auto fill = [&](Block& block, const Progress& inBlock) {
       BlockFiller(this->Grid, block, inBlock).Run(this->Points, this->Policy);
     };
-    ForEachPiece(static_cast<Index>(this->Blocks.size()), this->Threads, Part(progress, 0.0, done),
-      [&](Index i) {
+    ForEachPiece(static_cast<Index>(this->Blocks.size()), this->Threads,
+      SubProgress(progress, 0.0, done), [&](Index i) {
         if (!isLarge(this->Blocks[i]))
         {
           fill(this->Blocks[i], Progress());
@@ -591,7 +591,7 @@ private:
       {
         const double begin = done;
         done = std::min(1.0, done + static_cast<double>(block.Count) / count);
-        fill(block, Part(progress, begin, done));
+        fill(block, SubProgress(progress, begin, done));
       }
     }
     this->Grid.Scratch.Recycle(std::move(this->Memory));
@@ -718,11 +718,12 @@ BinGrid::BinGrid(const PointView& points, DuplicatePolicy policy, const Progress
   int threads, Extent* known)
 {
   const auto look = [&]() {
-    return FindExtent(points, threads, Part(progress, 0.0, 0.2), [](Index, const Point2&) {});
+    return FindExtent(
+      points, threads, SubProgress(progress, 0.0, 0.2), [](Index, const Point2&) {});
   };
   Extent extent = known ? std::move(*known) : look();
   this->NotFinite = std::move(extent.NotFinite);
-  GridBuilder(*this, points, policy, threads).Run(extent, Part(progress, 0.2, 1.0));
+  GridBuilder(*this, points, policy, threads).Run(extent, SubProgress(progress, 0.2, 1.0));
 }
 
 } // namespace elevation

@@ -60,11 +60,11 @@ public:
     , Lines(lines)
     , Duplicates(duplicates)
   {
-    this->Collect(Part(progress, 0.0, 0.1));
+    this->Collect(SubProgress(progress, 0.0, 0.1));
     if (!this->Pieces.empty())
     {
-      this->Split(Part(progress, 0.1, 0.9));
-      this->Match(Part(progress, 0.9, 1.0));
+      this->Split(SubProgress(progress, 0.1, 0.9));
+      this->Match(SubProgress(progress, 0.9, 1.0));
     }
   }
 
@@ -142,7 +142,7 @@ private:
   /** Pass 1. */
   void Collect(const Progress& progress)
   {
-    const std::vector<Index> vertexOf = this->CollectPoints(Part(progress, 0.0, 0.5));
+    const std::vector<Index> vertexOf = this->CollectPoints(SubProgress(progress, 0.0, 0.5));
     std::vector<char> hasSegment(this->Vertices.size(), 0);
     for (Index line = 0; line < this->Lines.Count(); ++line)
     {
@@ -165,7 +165,7 @@ private:
         }
       }
     }
-    this->JoinEqualPieces(Part(progress, 0.6, 1.0));
+    this->JoinEqualPieces(SubProgress(progress, 0.6, 1.0));
     for (SegmentPiece& piece : this->Pieces)
     {
       piece.Count = 1; // equal segments of several lines count as one
@@ -199,7 +199,7 @@ private:
         const Point2 at = own.At(p), other = own.At(q);
         return at != other ? IsLower(at, other) : p < q;
       },
-      Part(progress, 0.5, 1.0));
+      SubProgress(progress, 0.5, 1.0));
     std::vector<Index> vertexOf(own.Count, None); // at first, the source
     for (std::size_t i = 0, first = 0; i < used.size(); ++i)
     {
@@ -229,8 +229,8 @@ private:
       [](const SegmentPiece& p, const SegmentPiece& q) {
         return p.A != q.A ? p.A < q.A : (p.B != q.B ? p.B < q.B : p.Rank < q.Rank);
       },
-      Part(progress, 0.0, 0.9));
-    const Progress joining = Part(progress, 0.9, 1.0);
+      SubProgress(progress, 0.0, 0.9));
+    const Progress joining = SubProgress(progress, 0.9, 1.0);
     std::size_t kept = 0, done = 0;
     for (const SegmentPiece& piece : Counted(this->Pieces))
     {
@@ -254,19 +254,19 @@ private:
   /** Pass 2. */
   void Split(const Progress& progress)
   {
-    this->CutAtPoints(Part(progress, 0.0, 0.5));
+    this->CutAtPoints(SubProgress(progress, 0.0, 0.5));
     // Up to here, pieces follow the lines exactly; the next steps move them by rounding.
     const std::vector<SegmentPiece> pieces = this->Pieces;
     const std::size_t count = this->Vertices.size();
     // Two units cover the rounding of an end and of a crossing. A reach of 0 is for lines no longer
     // than a few units: the doubles between them are finite in number, so that it ends.
-    if (this->Settle(2.0, true, Part(progress, 0.5, 0.9)))
+    if (this->Settle(2.0, true, SubProgress(progress, 0.5, 0.9)))
     {
       return;
     }
     this->Pieces = pieces;
     this->Vertices.resize(count);
-    if (!this->Settle(0.0, false, Part(progress, 0.9, 1.0)))
+    if (!this->Settle(0.0, false, SubProgress(progress, 0.9, 1.0)))
     {
       const Segment &one = this->Segments[this->Unsettled[0]],
                     &other = this->Segments[this->Unsettled[1]];
@@ -293,24 +293,24 @@ private:
     {
       // Each round gets half of the remaining progress.
       const Progress ofRound =
-        Part(progress, 1.0 - std::ldexp(1.0, -round), 1.0 - std::ldexp(1.0, -round - 1));
-      this->EnterInGrid(Part(ofRound, 0.0, 0.2));
+        SubProgress(progress, 1.0 - std::ldexp(1.0, -round), 1.0 - std::ldexp(1.0, -round - 1));
+      this->EnterInGrid(SubProgress(ofRound, 0.0, 0.2));
       std::vector<PieceCut> cuts;
-      this->CutAtVertices(cuts, Everything, Part(ofRound, 0.2, 0.4));
+      this->CutAtVertices(cuts, Everything, SubProgress(ofRound, 0.2, 0.4));
       std::vector<Crossing> crossings;
       if (cuts.empty())
       {
-        this->FindCrossings(crossings, Part(ofRound, 0.4, 0.7));
+        this->FindCrossings(crossings, SubProgress(ofRound, 0.4, 0.7));
         if (crossings.empty())
         {
           return true;
         }
-        this->CutAtCrossings(crossings, !haveCounted, cuts, Part(ofRound, 0.7, 0.9));
+        this->CutAtCrossings(crossings, !haveCounted, cuts, SubProgress(ofRound, 0.7, 0.9));
         haveCounted = true;
         const auto [p, q] = crossings[0];
         this->Unsettled = { this->Pieces[p].Rank, this->Pieces[q].Rank };
       }
-      this->Apply(cuts, Part(ofRound, 0.9, 1.0));
+      this->Apply(cuts, SubProgress(ofRound, 0.9, 1.0));
     }
     return false;
   }
@@ -318,31 +318,31 @@ private:
   /** Cuts at vertices and input points that lie exactly on the lines. */
   void CutAtPoints(const Progress& progress)
   {
-    this->EnterInGrid(Part(progress, 0.0, 0.2));
+    this->EnterInGrid(SubProgress(progress, 0.0, 0.2));
     std::vector<PieceCut> cuts;
     std::vector<Passage> passages;
     // With so many, lines overlap or run along each other.
     const std::size_t many = 64 * (this->Vertices.size() + this->Pieces.size());
-    if (!this->CutAtVertices(cuts, many, Part(progress, 0.2, 0.3)))
+    if (!this->CutAtVertices(cuts, many, SubProgress(progress, 0.2, 0.3)))
     {
       std::vector<Point2> places(this->Vertices.size());
       for (std::size_t v = 0; v < places.size(); ++v)
       {
         places[v] = this->Vertices[v].Position;
       }
-      passages = JoinOverlaps(this->Pieces, places, Part(progress, 0.3, 0.35));
-      this->EnterInGrid(Part(progress, 0.35, 0.4));
+      passages = JoinOverlaps(this->Pieces, places, SubProgress(progress, 0.3, 0.35));
+      this->EnterInGrid(SubProgress(progress, 0.35, 0.4));
       cuts.clear();
-      this->CutAtVertices(cuts, Everything, Part(progress, 0.4, 0.45));
+      this->CutAtVertices(cuts, Everything, SubProgress(progress, 0.4, 0.45));
     }
-    this->CutAtInputPoints(cuts, Part(progress, 0.45, 0.9));
+    this->CutAtInputPoints(cuts, SubProgress(progress, 0.45, 0.9));
     for (const PieceCut& cut : cuts)
     {
       const SegmentPiece& piece = this->Pieces[cut.Piece];
       passages.push_back({ cut.Vertex, piece.B, piece.Count });
     }
-    this->CountCrossingsAtVertices(passages, Part(progress, 0.9, 0.94));
-    this->Apply(cuts, Part(progress, 0.94, 1.0));
+    this->CountCrossingsAtVertices(passages, SubProgress(progress, 0.9, 0.94));
+    this->Apply(cuts, SubProgress(progress, 0.94, 1.0));
   }
 
   /**
@@ -352,42 +352,43 @@ private:
   void CutAtInputPoints(std::vector<PieceCut>& cuts, const Progress& progress)
   {
     std::vector<PieceCut> found; // with input points for vertices
-    ForEachStretch(this->Points.Count, Part(progress, 0.0, 0.8), [&](Index begin, Index end) {
-      for (Index id = begin; id < end; ++id)
-      {
-        const Point2 p = this->Points.At(id);
-        std::size_t cell;
-        if (!this->Grid.FindCell(p, cell) || !std::isfinite(this->Points.Elevation(id)))
+    ForEachStretch(
+      this->Points.Count, SubProgress(progress, 0.0, 0.8), [&](Index begin, Index end) {
+        for (Index id = begin; id < end; ++id)
         {
-          continue;
-        }
-        const std::size_t before = found.size();
-        for (const Index* i = this->Grid.Begin(cell); i < this->Grid.End(cell); ++i)
-        {
-          const Ends& ends = this->PieceEnds[*i];
-          const Index vertex = ends[0] == p ? this->Pieces[*i].A
-            : ends[1] == p                  ? this->Pieces[*i].B
-                                            : None;
-          if (vertex != None)
+          const Point2 p = this->Points.At(id);
+          std::size_t cell;
+          if (!this->Grid.FindCell(p, cell) || !std::isfinite(this->Points.Elevation(id)))
           {
-            this->SetInput(vertex, id);
-            found.resize(before); // there is a vertex already
-            break;
+            continue;
           }
-          if (IsInside(ends, p))
+          const std::size_t before = found.size();
+          for (const Index* i = this->Grid.Begin(cell); i < this->Grid.End(cell); ++i)
           {
-            found.push_back({ *i, id });
+            const Ends& ends = this->PieceEnds[*i];
+            const Index vertex = ends[0] == p ? this->Pieces[*i].A
+              : ends[1] == p                  ? this->Pieces[*i].B
+                                              : None;
+            if (vertex != None)
+            {
+              this->SetInput(vertex, id);
+              found.resize(before); // there is a vertex already
+              break;
+            }
+            if (IsInside(ends, p))
+            {
+              found.push_back({ *i, id });
+            }
           }
         }
-      }
-    });
+      });
     Sort(
       found.begin(), found.end(),
       [&](const PieceCut& p, const PieceCut& q) {
         const Point2 at = this->Points.At(p.Vertex), other = this->Points.At(q.Vertex);
         return at != other ? IsLower(at, other) : p.Piece < q.Piece;
       },
-      Part(progress, 0.8, 1.0));
+      SubProgress(progress, 0.8, 1.0));
     const std::size_t first = this->Vertices.size(), firstCut = cuts.size();
     for (const PieceCut& cut : found)
     {
@@ -448,8 +449,8 @@ private:
           ? p.Vertex < q.Vertex
           : Orientation(this->At(p.Vertex), this->At(p.Toward), this->At(q.Toward)) == Positive;
       },
-      Part(progress, 0.0, 0.8));
-    const Progress counting = Part(progress, 0.8, 1.0);
+      SubProgress(progress, 0.0, 0.8));
+    const Progress counting = SubProgress(progress, 0.8, 1.0);
     std::int64_t around = 0, alike = 0; // earlier segments at this vertex; in this direction
     for (const std::size_t i : Counted(std::size_t(1), passages.size()))
     {
@@ -467,12 +468,13 @@ private:
 
   void FindCrossings(std::vector<Crossing>& crossings, const Progress& progress) const
   {
-    VisitCrossings(
-      this->PieceEnds, this->Grid, Part(progress, 0.0, 0.8), [&](std::size_t i, std::size_t j) {
+    VisitCrossings(this->PieceEnds, this->Grid, SubProgress(progress, 0.0, 0.8),
+      [&](std::size_t i, std::size_t j) {
         crossings.push_back({ static_cast<Index>(i), static_cast<Index>(j) });
       });
     // A pair may be found in every cell that both are in.
-    Sort(crossings.begin(), crossings.end(), std::less<Crossing>(), Part(progress, 0.8, 1.0));
+    Sort(
+      crossings.begin(), crossings.end(), std::less<Crossing>(), SubProgress(progress, 0.8, 1.0));
     crossings.erase(std::unique(crossings.begin(), crossings.end()), crossings.end());
   }
 
@@ -525,10 +527,10 @@ private:
     Sort(
       places.begin(), places.end(),
       [](const Place& p, const Place& q) { return IsLower(p.Position, q.Position); },
-      Part(progress, 0.5, 0.7));
+      SubProgress(progress, 0.5, 0.7));
 
     NewVertices added;
-    const Progress naming = Part(progress, 0.7, 1.0);
+    const Progress naming = SubProgress(progress, 0.7, 1.0);
     StepCount steps;
     for (std::size_t i = 0, end = 0; i < places.size(); i = end)
     {
@@ -631,9 +633,9 @@ private:
   {
     SortAlong(
       cuts, [&](Index piece) -> const Ends& { return this->PieceEnds[piece]; },
-      [&](Index vertex) { return this->At(vertex); }, Part(progress, 0.0, 0.5));
+      [&](Index vertex) { return this->At(vertex); }, SubProgress(progress, 0.0, 0.5));
     std::vector<SegmentPiece> pieces;
-    const Progress cutting = Part(progress, 0.5, 0.7);
+    const Progress cutting = SubProgress(progress, 0.5, 0.7);
     WorkReporter work(cutting);
     auto cut = cuts.begin();
     for (std::size_t i = 0; i < this->Pieces.size(); ++i)
@@ -664,7 +666,7 @@ private:
       append(end);
     }
     this->Pieces = std::move(pieces);
-    this->JoinEqualPieces(Part(progress, 0.7, 1.0));
+    this->JoinEqualPieces(SubProgress(progress, 0.7, 1.0));
   }
 
   /** Pass 3: the input points at crossings. All others have been found when cutting. */
@@ -685,19 +687,20 @@ private:
     const CellGrid grid(
       crossings.size(),
       [&](std::size_t i) { return std::array<Point2, 1>{ { this->At(crossings[i]) } }; },
-      Part(progress, 0.0, 0.1));
-    ForEachStretch(this->Points.Count, Part(progress, 0.1, 1.0), [&](Index begin, Index end) {
-      for (Index id = begin; id < end; ++id)
-      {
-        const Point2 p = this->Points.At(id);
-        grid.Visit(p, [&](Index i) {
-          if (this->At(crossings[i]) == p && std::isfinite(this->Points.Elevation(id)))
-          {
-            this->SetInput(crossings[i], id);
-          }
-        });
-      }
-    });
+      SubProgress(progress, 0.0, 0.1));
+    ForEachStretch(
+      this->Points.Count, SubProgress(progress, 0.1, 1.0), [&](Index begin, Index end) {
+        for (Index id = begin; id < end; ++id)
+        {
+          const Point2 p = this->Points.At(id);
+          grid.Visit(p, [&](Index i) {
+            if (this->At(crossings[i]) == p && std::isfinite(this->Points.Elevation(id)))
+            {
+              this->SetInput(crossings[i], id);
+            }
+          });
+        }
+      });
   }
 
   /** The fraction of the distance from From to To, by the longer of x and y. */
@@ -774,7 +777,7 @@ void SortInChanged(const Mesh& mesh, Buffer<Index>& triangles, const Progress& p
   Corners* kept = all; // the end of those that have not changed
   std::vector<Corners> changed;
   const Index count = mesh.NumberOfTriangles();
-  ForEachStretch(count, Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
+  ForEachStretch(count, SubProgress(progress, 0.0, 0.3), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       Corners corners{ mesh.Triangles[3 * t], mesh.Triangles[3 * t + 1],
@@ -794,9 +797,9 @@ void SortInChanged(const Mesh& mesh, Buffer<Index>& triangles, const Progress& p
   const auto comesBefore = [&](const Corners& p, const Corners& q) {
     return ComesBefore(mesh.Points, p, q);
   };
-  Sort(changed.begin(), changed.end(), comesBefore, Part(progress, 0.3, 0.6));
+  Sort(changed.begin(), changed.end(), comesBefore, SubProgress(progress, 0.3, 0.6));
   std::copy(changed.begin(), changed.end(), kept);
-  const Progress merging = Part(progress, 0.6, 1.0);
+  const Progress merging = SubProgress(progress, 0.6, 1.0);
   WorkReporter work(merging);
   std::inplace_merge(all, kept, all + count, [&](const Corners& p, const Corners& q) {
     work.Tick();
@@ -837,11 +840,11 @@ void LeaveOutLong(const std::vector<Point2>& points, const EdgeLimit& limit,
 LinePieces CutLines(const PointView& points, const ConstraintLines& lines,
   DuplicatePolicy duplicates, const Progress& progress)
 {
-  const Splitting splitting(points, lines, duplicates, Part(progress, 0.0, 0.9));
+  const Splitting splitting(points, lines, duplicates, SubProgress(progress, 0.0, 0.9));
   LinePieces pieces;
   pieces.AreNone = splitting.IsEmpty();
   pieces.NumberOfCrossings = splitting.NumberOfCrossings();
-  splitting.GetResult(pieces.Added, pieces.Pieces, Part(progress, 0.9, 1.0));
+  splitting.GetResult(pieces.Added, pieces.Pieces, SubProgress(progress, 0.9, 1.0));
   return pieces;
 }
 
@@ -869,8 +872,8 @@ std::vector<Index> ListNearLines(
       largest = std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
     }
   }
-  const CellGrid grid = GridOf(segments, Part(progress, 0.0, 0.2));
-  const Progress looking = Part(progress, 0.2, 1.0);
+  const CellGrid grid = GridOf(segments, SubProgress(progress, 0.0, 0.2));
+  const Progress looking = SubProgress(progress, 0.2, 1.0);
   std::vector<Index> near;
   for (const Index id : Counted(points.Count))
   {
@@ -900,13 +903,14 @@ ConstrainedTriangulation TriangulateConstrained(
   Triangulation& result = constrained.Result;
   const Progress& progress = asked.Monitor;
   static_cast<LinePieces&>(constrained) =
-    CutLines(points, lines, asked.Duplicates, Part(progress, 0.0, 0.17));
+    CutLines(points, lines, asked.Duplicates, SubProgress(progress, 0.0, 0.17));
   if (constrained.AreNone)
   {
     result = Triangulate(points, asked);
     return constrained;
   }
-  const Buffer<double> joined = JoinPoints(points, constrained.Added, Part(progress, 0.17, 0.2));
+  const Buffer<double> joined =
+    JoinPoints(points, constrained.Added, SubProgress(progress, 0.17, 0.2));
   PointView all = points;
   if (!joined.empty())
   {
@@ -916,12 +920,12 @@ ConstrainedTriangulation TriangulateConstrained(
   }
 
   DelaunayOptions options = asked;
-  options.Monitor = Part(progress, 0.2, 0.6);
+  options.Monitor = SubProgress(progress, 0.2, 0.6);
   options.UseLattice = LatticeMode::Off;
   options.MaximumEdgeLength = 0.0; // recovery needs all triangles
   if (options.MaximumElevationError > 0.0)
   {
-    options.Monitor = Part(progress, 0.2, 1.0);
+    options.Monitor = SubProgress(progress, 0.2, 1.0);
     result = TriangulateFew(all, options, constrained.Pieces);
     return constrained;
   }
@@ -932,24 +936,25 @@ ConstrainedTriangulation TriangulateConstrained(
   }
   Mesh mesh;
   mesh.Points.resize(all.Count);
-  ForEachStretch(all.Count, Part(progress, 0.6, 0.62), [&](Index begin, Index end) {
+  ForEachStretch(all.Count, SubProgress(progress, 0.6, 0.62), [&](Index begin, Index end) {
     for (Index id = begin; id < end; ++id)
     {
       mesh.Points[id] = all.At(id);
     }
   });
   mesh.Triangles.assign(result.Triangles.begin(), result.Triangles.end());
-  mesh.ConnectTwins(0, Part(progress, 0.62, 0.8));
+  mesh.ConnectTwins(0, SubProgress(progress, 0.62, 0.8));
   std::vector<char> flags;
-  const Index missing = RecoverSegments(mesh, constrained.Pieces, flags, Part(progress, 0.8, 0.95));
+  const Index missing =
+    RecoverSegments(mesh, constrained.Pieces, flags, SubProgress(progress, 0.8, 0.95));
   if (missing > 0)
   {
-    SortInChanged(mesh, result.Triangles, Part(progress, 0.95, 0.99));
+    SortInChanged(mesh, result.Triangles, SubProgress(progress, 0.95, 0.99));
   }
   const EdgeLimit limit(asked.MaximumEdgeLength);
   if (limit.IsSet())
   {
-    LeaveOutLong(mesh.Points, limit, result.Triangles, Part(progress, 0.99, 1.0));
+    LeaveOutLong(mesh.Points, limit, result.Triangles, SubProgress(progress, 0.99, 1.0));
   }
   Report(progress, 1.0);
   return constrained;

@@ -104,12 +104,14 @@ void Elevate(const Mesh& mesh, const VertexStars* stars, const PointView& points
   std::vector<std::vector<double>>& attributes, std::vector<double>& errors)
 {
   const Values elevation = [&points](Index id) { return points.Elevation(id); };
-  const Heights heights(mesh, stars, patch, options.Method, elevation, Part(progress, 0.0, 0.5));
+  const Heights heights(
+    mesh, stars, patch, options.Method, elevation, SubProgress(progress, 0.0, 0.5));
   const std::size_t count = options.Attributes.size() + 1;
-  const Progress applying = Part(progress, 0.5, 1.0);
+  const Progress applying = SubProgress(progress, 0.5, 1.0);
   for (std::size_t i = 0; i < count; ++i)
   {
-    const Progress one = Part(applying, double(i) / double(count), double(i + 1) / double(count));
+    const Progress one =
+      SubProgress(applying, double(i) / double(count), double(i + 1) / double(count));
     std::vector<double> values = heights.Apply(i == 0 ? elevation : options.Attributes[i - 1], one);
     if (i > 0)
     {
@@ -206,9 +208,9 @@ public:
     this->GrantPoints();
     if (this->AllWork > 0.0 && needsStars && !this->Stars)
     {
-      this->Stars = std::make_unique<VertexStars>(this->Surface, Part(monitor, 0.02, 0.06));
+      this->Stars = std::make_unique<VertexStars>(this->Surface, SubProgress(monitor, 0.02, 0.06));
     }
-    const Progress filling = Part(monitor, this->Stars ? 0.06 : 0.02, 1.0);
+    const Progress filling = SubProgress(monitor, this->Stars ? 0.06 : 0.02, 1.0);
     this->Result.Attributes.resize(this->Options.Attributes.size());
     const double all = this->AllWork > 0.0 ? this->AllWork : 1.0;
     double done = 0.0;
@@ -217,7 +219,7 @@ public:
       const double before = done;
       const Index end = this->EndOfBatch(begin, done);
       const Progress ofBatch =
-        Part(filling, std::min(1.0, before / all), std::min(1.0, done / all));
+        SubProgress(filling, std::min(1.0, before / all), std::min(1.0, done / all));
       Report(ofBatch, 0.0);
       this->FillBatch(begin, end, ofBatch);
       begin = end;
@@ -264,13 +266,15 @@ private:
     if (options.UseLattice == LatticeMode::Automatic && !(options.Spacing > 0.0) &&
       this->Given.Count() > 0)
     {
-      lattice = this->Whole.FoundLattice ? *this->Whole.FoundLattice
-                                         : FindLattice(this->Points, LatticeTolerance,
-                                             this->Threads, Part(options.Monitor, 0.0, 0.02));
+      lattice = this->Whole.FoundLattice
+        ? *this->Whole.FoundLattice
+        : FindLattice(
+            this->Points, LatticeTolerance, this->Threads, SubProgress(options.Monitor, 0.0, 0.02));
     }
     if (lattice.Found)
     {
-      this->Stars = std::make_unique<VertexStars>(this->Surface, Part(options.Monitor, 0.02, 0.02));
+      this->Stars =
+        std::make_unique<VertexStars>(this->Surface, SubProgress(options.Monitor, 0.02, 0.02));
     }
     this->Result.Reports.reserve(this->Given.Count());
     for (Index hole = 0; hole < this->Given.Count(); ++hole)
@@ -435,16 +439,16 @@ private:
       {
         patch.Surroundings = this->Whole.Surroundings[hole];
       }
-      MakePatch(this->Plans[hole], Part(progress, 0.0, 0.4), patch);
+      MakePatch(this->Plans[hole], SubProgress(progress, 0.0, 0.4), patch);
       if (this->Given.IsRegion(hole) && patch.NumberOfNewVertices() == 0)
       {
         this->HasRoom[hole] = 0;
         return;
       }
-      FindNeighbors(patch, Part(progress, 0.4, 0.45));
-      FindNearest(patch, Part(progress, 0.45, 0.5));
+      FindNeighbors(patch, SubProgress(progress, 0.4, 0.45));
+      FindNearest(patch, SubProgress(progress, 0.45, 0.5));
       Elevate(this->Surface, this->Stars.get(), this->Points, this->Options,
-        Part(progress, 0.5, 1.0), patch, report, filled.Attributes, filled.Errors);
+        SubProgress(progress, 0.5, 1.0), patch, report, filled.Attributes, filled.Errors);
     }
     catch (const Error& error)
     {

@@ -155,12 +155,12 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
     }
   }
   this->IsByTrials = wanted == Interpolation::Adaptive;
-  this->MakeCandidates(wanted, *stars, values, Part(progress, 0.0, 0.0));
+  this->MakeCandidates(wanted, *stars, values, SubProgress(progress, 0.0, 0.0));
   if (this->IsCandidate[0] || !this->AllBoundaryIsCenter)
   {
-    this->Harmonic = std::make_unique<Membrane>(patch.Neighbors, Part(progress, 0.0, 0.3));
+    this->Harmonic = std::make_unique<Membrane>(patch.Neighbors, SubProgress(progress, 0.0, 0.3));
   }
-  this->Choose(*stars, values, Part(progress, 0.3, 1.0));
+  this->Choose(*stars, values, SubProgress(progress, 0.3, 1.0));
 }
 
 Heights::~Heights() = default;
@@ -379,7 +379,7 @@ void Heights::TryBeside(Trials& trials, const Progress& progress) const
       const double done = begun + (1.0 - begun) * 0.8 * k / number;
       Report(progress, done);
       const double angle = 2.0 * 3.14159265358979323846 * Spread(k, number) / number;
-      found += trials.At(angle, size, isCounted, Part(progress, done, done)) ? 1 : 0;
+      found += trials.At(angle, size, isCounted, SubProgress(progress, done, done)) ? 1 : 0;
     }
     begun += (1.0 - begun) * 0.8;
     return found;
@@ -626,18 +626,18 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
   if (this->HasSpline())
   {
     const std::vector<double> sums =
-      this->SumOfSplines(known, Part(progress, 0.0, this->NeedsHarmonic() ? 0.3 : 0.8));
+      this->SumOfSplines(known, SubProgress(progress, 0.0, this->NeedsHarmonic() ? 0.3 : 0.8));
     std::transform(rim.begin(), rim.end(), sums.begin(), missed.begin(), std::minus<double>());
     std::copy(sums.begin() + static_cast<std::ptrdiff_t>(boundary), sums.end(), result.begin());
   }
   if (this->NeedsHarmonic())
   {
     // What the splines miss at the boundary; without splines, all of it.
-    const std::vector<double> flat =
-      this->Harmonic->Solve(missed, 1e-10, Part(progress, this->HasSpline() ? 0.3 : 0.0, 0.8));
+    const std::vector<double> flat = this->Harmonic->Solve(
+      missed, 1e-10, SubProgress(progress, this->HasSpline() ? 0.3 : 0.0, 0.8));
     std::transform(result.begin(), result.end(), flat.begin(), result.begin(), std::plus<double>());
   }
-  this->Bound(rim, values, middle, unit, Part(progress, 0.8, 1.0), result);
+  this->Bound(rim, values, middle, unit, SubProgress(progress, 0.8, 1.0), result);
   return result;
 }
 

@@ -158,7 +158,7 @@ Multigrid::Multigrid(Matrix matrix, const Progress& progress)
 {
   const double size = static_cast<double>(matrix.rows());
   // The number of levels is not known, so this reports without advancing.
-  const Progress here = Part(progress, 0.0, 0.0);
+  const Progress here = SubProgress(progress, 0.0, 0.0);
   this->Levels.emplace_back();
   this->Levels.back().A.swap(matrix); // Eigen copies where it is asked to move
   while (!IsFactorized(static_cast<double>(this->Levels.back().A.rows()), size))
@@ -237,7 +237,7 @@ Vector Multigrid::Solve(Vector right, double accuracy, const Progress& progress)
   for (int step = 0; step < LargestNumberOfSteps; ++step)
   {
     Report(progress, done);
-    const Vector preconditioned = this->Cycle(0, right, Part(progress, done, done));
+    const Vector preconditioned = this->Cycle(0, right, SubProgress(progress, done, done));
     const double now = right.dot(preconditioned);
     first = step == 0 ? now : first;
     if (!(now > accuracy * accuracy * first))

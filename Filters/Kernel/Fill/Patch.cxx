@@ -128,7 +128,7 @@ Blocked BlockRow(const Rows& rows, Index row, const Point2& a, const Point2& b)
 std::vector<Blocked> BlockRows(
   const Rows& rows, const std::vector<Point2>& points, const Patch& patch, const Progress& progress)
 {
-  const Progress blocking = Part(progress, 0.0, 0.7);
+  const Progress blocking = SubProgress(progress, 0.0, 0.7);
   std::vector<Blocked> blocked;
   StepCount visited;
   const std::size_t count = patch.Edges.size() + patch.InnerEdges.size();
@@ -162,7 +162,7 @@ std::vector<Blocked> BlockRows(
     [](const Blocked& s, const Blocked& t) {
       return s.Row != t.Row ? s.Row < t.Row : s.Begin < t.Begin;
     },
-    Part(progress, 0.7, 1.0));
+    SubProgress(progress, 0.7, 1.0));
   return blocked;
 }
 
@@ -178,8 +178,8 @@ template <typename Visitor>
 void VisitRows(const Rows& rows, const std::vector<Point2>& points, const Patch& patch,
   const Progress& progress, Visitor&& visit)
 {
-  std::vector<Blocked> blocked = BlockRows(rows, points, patch, Part(progress, 0.0, 0.6));
-  const Progress placing = Part(progress, 0.6, 1.0);
+  std::vector<Blocked> blocked = BlockRows(rows, points, patch, SubProgress(progress, 0.0, 0.6));
+  const Progress placing = SubProgress(progress, 0.6, 1.0);
   bool isInside = false;
   StepCount placed;
   for (std::size_t i = 0; i < blocked.size(); ++i)
@@ -340,7 +340,7 @@ Mesh Connect(const Patch& patch, int threads, const Progress& progress)
   view.Count = patch.NumberOfVertices();
   DelaunayOptions options;
   options.NumberOfThreads = threads;
-  options.Monitor = Part(progress, 0.0, 0.6);
+  options.Monitor = SubProgress(progress, 0.0, 0.6);
   const Triangulation triangulation = Triangulate(view, options);
   if (!triangulation.UnusedPoints.empty())
   {
@@ -355,15 +355,15 @@ Mesh Connect(const Patch& patch, int threads, const Progress& progress)
     mesh.Points[v] = patch.At(v);
   }
   mesh.Triangles.assign(triangulation.Triangles.begin(), triangulation.Triangles.end());
-  mesh.ConnectTwins(0, Part(progress, 0.6, 0.8));
+  mesh.ConnectTwins(0, SubProgress(progress, 0.6, 0.8));
   std::vector<char> constrained;
-  RecoverSegments(mesh, patch.Edges, constrained, Part(progress, 0.8, 0.9));
-  KeepTriangles(FindInside(mesh, constrained, Part(progress, 0.9, 1.0)), mesh);
+  RecoverSegments(mesh, patch.Edges, constrained, SubProgress(progress, 0.8, 0.9));
+  KeepTriangles(FindInside(mesh, constrained, SubProgress(progress, 0.9, 1.0)), mesh);
   if (!IsBoundedBy(patch.Edges, mesh))
   {
     throw BordersTouch();
   }
-  CutAlong(patch.InnerEdges, mesh, Part(progress, 1.0, 1.0));
+  CutAlong(patch.InnerEdges, mesh, SubProgress(progress, 1.0, 1.0));
   return mesh;
 }
 
@@ -1050,7 +1050,7 @@ Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
 void MakePatch(const PatchPlan& plan, const Progress& progress, Patch& patch)
 {
   patch.Spacing = plan.Spacing;
-  const Progress placing = Part(progress, 0.0, 0.1);
+  const Progress placing = SubProgress(progress, 0.0, 0.1);
   if (plan.Kind == Arrangement::Nodes)
   {
     // Between neighbouring nodes there are edges anyway; a longer edge would block nodes.
@@ -1066,10 +1066,10 @@ void MakePatch(const PatchPlan& plan, const Progress& progress, Patch& patch)
   {
     PlaceEvenly(plan, placing, patch);
   }
-  Mesh mesh = Connect(patch, plan.NumberOfThreads, Part(progress, 0.1, 0.7));
+  Mesh mesh = Connect(patch, plan.NumberOfThreads, SubProgress(progress, 0.1, 0.7));
   if (plan.Kind != Arrangement::Nodes)
   {
-    Refinement(plan, patch, mesh).Run(Part(progress, 0.7, 1.0));
+    Refinement(plan, patch, mesh).Run(SubProgress(progress, 0.7, 1.0));
   }
   for (Index v = patch.NumberOfVertices(); v < mesh.NumberOfPoints(); ++v)
   {

@@ -352,11 +352,11 @@ Buffer<Index> DivideAndConquer(
   {
     return Buffer<Index>();
   }
-  const Progress dividing = Part(progress, 0.0, 0.9);
+  const Progress dividing = SubProgress(progress, 0.0, 0.9);
   Division division(points, dividing, metric);
   const Index hullSpoke = division.Divide(0, static_cast<Index>(points.size())).FromLowest;
-  division.RemoveTies(hullSpoke, Part(progress, 0.9, 0.95));
-  Buffer<Index> triangles = division.CutIntoFans(hullSpoke, Part(progress, 0.95, 1.0));
+  division.RemoveTies(hullSpoke, SubProgress(progress, 0.9, 0.95));
+  Buffer<Index> triangles = division.CutIntoFans(hullSpoke, SubProgress(progress, 0.95, 1.0));
   Report(progress, 1.0);
   return triangles;
 }

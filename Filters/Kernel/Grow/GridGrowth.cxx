@@ -243,7 +243,7 @@ std::vector<std::unique_ptr<Growth::GridStrip>> Growth::MakeStrips(const Hull& h
     return static_cast<Index>(static_cast<std::int64_t>(count) * k / number);
   };
   this->Pool.Resize(count);
-  ForEachRange(count, threads, Part(this->Options.Monitor, 0.2, 0.2),
+  ForEachRange(count, threads, SubProgress(this->Options.Monitor, 0.2, 0.2),
     [this](Index, Index begin, Index end) {
       std::fill(this->Pool.begin() + begin, this->Pool.begin() + end, Ends{ None, None });
     });
@@ -261,7 +261,7 @@ Buffer<Index> GrowOverGrid(
 {
   Growth growth(grid, options);
   return GrowAll(growth, hull, grid.NumberOfPoints(), options, threads,
-    Part(options.Monitor, 0.2, 1.0), std::move(grid.Scratch));
+    SubProgress(options.Monitor, 0.2, 1.0), std::move(grid.Scratch));
 }
 
 } // namespace elevation

@@ -421,7 +421,7 @@ bool GrowOnLattice(const PointView& points, LatticeNodes& nodes, const LatticeMe
   try
   {
     result.Triangles = GrowAll(growth, hull, nodes.NumberOfPoints(), options, threads,
-      Part(options.Monitor, 0.4, 1.0), Buffer<Index>());
+      SubProgress(options.Monitor, 0.4, 1.0), Buffer<Index>());
   }
   catch (const IsFlat&)
   {
@@ -437,7 +437,8 @@ bool TriangulateLattice(
 {
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
-  LatticeSearch search = FindLattice(points, tolerance, threads, Part(options.Monitor, 0.0, 0.15));
+  LatticeSearch search =
+    FindLattice(points, tolerance, threads, SubProgress(options.Monitor, 0.0, 0.15));
   if (search.Found && TriangulateOnLattice(points, search, options, result))
   {
     return true;
@@ -454,8 +455,8 @@ bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
   LatticeNodes nodes;
   LatticeMetric metric;
   if (!metric.Set(search.Steps) ||
-    !nodes.Place(
-      points, search, tolerance, options.Duplicates, threads, Part(options.Monitor, 0.15, 0.4)) ||
+    !nodes.Place(points, search, tolerance, options.Duplicates, threads,
+      SubProgress(options.Monitor, 0.15, 0.4)) ||
     IsLatticeByChance(nodes.NumberOfPoints(), tolerance) ||
     !GrowOnLattice(points, nodes, metric, options, threads, result))
   {
@@ -464,7 +465,7 @@ bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
   result.LatticeFound = true;
   result.Steps = nodes.Steps;
   SetUnusedPoints(
-    std::move(nodes.Duplicates), search.NotFinite, Part(options.Monitor, 1.0, 1.0), result);
+    std::move(nodes.Duplicates), search.NotFinite, SubProgress(options.Monitor, 1.0, 1.0), result);
   Report(options.Monitor, 1.0);
   return true;
 }

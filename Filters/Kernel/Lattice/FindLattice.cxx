@@ -335,7 +335,7 @@ std::vector<Point2> JoinPicked(Picked sets, const Progress& progress)
     set = std::vector<Point2>();
   }
   std::vector<Point2> places = all.Places();
-  Sort(places.begin(), places.end(), IsLower, Part(progress, 0.5, 1.0));
+  Sort(places.begin(), places.end(), IsLower, SubProgress(progress, 0.5, 1.0));
   return places;
 }
 
@@ -758,7 +758,7 @@ LatticeSample SampleForLattice(const PointView& points, double countOfAll, int t
   std::vector<PlaceSet> sets(picked.size());
   const std::uint64_t limit = HashLimit(WideSampleSize(countOfAll), countOfAll);
   Extent extent =
-    FindExtent(points, threads, Part(progress, 0.0, 0.9), [&](Index piece, const Point2& p) {
+    FindExtent(points, threads, SubProgress(progress, 0.0, 0.9), [&](Index piece, const Point2& p) {
       if (HashOf(p) < limit)
       {
         sets[piece].Add(p);
@@ -770,7 +770,7 @@ LatticeSample SampleForLattice(const PointView& points, double countOfAll, int t
   static_cast<Box&>(sample) = extent;
   sample.CountOfAll = countOfAll;
   sample.Count = static_cast<double>(points.Count) - static_cast<double>(extent.NotFinite.size());
-  sample.Points = JoinPicked(std::move(picked), Part(progress, 0.9, 1.0));
+  sample.Points = JoinPicked(std::move(picked), SubProgress(progress, 0.9, 1.0));
   notFinite = std::move(extent.NotFinite);
   return sample;
 }
@@ -800,8 +800,8 @@ std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
   const std::vector<Index>& notFinite, int threads, const Progress& progress)
 {
   Picked picked(NumberOfRanges(points.Count));
-  ForEachRange(
-    points.Count, threads, Part(progress, 0.0, 0.8), [&](Index piece, Index begin, Index end) {
+  ForEachRange(points.Count, threads, SubProgress(progress, 0.0, 0.8),
+    [&](Index piece, Index begin, Index end) {
       PlaceSet here;
       ForEachPoint(points, begin, end, notFinite, [&](Index, const Point2& p) {
         if (place.Contains(p))
@@ -811,7 +811,7 @@ std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
       });
       picked[piece] = here.Places();
     });
-  return JoinPicked(std::move(picked), Part(progress, 0.8, 1.0));
+  return JoinPicked(std::move(picked), SubProgress(progress, 0.8, 1.0));
 }
 
 bool FitLattice(const LatticeSample& ofAll, std::vector<Point2>&& inFullestPlace, double tolerance,
@@ -841,15 +841,15 @@ LatticeSearch FindLattice(
   const PointView& points, double tolerance, int threads, const Progress& progress)
 {
   LatticeSearch search;
-  const LatticeSample sample =
-    SampleForLattice(points, points.Count, threads, Part(progress, 0.0, 0.55), search.NotFinite);
+  const LatticeSample sample = SampleForLattice(
+    points, points.Count, threads, SubProgress(progress, 0.0, 0.55), search.NotFinite);
   static_cast<Box&>(search) = sample;
   if (sample.MayBeOfLattice())
   {
     std::vector<Point2> around = DistinctPointsIn(
-      FullestPlace(sample), points, search.NotFinite, threads, Part(progress, 0.55, 0.95));
-    search.Found =
-      FitLattice(sample, std::move(around), tolerance, Part(progress, 0.95, 1.0), search.Steps);
+      FullestPlace(sample), points, search.NotFinite, threads, SubProgress(progress, 0.55, 0.95));
+    search.Found = FitLattice(
+      sample, std::move(around), tolerance, SubProgress(progress, 0.95, 1.0), search.Steps);
   }
   return search;
 }
@@ -917,9 +917,9 @@ LatticeSearch GivenLattice(const PointView& points, const Lattice& given, double
   search.Found = true;
   search.Steps = StepsOfGiven(given);
   static_cast<Extent&>(search) =
-    FindExtent(points, threads, Part(progress, 0.0, 0.4), [](Index, const Point2&) {});
-  const Index beside =
-    FirstOffLattice(points, search.NotFinite, search.Steps, tolerance, Part(progress, 0.4, 1.0));
+    FindExtent(points, threads, SubProgress(progress, 0.0, 0.4), [](Index, const Point2&) {});
+  const Index beside = FirstOffLattice(
+    points, search.NotFinite, search.Steps, tolerance, SubProgress(progress, 0.4, 1.0));
   if (beside != None)
   {
     throw BesideGivenLattice(beside, points.At(beside), search.Steps, tolerance);

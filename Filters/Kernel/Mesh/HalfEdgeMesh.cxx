@@ -18,9 +18,9 @@ std::string NameOf(const Point2& p)
   return text;
 }
 
-std::string NameOf(Index id, const Point2& p)
+std::string NameOf(std::int64_t number, const Point2& p)
 {
-  return "point " + std::to_string(id) + " " + NameOf(p);
+  return "point " + std::to_string(number) + " " + NameOf(p);
 }
 
 std::string NameOf(const NamedPoints& points, Index i)
@@ -30,7 +30,8 @@ std::string NameOf(const NamedPoints& points, Index i)
 
 std::string NameOf(const Mesh& mesh, Index vertex)
 {
-  return NameOf(mesh.IdOf(vertex), mesh.PointOf(vertex));
+  const Index id = mesh.IdOf(vertex);
+  return NameOf(mesh.NumberOf ? mesh.NumberOf(id) : id, mesh.PointOf(vertex));
 }
 
 namespace
@@ -97,11 +98,11 @@ public:
   /** @return false when two half-edges that run the same way were found; borders not checked */
   bool Run(const Progress& progress)
   {
-    this->NumberVertices(Part(progress, 0.0, 0.2));
-    this->CountRising(Part(progress, 0.2, 0.3));
-    this->ListRising(Part(progress, 0.3, 0.5));
-    this->SortWhereMany(Part(progress, 0.5, 0.5));
-    return this->ConnectFalling(Part(progress, 0.5, 0.9));
+    this->NumberVertices(SubProgress(progress, 0.0, 0.2));
+    this->CountRising(SubProgress(progress, 0.2, 0.3));
+    this->ListRising(SubProgress(progress, 0.3, 0.5));
+    this->SortWhereMany(SubProgress(progress, 0.5, 0.5));
+    return this->ConnectFalling(SubProgress(progress, 0.5, 0.9));
   }
 
 private:
@@ -291,17 +292,18 @@ private:
 bool HasDistinctBorders(const Mesh& mesh, const Progress& progress)
 {
   std::vector<std::pair<Index, Index>> borders;
-  ForEachStretch(mesh.NumberOfTriangles(), Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
-    for (Index h = 3 * begin; h < 3 * end; ++h)
-    {
-      if (mesh.IsBorder(h))
+  ForEachStretch(
+    mesh.NumberOfTriangles(), SubProgress(progress, 0.0, 0.5), [&](Index begin, Index end) {
+      for (Index h = 3 * begin; h < 3 * end; ++h)
       {
-        borders.emplace_back(mesh.Origin(h), mesh.Destination(h));
+        if (mesh.IsBorder(h))
+        {
+          borders.emplace_back(mesh.Origin(h), mesh.Destination(h));
+        }
       }
-    }
-  });
-  Sort(
-    borders.begin(), borders.end(), std::less<std::pair<Index, Index>>(), Part(progress, 0.5, 1.0));
+    });
+  Sort(borders.begin(), borders.end(), std::less<std::pair<Index, Index>>(),
+    SubProgress(progress, 0.5, 1.0));
   return std::adjacent_find(borders.begin(), borders.end()) == borders.end();
 }
 } // namespace
@@ -309,9 +311,10 @@ bool HasDistinctBorders(const Mesh& mesh, const Progress& progress)
 void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
 {
   this->Twins.assign(this->Triangles.size(), Border);
-  if (!TwinFinder(*this).Run(progress) || !HasDistinctBorders(*this, Part(progress, 0.9, 1.0)))
+  if (!TwinFinder(*this).Run(progress) ||
+    !HasDistinctBorders(*this, SubProgress(progress, 0.9, 1.0)))
   {
-    ThrowNotManifold(*this, firstCell, Part(progress, 1.0, 1.0));
+    ThrowNotManifold(*this, firstCell, SubProgress(progress, 1.0, 1.0));
   }
 }
 
@@ -353,11 +356,11 @@ public:
 
   Rings Run(const Progress& progress)
   {
-    this->FindBorders(Part(progress, 0.0, 0.95));
-    const Progress sorting = Part(progress, 0.95, 0.95);
+    this->FindBorders(SubProgress(progress, 0.0, 0.95));
+    const Progress sorting = SubProgress(progress, 0.95, 0.95);
     this->ListLeaving(sorting);
     this->SortWhereMany(sorting);
-    return this->Walk(Part(progress, 0.95, 1.0));
+    return this->Walk(SubProgress(progress, 0.95, 1.0));
   }
 
 private:

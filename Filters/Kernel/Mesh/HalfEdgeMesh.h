@@ -19,6 +19,8 @@
 
 #include "Kernel/Base/Base.h"
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -45,7 +47,7 @@ class Mesh;
 
 /** A place as messages name it, "(1.5, 2)"; and a point, "point 7 (1.5, 2)". */
 std::string NameOf(const Point2& p);
-std::string NameOf(Index id, const Point2& p);
+std::string NameOf(std::int64_t number, const Point2& p);
 std::string NameOf(const NamedPoints& points, Index i);
 std::string NameOf(const Mesh& mesh, Index vertex);
 
@@ -64,6 +66,8 @@ public:
    */
   std::vector<Index> Ids;
   Index FirstNewId = 0;
+  /** How messages number the point of an id, if not by the id. */
+  std::function<std::int64_t(Index id)> NumberOf;
 
   Index NumberOfPoints() const { return static_cast<Index>(this->Points.size()); }
   Index NumberOfTriangles() const { return static_cast<Index>(this->Triangles.size() / 3); }
@@ -227,7 +231,7 @@ Components FindComponents(const Mesh& mesh, const Progress& progress, Relation&&
   Components components;
   components.Labels.Resize(count);
   LabelSets joined;
-  ForEachStretch(count, Part(progress, 0.0, 0.8), [&](Index begin, Index end) {
+  ForEachStretch(count, SubProgress(progress, 0.0, 0.8), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       Index label = None;
@@ -252,7 +256,7 @@ Components FindComponents(const Mesh& mesh, const Progress& progress, Relation&&
     }
   });
   joined.Renumber(components.Lowest);
-  ForEachStretch(count, Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, SubProgress(progress, 0.8, 1.0), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       components.Labels[t] = joined(components.Labels[t]);

@@ -36,14 +36,14 @@ public:
   /** @return whether there are regions */
   bool Run(const Progress& progress)
   {
-    if (!this->FindRegions(Part(progress, 0.0, 0.5)))
+    if (!this->FindRegions(SubProgress(progress, 0.0, 0.5)))
     {
       return false;
     }
-    this->TraceBorders(Part(progress, 0.5, 0.7));
+    this->TraceBorders(SubProgress(progress, 0.5, 0.7));
     this->FindRims();
-    this->CollectInnerEdges(Part(progress, 0.7, 0.9));
-    this->MeasureGaps(Part(progress, 0.9, 1.0));
+    this->CollectInnerEdges(SubProgress(progress, 0.7, 0.9));
+    this->MeasureGaps(SubProgress(progress, 0.9, 1.0));
     return true;
   }
 
@@ -205,7 +205,7 @@ private:
     const IsLowerPoint isLower{ mesh };
     std::vector<InnerEdge> edges;
     std::vector<char> isJoined(mesh.NumberOfPoints(), 0);
-    const Progress collecting = Part(progress, 0.0, 0.5);
+    const Progress collecting = SubProgress(progress, 0.0, 0.5);
     for (const Index h : Counted(mesh.NumberOfHalfEdges()))
     {
       ReportStep(collecting, h, mesh.NumberOfHalfEdges());
@@ -233,7 +233,7 @@ private:
         return s.Region != t.Region ? s.Region < t.Region
                                     : this->IsLowerEdge(s.Low, s.High, t.Low, t.High);
       },
-      Part(progress, 0.5, 1.0));
+      SubProgress(progress, 0.5, 1.0));
     std::size_t i = 0;
     for (Index region = 0; region < this->NumberOfRegions; ++region)
     {
@@ -332,7 +332,7 @@ std::vector<Index> NumberRegions(const Mesh& mesh, double longest, const Progres
   const EdgeLimit limit(longest);
   const Index count = mesh.NumberOfTriangles();
   std::vector<char> isLong(count);
-  ForEachStretch(count, Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
+  ForEachStretch(count, SubProgress(progress, 0.0, 0.5), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       isLong[t] = !limit.Admits([&](Index v) -> const Point2& { return mesh.PointOf(v); },
@@ -344,7 +344,7 @@ std::vector<Index> NumberRegions(const Mesh& mesh, double longest, const Progres
   {
     return regionOf;
   }
-  const Components parts = FindComponents(mesh, Part(progress, 0.5, 1.0), [&](Index h) {
+  const Components parts = FindComponents(mesh, SubProgress(progress, 0.5, 1.0), [&](Index h) {
     return isLong[Mesh::Triangle(h)] && isLong[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
   });
   std::vector<Index> numbers(parts.Count(), None);
@@ -386,8 +386,9 @@ void AddRegionsOfBorder(const std::vector<BorderEdge>& border, const std::vector
   }
   std::vector<Index> ids;
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(holes.Walks.Vertices.size());
-  const Mesh mesh = MeshOfBorder(reversed, points, Part(progress, 0.0, 0.3), ids);
-  RegionFinder(mesh, holes.LongestEdge, holes).RunOnBorder(regionOf, Part(progress, 0.3, 1.0));
+  const Mesh mesh = MeshOfBorder(reversed, points, SubProgress(progress, 0.0, 0.3), ids);
+  RegionFinder(mesh, holes.LongestEdge, holes)
+    .RunOnBorder(regionOf, SubProgress(progress, 0.3, 1.0));
   std::for_each(holes.Walks.Vertices.begin() + first, holes.Walks.Vertices.end(),
     [&ids](Index& vertex) { vertex = ids[vertex]; });
 }
@@ -396,7 +397,7 @@ bool OpenLongTriangles(
   const Mesh& mesh, double longest, Holes& holes, Mesh& rest, const Progress& progress)
 {
   RegionFinder finder(mesh, longest, holes);
-  if (!finder.Run(Part(progress, 0.0, 0.9)))
+  if (!finder.Run(SubProgress(progress, 0.0, 0.9)))
   {
     return false;
   }

@@ -448,8 +448,8 @@ Index FirstCrossed(const Mesh& mesh, VertexStars& stars, Index from, Index to)
 Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
   std::vector<char>& constrained, const Progress& progress)
 {
-  VertexStars stars(mesh, Part(progress, 0.0, 0.5));
-  return RecoverSegments(mesh, stars, segments, constrained, Part(progress, 0.5, 1.0));
+  VertexStars stars(mesh, SubProgress(progress, 0.0, 0.5));
+  return RecoverSegments(mesh, stars, segments, constrained, SubProgress(progress, 0.5, 1.0));
 }
 
 Index RecoverSegments(Mesh& mesh, VertexStars& stars, const std::vector<Segment>& segments,

@@ -246,7 +246,7 @@ public:
         OpenEdges<Vertex>(this->Vertices, 1024 + static_cast<std::size_t>(this->List.Count) / 64),
         visitor, IdSet(number > 1 ? this->List.Points.Count : 0), {} });
     }
-    if (!this->Read(Part(progress, 0.0, 0.3)))
+    if (!this->Read(SubProgress(progress, 0.0, 0.3)))
     {
       return false;
     }
@@ -254,7 +254,7 @@ public:
     if (number > 1)
     {
       isRight = this->InRanges(
-        Part(progress, 0.3, 0.4), [this](Range& range) { return this->Mark(range); });
+        SubProgress(progress, 0.3, 0.4), [this](Range& range) { return this->Mark(range); });
       IdSet all(this->List.Points.Count);
       for (Range& range : this->Ranges)
       {
@@ -262,9 +262,10 @@ public:
         range.Corners = IdSet(0);
       }
     }
-    isRight = isRight &&
-      this->InRanges(Part(progress, 0.4, 0.95), [this](Range& range) { return this->Sweep(range); });
-    return isRight && this->SweepDeferred(Part(progress, 0.95, 1.0));
+    isRight = isRight && this->InRanges(SubProgress(progress, 0.4, 0.95), [this](Range& range) {
+      return this->Sweep(range);
+    });
+    return isRight && this->SweepDeferred(SubProgress(progress, 0.95, 1.0));
   }
 
   /** The visitors, by range; the first one may have visited triangles out of order. */

@@ -127,7 +127,7 @@ ELEVATION_SENTENCE(BoundaryLeavesOutAll,
   "that is no surface. A {property:GapTolerance} of {better} would keep {kept}. Or give the "
   "boundary.");
 ELEVATION_SENTENCE(RingsRepeated,
-  "Rings of the boundary that are there more than once ({count} more, the first of them the "
+  "Rings of the boundary that are there more than once ({count} more, the first of them "
   "{first}) count once.");
 ELEVATION_SENTENCE(
   BoundaryEnclosesNothing, "The boundary encloses no triangle of the mesh. {reason}");
@@ -202,7 +202,8 @@ ELEVATION_SENTENCE(ConstraintsNotInPieces,
 ELEVATION_SENTENCE(InwardNormalNotInPieces,
   "{property:OutwardTest} InwardNormal is for a surface in memory, not for pieces.");
 ELEVATION_SENTENCE(BoundaryNotInPieces,
-  "The boundary is too small or too large for pieces; trim the surface in memory.");
+  "The boundary cannot be followed in pieces, as with coordinates above 1e100; trim the surface in "
+  "memory.");
 ELEVATION_SENTENCE(OutlineNotInPieces,
   "What is near the borders of pieces does not tell the outline, as in surveys along lines: give a "
   "{property:GapTolerance} or the boundary, or trim the surface in memory.");

@@ -27,8 +27,8 @@ public:
     const CellGrid& grid, const Progress& progress)
   {
     const std::vector<PieceCut> cuts =
-      FindCuts(points, rings, edges, grid, Part(progress, 0.0, 0.9));
-    const Progress walking = Part(progress, 0.9, 1.0);
+      FindCuts(points, rings, edges, grid, SubProgress(progress, 0.0, 0.9));
+    const Progress walking = SubProgress(progress, 0.9, 1.0);
     auto cut = cuts.begin();
     for (Index ring = 0; ring < rings.Count(); ++ring)
     {
@@ -91,8 +91,8 @@ public:
       [&](Index p, Index q) {
         return this->At(p) != this->At(q) ? IsLower(this->At(p), this->At(q)) : p < q;
       },
-      Part(progress, 0.0, 0.5));
-    const Progress looking = Part(progress, 0.5, 1.0);
+      SubProgress(progress, 0.0, 0.5));
+    const Progress looking = SubProgress(progress, 0.5, 1.0);
     WorkReporter work(looking);
     for (std::size_t i = 0, end = 0; i < order.size(); i = end)
     {
@@ -118,7 +118,7 @@ private:
     // In a crowded cell, a place that occurs many times is looked up only once.
     constexpr std::ptrdiff_t many = 64;
     std::unordered_set<Point2, HashOfPoint> known;
-    const Progress cutting = Part(progress, 0.0, 0.6);
+    const Progress cutting = SubProgress(progress, 0.0, 0.6);
     WorkReporter work(cutting);
     for (std::size_t i = 0; i < edges.size(); ++i)
     {
@@ -141,7 +141,7 @@ private:
     }
     SortAlong(
       cuts, [&](Index edge) { return edges[edge]; }, [&](Index point) { return points[point]; },
-      Part(progress, 0.6, 1.0));
+      SubProgress(progress, 0.6, 1.0));
     return cuts;
   }
 
@@ -359,14 +359,14 @@ void CheckCrossings(const NamedPoints& points, const Rings& rings, const Progres
 {
   const std::vector<Ends> edges = EdgesOf(points.Places, rings);
   const CellGrid grid = GridOf(edges);
-  VisitCrossings(edges, grid, Part(progress, 0.0, 0.5), [&](std::size_t i, std::size_t j) {
+  VisitCrossings(edges, grid, SubProgress(progress, 0.0, 0.5), [&](std::size_t i, std::size_t j) {
     throw Error("The boundary's edge " + NameOfEdge(points, rings, i) + " crosses its edge " +
       NameOfEdge(points, rings, j) + ". Rings may touch and nest, but not cross.");
   });
 
-  const RingWalks walks(points.Places, rings, edges, grid, Part(progress, 0.5, 0.75));
+  const RingWalks walks(points.Places, rings, edges, grid, SubProgress(progress, 0.5, 0.75));
   RingWalks::Meeting crossing;
-  if (!walks.FindCrossing(crossing, Part(progress, 0.75, 1.0)))
+  if (!walks.FindCrossing(crossing, SubProgress(progress, 0.75, 1.0)))
   {
     return;
   }

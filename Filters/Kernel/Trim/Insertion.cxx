@@ -49,17 +49,17 @@ public:
   {
     if (this->Follow != Following::Lines)
     {
-      CheckCrossings(this->Points, this->Given, Part(progress, 0.0, 0.1));
+      CheckCrossings(this->Points, this->Given, SubProgress(progress, 0.0, 0.1));
     }
-    this->MatchCorners(Part(progress, 0.1, 0.5));
-    this->LocateOthers(Part(progress, 0.5, 0.75));
-    this->InsertLocated(Part(progress, 0.75, 0.8));
+    this->MatchCorners(SubProgress(progress, 0.1, 0.5));
+    this->LocateOthers(SubProgress(progress, 0.5, 0.75));
+    this->InsertLocated(SubProgress(progress, 0.75, 0.8));
     this->StartRings();
     // An edge or a border that is cut at a rounded place moves slightly: all are tested again. As
     // the move rarely causes a crossing, one more round is usually enough.
     constexpr int mostRounds = 100;
     const double end = this->Follow != Following::None ? 0.9 : 1.0;
-    bool isCut = this->CutAtBorder(Part(progress, 0.8, end));
+    bool isCut = this->CutAtBorder(SubProgress(progress, 0.8, end));
     for (int round = 1; isCut; ++round)
     {
       if (round == mostRounds)
@@ -68,12 +68,12 @@ public:
           " runs so near the border of the mesh that rounding does not let it be cut there. Let it "
           "pass through points of the mesh.");
       }
-      const Progress again = Part(progress, end, end);
+      const Progress again = SubProgress(progress, end, end);
       isCut = this->CutAtEachOther(again) || this->CutAtBorder(again);
     }
     if (this->Follow != Following::None)
     {
-      this->FollowSurface(Part(progress, 0.9, 1.0));
+      this->FollowSurface(SubProgress(progress, 0.9, 1.0));
     }
     this->FinishRings();
   }
@@ -143,14 +143,15 @@ private:
       sieve.Add(bitOf(entry.first));
     }
     std::vector<char> isToMatch(mesh.Points.size());
-    ForEachStretch(mesh.NumberOfPoints(), Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
-      for (Index v = begin; v < end; ++v)
-      {
-        const Point2& p = mesh.PointOf(v);
-        isToMatch[v] = sieve.Has(bitOf(p)) && this->VertexAt.count(p) > 0;
-      }
-    });
-    const Progress matching = Part(progress, 0.3, 1.0);
+    ForEachStretch(
+      mesh.NumberOfPoints(), SubProgress(progress, 0.0, 0.3), [&](Index begin, Index end) {
+        for (Index v = begin; v < end; ++v)
+        {
+          const Point2& p = mesh.PointOf(v);
+          isToMatch[v] = sieve.Has(bitOf(p)) && this->VertexAt.count(p) > 0;
+        }
+      });
+    const Progress matching = SubProgress(progress, 0.3, 1.0);
     for (const Index h : Counted(mesh.NumberOfHalfEdges()))
     {
       ReportStep(matching, h, mesh.Triangles.size());
@@ -189,7 +190,7 @@ private:
     }
     if (!open.empty() && this->MayInsert)
     {
-      this->SnapBorderToPoints(open, Part(progress, 0.0, 0.2));
+      this->SnapBorderToPoints(open, SubProgress(progress, 0.0, 0.2));
     }
     if (open.empty())
     {
@@ -200,7 +201,7 @@ private:
     const CellGrid grid(open.size(),
       [&](std::size_t i) { return std::array<Point2, 1>{ { this->Points[open[i]] } }; });
     std::vector<Index> triangles(open.size(), None);
-    const Progress looking = Part(progress, 0.2, 1.0);
+    const Progress looking = SubProgress(progress, 0.2, 1.0);
     ForEachStretch(mesh.NumberOfTriangles(), looking, [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
@@ -503,9 +504,9 @@ private:
     this->Stops.clear();
     this->IsCut.clear();
     this->Cutter.ForgetMoves();
-    const BorderEdges border = this->FindBorder(Part(progress, 0.0, 0.3));
+    const BorderEdges border = this->FindBorder(SubProgress(progress, 0.0, 0.3));
     std::vector<BorderCrossing> crossings =
-      this->FindBorderCrossings(pieces, border, Part(progress, 0.3, 0.5));
+      this->FindBorderCrossings(pieces, border, SubProgress(progress, 0.3, 0.5));
     if (!crossings.empty() && !this->MayInsert)
     {
       throw Error("The boundary's edge " +
@@ -513,7 +514,7 @@ private:
         " leaves the mesh where it has no corner. Turn RecoverBoundary on.");
     }
     this->CutBorder(crossings, pieces, border);
-    this->FindStops(pieces, Part(progress, 0.5, 1.0));
+    this->FindStops(pieces, SubProgress(progress, 0.5, 1.0));
     this->CutPieces(pieces);
     return !this->IsCut.empty();
   }
@@ -700,38 +701,40 @@ private:
     const CellGrid grid = GridOf(segments);
     std::unordered_map<Index, std::vector<Index>> segmentsThrough;
     std::vector<char> isOn(mesh.Points.size(), 0);
-    ForEachStretch(mesh.NumberOfPoints(), Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
-      for (Index v = begin; v < end; ++v)
-      {
-        const Point2& p = mesh.PointOf(v);
-        grid.Visit(p, [&](Index i) {
-          if (IsInside(segments[i], p))
-          {
-            isOn[v] = 1;
-            segmentsThrough[v].push_back(i);
-          }
-        });
-      }
-    });
+    ForEachStretch(
+      mesh.NumberOfPoints(), SubProgress(progress, 0.0, 0.5), [&](Index begin, Index end) {
+        for (Index v = begin; v < end; ++v)
+        {
+          const Point2& p = mesh.PointOf(v);
+          grid.Visit(p, [&](Index i) {
+            if (IsInside(segments[i], p))
+            {
+              isOn[v] = 1;
+              segmentsThrough[v].push_back(i);
+            }
+          });
+        }
+      });
     if (segmentsThrough.empty())
     {
       return;
     }
     // Only vertices that a triangle uses become stops.
-    ForEachStretch(mesh.NumberOfHalfEdges(), Part(progress, 0.5, 1.0), [&](Index begin, Index end) {
-      for (Index h = begin; h < end; ++h)
-      {
-        const Index v = mesh.Origin(h);
-        if (isOn[v])
+    ForEachStretch(
+      mesh.NumberOfHalfEdges(), SubProgress(progress, 0.5, 1.0), [&](Index begin, Index end) {
+        for (Index h = begin; h < end; ++h)
         {
-          isOn[v] = 0;
-          for (const Index i : segmentsThrough.at(v))
+          const Index v = mesh.Origin(h);
+          if (isOn[v])
           {
-            this->AddStop(this->IsCut[i], segments[i], h, v);
+            isOn[v] = 0;
+            for (const Index i : segmentsThrough.at(v))
+            {
+              this->AddStop(this->IsCut[i], segments[i], h, v);
+            }
           }
         }
-      }
-    });
+      });
   }
 
   /** Cuts the pieces at their stops. */
@@ -817,13 +820,14 @@ private:
         segments.emplace_back(segment);
       }
     }
-    Sort(segments.begin(), segments.end(), isBefore, Part(progress, 0.0, 0.1));
+    Sort(segments.begin(), segments.end(), isBefore, SubProgress(progress, 0.0, 0.1));
     segments.erase(std::unique(segments.begin(), segments.end(),
                      [](const FollowedSegment& s, const FollowedSegment& t) {
                        return s.Ends.A == t.Ends.A && s.Ends.B == t.Ends.B;
                      }),
       segments.end());
-    elevation::FollowSurface(this->Surface, this->Cutter, segments, Part(progress, 0.1, 0.95));
+    elevation::FollowSurface(
+      this->Surface, this->Cutter, segments, SubProgress(progress, 0.1, 0.95));
     std::vector<Piece> followed;
     std::vector<Index> offsets{ 0 };
     for (Index i = 0; i < count; ++i)

@@ -41,11 +41,10 @@ public:
     // A few triangles per cell.
     const double cells = std::min(262144.0, std::max(64.0, numberOfTriangles / 8.0));
     const double columns = std::sqrt(cells * (width / height));
-    this->Side = width / std::min(512.0, std::max(1.0, columns));
-    // Cells must be so large that the rounding of coordinates does not matter. Rings without area,
-    // very large or very small ones are not handled.
-    this->Usable = size < 1e100 && this->Side > 1e-100 && this->Side > 1e-9 * size &&
-      height > 0.0 && height < 4096.0 * this->Side;
+    // Cells must be so large that the rounding of coordinates does not matter, and not too many.
+    this->Side = std::max(
+      { width / std::min(512.0, std::max(1.0, columns)), height / 4096.0, 1e-9 * size, 1e-100 });
+    this->Usable = size < 1e100;
     if (!this->Usable)
     {
       return;
@@ -272,12 +271,12 @@ std::optional<SweptAlongRings> SweepAlongRings(const TriangleList& list,
   TriangleSweep<Classifier> sweep(list, threads);
   const Classifier classifier{ raster, swept.IsOutward.data(), {}, raster.Reach(), 0.0,
     RingRaster::Near };
-  if (!sweep.Run(classifier, Part(progress, 0.0, 0.9)))
+  if (!sweep.Run(classifier, SubProgress(progress, 0.0, 0.9)))
   {
     return std::nullopt;
   }
   swept.Border = sweep.Border(
-    list.Points.Count, Part(progress, 0.9, 1.0), [](Index id) { return id; },
+    list.Points.Count, SubProgress(progress, 0.9, 1.0), [](Index id) { return id; },
     [](Index, const SweptVertex*) {});
   for (const Classifier* visitor : sweep.Visitors())
   {
@@ -291,8 +290,8 @@ std::optional<SweptAlongRings> FindNearTriangles(const TriangleList& list,
   const std::vector<Point2>& points, const Rings& rings, int threads, const Progress& progress)
 {
   std::optional<SweptAlongRings> swept =
-    SweepAlongRings(list, points, rings, list.Count, threads, Part(progress, 0.0, 0.9));
-  return swept && CoversOnce(swept->Border, list.Points, Part(progress, 0.9, 1.0))
+    SweepAlongRings(list, points, rings, list.Count, threads, SubProgress(progress, 0.0, 0.9));
+  return swept && CoversOnce(swept->Border, list.Points, SubProgress(progress, 0.9, 1.0))
     ? std::move(swept)
     : std::nullopt;
 }

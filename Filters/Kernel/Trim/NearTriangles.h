@@ -37,8 +37,7 @@ struct SweptAlongRings
  * together.
  * @param[in] points             of the rings; finite
  * @param[in] numberOfTriangles  of the whole mesh; the parts of one mesh get the same raster by it
- * @return nothing if the sweep fails, or if the extent of the rings is zero, too small or too large
- *         for a raster
+ * @return nothing if the sweep fails, or if the rings have coordinates above 1e100
  * @throws Aborted; std::bad_alloc
  */
 std::optional<SweptAlongRings> SweepAlongRings(const TriangleList& list,

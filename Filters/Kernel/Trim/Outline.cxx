@@ -99,22 +99,24 @@ void CloseSmallLakes(
   const Mesh& mesh, ShareOf&& shareOf, std::vector<char>& keep, const Progress& progress)
 {
   const Components parts = PartsOfFlags(
-    mesh, [&](Index t) { return keep[t] == Surface; }, Part(progress, 0.0, 0.6));
+    mesh, [&](Index t) { return keep[t] == Surface; }, SubProgress(progress, 0.0, 0.6));
   std::vector<Opening> openings(parts.Count());
   const auto isOpen = [&](Index t) { return keep[t] != Surface; };
-  VisitOpenings(parts, openings, isOpen, Part(progress, 0.6, 0.8), [&](Index t, Opening& opening) {
-    opening.Share += ToWhole(shareOf(t));
-    for (Index h = 3 * t; h < 3 * t + 3; ++h)
-    {
-      opening.ReachesBorder |= mesh.IsBorder(h);
-    }
-  });
-  VisitOpenings(parts, openings, isOpen, Part(progress, 0.8, 1.0), [&](Index t, Opening& opening) {
-    if (!opening.ReachesBorder && opening.Share < LakeWithBays * Whole)
-    {
-      keep[t] = opening.Share < Whole ? Surface : Outside;
-    }
-  });
+  VisitOpenings(
+    parts, openings, isOpen, SubProgress(progress, 0.6, 0.8), [&](Index t, Opening& opening) {
+      opening.Share += ToWhole(shareOf(t));
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        opening.ReachesBorder |= mesh.IsBorder(h);
+      }
+    });
+  VisitOpenings(
+    parts, openings, isOpen, SubProgress(progress, 0.8, 1.0), [&](Index t, Opening& opening) {
+      if (!opening.ReachesBorder && opening.Share < LakeWithBays * Whole)
+      {
+        keep[t] = opening.Share < Whole ? Surface : Outside;
+      }
+    });
 }
 
 /** Closes bays smaller than the least lake, with surface along at least half of their border. */
@@ -123,29 +125,32 @@ void CloseSmallBays(
   const Mesh& mesh, ShareOf&& shareOf, std::vector<char>& keep, const Progress& progress)
 {
   const Components parts = PartsOfFlags(
-    mesh, [&](Index t) { return keep[t]; }, Part(progress, 0.0, 0.5));
+    mesh, [&](Index t) { return keep[t]; }, SubProgress(progress, 0.0, 0.5));
   std::vector<Opening> openings(parts.Count());
   const auto isOpen = [&](Index t) { return keep[t] == Bay; };
-  VisitOpenings(parts, openings, isOpen, Part(progress, 0.5, 0.7), [&](Index t, Opening& opening) {
-    opening.Share += ToWhole(shareOf(t));
-    for (Index h = 3 * t; h < 3 * t + 3; ++h)
-    {
-      opening.Longest = std::max(opening.Longest, mesh.SquaredLengthOf(h));
-    }
-  });
-  VisitOpenings(parts, openings, isOpen, Part(progress, 0.7, 0.9), [&](Index t, Opening& opening) {
-    for (Index h = 3 * t; h < 3 * t + 3; ++h)
-    {
-      const char beside =
-        mesh.IsBorder(h) ? static_cast<char>(Outside) : keep[Mesh::Triangle(mesh.Twin(h))];
-      const std::int64_t length =
-        beside == Bay ? 0 : ToWhole(std::sqrt(mesh.SquaredLengthOf(h) / opening.Longest)) >> 8;
-      opening.Open += beside == Surface ? -length : length;
-    }
-  });
-  VisitOpenings(parts, openings, isOpen, Part(progress, 0.9, 1.0), [&](Index t, Opening& opening) {
-    keep[t] = opening.Share < Whole && opening.Open <= 0 ? Surface : Outside;
-  });
+  VisitOpenings(
+    parts, openings, isOpen, SubProgress(progress, 0.5, 0.7), [&](Index t, Opening& opening) {
+      opening.Share += ToWhole(shareOf(t));
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        opening.Longest = std::max(opening.Longest, mesh.SquaredLengthOf(h));
+      }
+    });
+  VisitOpenings(
+    parts, openings, isOpen, SubProgress(progress, 0.7, 0.9), [&](Index t, Opening& opening) {
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        const char beside =
+          mesh.IsBorder(h) ? static_cast<char>(Outside) : keep[Mesh::Triangle(mesh.Twin(h))];
+        const std::int64_t length =
+          beside == Bay ? 0 : ToWhole(std::sqrt(mesh.SquaredLengthOf(h) / opening.Longest)) >> 8;
+        opening.Open += beside == Surface ? -length : length;
+      }
+    });
+  VisitOpenings(
+    parts, openings, isOpen, SubProgress(progress, 0.9, 1.0), [&](Index t, Opening& opening) {
+      keep[t] = opening.Share < Whole && opening.Open <= 0 ? Surface : Outside;
+    });
 }
 
 /** The longest edge of a triangle; of equal ones the first. */
@@ -206,23 +211,24 @@ void DropSlivers(
       }
     }
   };
-  ForEachStretch(mesh.NumberOfTriangles(), Part(progress, 0.0, 0.8), [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      look(t);
-      for (; next < dropped.size(); ++next)
+  ForEachStretch(
+    mesh.NumberOfTriangles(), SubProgress(progress, 0.0, 0.8), [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
       {
-        for (Index h = 3 * dropped[next]; h < 3 * dropped[next] + 3; ++h)
+        look(t);
+        for (; next < dropped.size(); ++next)
         {
-          if (!mesh.IsBorder(h))
+          for (Index h = 3 * dropped[next]; h < 3 * dropped[next] + 3; ++h)
           {
-            look(Mesh::Triangle(mesh.Twin(h)));
+            if (!mesh.IsBorder(h))
+            {
+              look(Mesh::Triangle(mesh.Twin(h)));
+            }
           }
         }
       }
-    }
-  });
-  RestoreSlivers(mesh, dropped, keep, Part(progress, 0.8, 1.0));
+    });
+  RestoreSlivers(mesh, dropped, keep, SubProgress(progress, 0.8, 1.0));
   for (const Index t : dropped)
   {
     keep[t] = keep[t] == Sliver ? static_cast<char>(Bay) : keep[t];
@@ -237,13 +243,13 @@ std::vector<Index> DropSmallPieces(
   const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
 {
   const Components parts = PartsOfFlags(
-    mesh, [&](Index t) { return keep[t]; }, Part(progress, 0.0, 0.5));
+    mesh, [&](Index t) { return keep[t]; }, SubProgress(progress, 0.0, 0.5));
   // More triangles than so few vertices can form.
   constexpr Index many = 3 * NeighborOfSpacing + 1;
   std::vector<Index> sizes(parts.Count(), 0);
   std::vector<char> goesOn(parts.Count(), 0);
   const Index count = mesh.NumberOfTriangles();
-  ForEachStretch(count, Part(progress, 0.5, 0.7), [&](Index begin, Index end) {
+  ForEachStretch(count, SubProgress(progress, 0.5, 0.7), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       sizes[parts.ComponentOf(t)] += keep[t];
@@ -255,7 +261,7 @@ std::vector<Index> DropSmallPieces(
   });
   std::vector<std::pair<Index, Index>> corners; // (part, vertex)
   bool anyLarge = std::any_of(sizes.begin(), sizes.end(), [](Index size) { return size >= many; });
-  ForEachStretch(count, Part(progress, 0.7, 0.9), [&](Index begin, Index end) {
+  ForEachStretch(count, SubProgress(progress, 0.7, 0.9), [&](Index begin, Index end) {
     for (Index h = 3 * begin; h < 3 * end; ++h)
     {
       if (keep[Mesh::Triangle(h)] && sizes[parts.ComponentOf(Mesh::Triangle(h))] < many)
@@ -264,8 +270,8 @@ std::vector<Index> DropSmallPieces(
       }
     }
   });
-  Sort(
-    corners.begin(), corners.end(), std::less<std::pair<Index, Index>>(), Part(progress, 0.9, 1.0));
+  Sort(corners.begin(), corners.end(), std::less<std::pair<Index, Index>>(),
+    SubProgress(progress, 0.9, 1.0));
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   std::vector<char> isSmall(parts.Count(), 0);
   std::vector<Index> unknown;
@@ -294,10 +300,10 @@ std::vector<Index> DropSmallPieces(
  */
 Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& progress)
 {
-  const Progress cutting = Part(progress, 0.6, 0.8);
+  const Progress cutting = SubProgress(progress, 0.6, 0.8);
 
   // A walk that returns to a vertex on its path closes a ring.
-  const Rings walks = TraceBorder(mesh, Part(progress, 0.0, 0.6), keep);
+  const Rings walks = TraceBorder(mesh, SubProgress(progress, 0.0, 0.6), keep);
   Rings rings;
   rings.Vertices.reserve(walks.Vertices.size());
   std::vector<Index> path;
@@ -365,7 +371,7 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
   };
   std::vector<Index> order(rings.Count());
   std::iota(order.begin(), order.end(), 0);
-  Sort(order.begin(), order.end(), isBefore, Part(progress, 0.8, 0.95));
+  Sort(order.begin(), order.end(), isBefore, SubProgress(progress, 0.8, 0.95));
   Rings result;
   result.Vertices.reserve(rings.Vertices.size());
   for (const Index ring : Counted(order))
@@ -446,7 +452,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
   sums.Resize(list.Points.Count);
   std::fill(sums.begin(), sums.end(), 0);
   const Index count = static_cast<Index>(triangles.size());
-  ForEachStretch(count, Part(progress, 0.0, 0.7), [&](Index begin, Index end) {
+  ForEachStretch(count, SubProgress(progress, 0.0, 0.7), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
     {
       const Index* ahead = list.CornersOf(triangles[std::min(i + 16, count - 1)]);
@@ -471,7 +477,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
     }
   });
   std::vector<Index> others;
-  ForEachStretch(count, Part(progress, 0.7, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, SubProgress(progress, 0.7, 1.0), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
     {
       const Index t = triangles[i];
@@ -516,7 +522,7 @@ bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
   // Slivers have two corners at the border, or at flat triangles with a corner there. Then the mesh
   // includes all their neighbours.
   IdSet atEdge = near;
-  for (const Index t : TrianglesAt(list, near, Part(progress, 0.0, 0.1)))
+  for (const Index t : TrianglesAt(list, near, SubProgress(progress, 0.0, 0.1)))
   {
     if (isSliverOver(t, std::sqrt(measured.Longest[t])))
     {
@@ -529,16 +535,16 @@ bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
   {
     // A second round is rare, a third even rarer.
     const double end = 0.5 * (1.0 + begin);
-    const Progress round = Part(progress, begin, end);
+    const Progress round = SubProgress(progress, begin, end);
     begin = end;
-    std::vector<Index> triangles = TrianglesAt(list, near, Part(round, 0.0, 0.1));
+    std::vector<Index> triangles = TrianglesAt(list, near, SubProgress(round, 0.0, 0.1));
     if (border.IsPart || static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
     {
       // Take all of them; this is then the last round.
       triangles = AllTriangles(list);
     }
     const PartialMesh mesh(list, border.Edges, border.Vertices, std::move(triangles),
-      Part(round, 0.1, 0.3), border.IsPart);
+      SubProgress(round, 0.1, 0.3), border.IsPart);
     std::vector<char> keepHere = mesh.FlagsOf(keep);
     // As a fraction of the least lake. Slivers, which were surface before, have hardly any area,
     // and their spacings are not known.
@@ -552,22 +558,22 @@ bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
       return atEdge.Has(corners[0]) + atEdge.Has(corners[1]) + atEdge.Has(corners[2]) >= 2 &&
         isSliverOver(t, std::sqrt(mesh.Surface.SquaredLengthOf(h)));
     };
-    DropSlivers(mesh.Surface, isSliver, keepHere, Part(round, 0.3, 0.4));
+    DropSlivers(mesh.Surface, isSliver, keepHere, SubProgress(round, 0.3, 0.4));
     if (std::find(keepHere.begin(), keepHere.end(), char(Surface)) == keepHere.end() &&
       !border.IsPart && static_cast<Index>(mesh.Triangles.size()) == list.Count)
     {
       keepHere = mesh.FlagsOf(keep); // the surface is nothing but slivers
     }
-    CloseSmallLakes(mesh.Surface, shareOf, keepHere, Part(round, 0.4, 0.48));
-    CloseSmallBays(mesh.Surface, shareOf, keepHere, Part(round, 0.48, 0.55));
+    CloseSmallLakes(mesh.Surface, shareOf, keepHere, SubProgress(round, 0.4, 0.48));
+    CloseSmallBays(mesh.Surface, shareOf, keepHere, SubProgress(round, 0.48, 0.55));
     const std::vector<Index> unknown = dropSmall
-      ? DropSmallPieces(mesh.Surface, keepHere, Part(round, 0.55, 0.8))
+      ? DropSmallPieces(mesh.Surface, keepHere, SubProgress(round, 0.55, 0.8))
       : std::vector<Index>();
     if (unknown.empty())
     {
       mesh.PutFlags(keepHere, keep);
-      result.Vertices = BorderOf(mesh.Surface, keepHere, Part(round, 0.8, 1.0));
-      ToIds(result.Vertices.Vertices, mesh.Surface.Ids.data(), Part(round, 1.0, 1.0));
+      result.Vertices = BorderOf(mesh.Surface, keepHere, SubProgress(round, 0.8, 1.0));
+      ToIds(result.Vertices.Vertices, mesh.Surface.Ids.data(), SubProgress(round, 1.0, 1.0));
       return true;
     }
     if (border.IsPart)
@@ -623,14 +629,14 @@ public:
   std::optional<ExtractedBoundary> Run(const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
-    this->SortBorder(Part(progress, 0.0, 0.02));
-    const Neighbors neighbors(this->Measured, Part(progress, 0.02, 0.15));
+    this->SortBorder(SubProgress(progress, 0.0, 0.02));
+    const Neighbors neighbors(this->Measured, SubProgress(progress, 0.02, 0.15));
     if (!this->Border.IsPart)
     {
       this->Spacings.Resize(list.Points.Count);
     }
-    this->KeepCertainTriangles(Part(progress, 0.15, 0.2));
-    std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.2, 0.32));
+    this->KeepCertainTriangles(SubProgress(progress, 0.15, 0.2));
+    std::vector<Index> doubtful = this->FindDoubtful(SubProgress(progress, 0.2, 0.32));
     Report(progress, 0.32);
     // How long the next steps take depends on how many are doubtful. Where these are few, no step has
     // so large a share that progress jumps.
@@ -650,36 +656,38 @@ public:
     {
       this->Scales =
         FindScales(this->Measured, neighbors, this->Border.Vertices, this->CornersNear(doubtful),
-          this->Threads, Part(progress, 0.32, scaled), this->Spacings.data());
+          this->Threads, SubProgress(progress, 0.32, scaled), this->Spacings.data());
       this->Result.GapTolerance *= this->TypicalScale();
     }
-    const std::vector<Index> outside = this->FindOutsideOfGrid(Part(progress, scaled, scaled));
+    const std::vector<Index> outside =
+      this->FindOutsideOfGrid(SubProgress(progress, scaled, scaled));
     const auto middle = doubtful.insert(doubtful.end(), outside.begin(), outside.end());
     std::inplace_merge(doubtful.begin(), middle, doubtful.end());
     doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
-    if (!this->FindSpacingsOf(doubtful, neighbors, Part(progress, scaled, decided - 0.03)))
+    if (!this->FindSpacingsOf(doubtful, neighbors, SubProgress(progress, scaled, decided - 0.03)))
     {
       return std::nullopt;
     }
-    this->Decide(doubtful, Part(progress, decided - 0.03, decided));
+    this->Decide(doubtful, SubProgress(progress, decided - 0.03, decided));
     for (const Index t : outside)
     {
       this->Result.IsSurface[t] = Outside;
     }
     if (!TraceSurface(
           this->Measured, this->Border, [&](Index t) { return this->ToleranceOf(t); },
-          this->CornersNear(doubtful), !this->Grid.IsSet(), Part(progress, decided, 0.97),
+          this->CornersNear(doubtful), !this->Grid.IsSet(), SubProgress(progress, decided, 0.97),
           this->Result))
     {
       return std::nullopt;
     }
-    if (!this->MeasureLoss(neighbors, Part(progress, 0.97, 1.0)))
+    if (!this->MeasureLoss(neighbors, SubProgress(progress, 0.97, 1.0)))
     {
       return std::nullopt;
     }
     if (this->Measured.Ids.size() > 0)
     {
-      ToIds(this->Result.Vertices.Vertices, this->Measured.Ids.data(), Part(progress, 1.0, 1.0));
+      ToIds(
+        this->Result.Vertices.Vertices, this->Measured.Ids.data(), SubProgress(progress, 1.0, 1.0));
     }
     Report(progress, 1.0);
     return std::move(this->Result);
@@ -690,15 +698,15 @@ public:
   {
     const TriangleList& list = this->Measured.List;
     const IdSet& border = this->Border.Vertices;
-    this->SortBorder(Part(progress, 0.0, 0.02));
-    const Neighbors neighbors(this->Measured, Part(progress, 0.02, 0.15));
+    this->SortBorder(SubProgress(progress, 0.0, 0.02));
+    const Neighbors neighbors(this->Measured, SubProgress(progress, 0.02, 0.15));
     this->Spacings.Resize(list.Points.Count);
-    this->KeepCertainTriangles(Part(progress, 0.15, 0.2));
-    for (const Index t : TrianglesAt(list, border, Part(progress, 0.2, 0.25)))
+    this->KeepCertainTriangles(SubProgress(progress, 0.15, 0.2));
+    for (const Index t : TrianglesAt(list, border, SubProgress(progress, 0.2, 0.25)))
     {
       this->Result.IsSurface[t] = Outside; // not all edges are known there
     }
-    const std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.25, 0.4));
+    const std::vector<Index> doubtful = this->FindDoubtful(SubProgress(progress, 0.25, 0.4));
     const IdSet lonely = this->IsAutomatic
       ? LonelyVertices(neighbors, this->CornersNear(doubtful), list.Points.Count)
       : IdSet(0);
@@ -709,12 +717,12 @@ public:
     }
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     std::fill(this->Spacings.begin(), this->Spacings.end(), unknown);
-    FindSpacings(list, neighbors, CornersOf(list, doubtful, Part(progress, 0.4, 0.45)),
-      this->Threads, Part(progress, 0.45, 0.6), this->Spacings.data(), &border);
+    FindSpacings(list, neighbors, CornersOf(list, doubtful, SubProgress(progress, 0.4, 0.45)),
+      this->Threads, SubProgress(progress, 0.45, 0.6), this->Spacings.data(), &border);
     // Of groups that reach the border, other parts may have more.
     std::vector<char> isInside(list.Count, 0);
     const auto nothing = [](Index) { return 0.0; };
-    DropSmallGroups(list, border, doubtful, nothing, isInside, Part(progress, 0.6, 0.65));
+    DropSmallGroups(list, border, doubtful, nothing, isInside, SubProgress(progress, 0.6, 0.65));
     std::vector<Known> states(list.Count, Known::Surface);
     for (const Index t : doubtful)
     {
@@ -727,11 +735,11 @@ public:
         near.AddAll(list.CornersOf(t));
       }
     }
-    for (const Index t : this->FindBridges(Part(progress, 0.65, 0.65)))
+    for (const Index t : this->FindBridges(SubProgress(progress, 0.65, 0.65)))
     {
       near.AddAll(list.CornersOf(t)); // the border of the mesh may be in another part
     }
-    return this->PartNear(near, margin, states, Part(progress, 0.65, 1.0));
+    return this->PartNear(near, margin, states, SubProgress(progress, 0.65, 1.0));
   }
 
 private:
@@ -794,7 +802,7 @@ private:
     near.Add(vertices, both);
     this->Widen(around, Progress(), near);
     PartOfOutline part;
-    part.Triangles = TrianglesAt(list, near, Part(progress, 0.7, 0.9));
+    part.Triangles = TrianglesAt(list, near, SubProgress(progress, 0.7, 0.9));
     for (const Index t : part.Triangles)
     {
       part.States.push_back(states[t]);
@@ -848,13 +856,13 @@ private:
   {
     Report(progress, 0.0);
     const TriangleList& list = this->Measured.List;
-    std::vector<Index> corners = CornersOf(list, triangles, Part(progress, 0.0, 0.1));
+    std::vector<Index> corners = CornersOf(list, triangles, SubProgress(progress, 0.0, 0.1));
     const auto isKnown = [this](Index v) { return !std::isnan(this->Spacings[v]); };
     if (this->Border.IsPart)
     {
       corners.erase(std::remove_if(corners.begin(), corners.end(), isKnown), corners.end());
     }
-    FindSpacings(list, neighbors, corners, this->Threads, Part(progress, 0.1, 1.0),
+    FindSpacings(list, neighbors, corners, this->Threads, SubProgress(progress, 0.1, 1.0),
       this->Spacings.data(), this->Border.IsPart ? &this->Ends : nullptr);
     Report(progress, 1.0);
     return !this->Border.IsPart || std::all_of(corners.begin(), corners.end(), isKnown);
@@ -926,7 +934,7 @@ private:
     const TriangleList& list = this->Measured.List;
     std::vector<char>& keep = this->Result.IsSurface;
     std::vector<Index> doubtful, inGroups; // the groups of the others are known
-    ForEachStretch(list.Count, Part(progress, 0.0, 0.2), [&](Index begin, Index end) {
+    ForEachStretch(list.Count, SubProgress(progress, 0.0, 0.2), [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
         if (!keep[t])
@@ -941,7 +949,7 @@ private:
       return list.ShareOfSquare(t, SmallGroup * this->Tolerance * spacing);
     };
     const std::vector<Index> others = DropSmallGroups(
-      list, this->Border.Vertices, inGroups, shareOf, keep, Part(progress, 0.2, 1.0));
+      list, this->Border.Vertices, inGroups, shareOf, keep, SubProgress(progress, 0.2, 1.0));
     const auto middle = doubtful.insert(doubtful.end(), others.begin(), others.end());
     std::inplace_merge(doubtful.begin(), middle, doubtful.end());
     return doubtful;
@@ -1076,7 +1084,7 @@ private:
       outward.push_back(static_cast<Index>(t - keep.begin()));
       area += list.ShareOfSquare(outward.back(), 1.0);
     }
-    const IdSet leftOut = CornersLeftOut(list, outward, keep, Part(progress, 0.0, 0.6));
+    const IdSet leftOut = CornersLeftOut(list, outward, keep, SubProgress(progress, 0.0, 0.6));
     this->Result.NumberOfPointsLeftOut = leftOut.Count();
     const double all = AreaOf(list, this->Border.Edges);
     this->Result.AreaLeftOut = all > 0.0 ? std::min(1.0, area / all) : 0.0;
@@ -1087,7 +1095,7 @@ private:
     {
       return true;
     }
-    if (!this->FindSpacingsOf(outward, neighbors, Part(progress, 0.6, 1.0)))
+    if (!this->FindSpacingsOf(outward, neighbors, SubProgress(progress, 0.6, 1.0)))
     {
       return false;
     }
@@ -1153,12 +1161,13 @@ bool FindPartOfOutline(
   {
     return true;
   }
-  if (!MeasureBySweep(list, options.NumberOfThreads, Part(options.Monitor, 0.0, 0.5), measured))
+  if (!MeasureBySweep(
+        list, options.NumberOfThreads, SubProgress(options.Monitor, 0.0, 0.5), measured))
   {
     return false;
   }
-  part =
-    OutlineSearch(std::move(measured), options).FindPart(margin, Part(options.Monitor, 0.5, 1.0));
+  part = OutlineSearch(std::move(measured), options)
+           .FindPart(margin, SubProgress(options.Monitor, 0.5, 1.0));
   part.Spacings.resize(list.Points.Count); // there are more of the measured ids than of points
   return true;
 }
@@ -1168,11 +1177,12 @@ std::optional<ExtractedBoundary> FindOutlineOfParts(
 {
   MeasuredTriangles measured;
   if (list.Count == 0 ||
-    !MeasureBySweep(list, options.NumberOfThreads, Part(options.Monitor, 0.0, 0.3), measured))
+    !MeasureBySweep(
+      list, options.NumberOfThreads, SubProgress(options.Monitor, 0.0, 0.3), measured))
   {
     return std::nullopt;
   }
-  const Progress finding = Part(options.Monitor, 0.3, 1.0);
+  const Progress finding = SubProgress(options.Monitor, 0.3, 1.0);
   if (list.Count == mesh.NumberOfTriangles)
   {
     return OutlineSearch(std::move(measured), options).Run(finding);
@@ -1196,9 +1206,9 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
     nothing.GapTolerance = options.GapTolerance;
     return nothing;
   }
-  MeasuredTriangles measured = Measure(mesh, Part(options.Monitor, 0.0, 0.4));
+  MeasuredTriangles measured = Measure(mesh, SubProgress(options.Monitor, 0.0, 0.4));
   ExtractOptions rest = options;
-  const Progress finding = Part(options.Monitor, 0.4, 1.0);
+  const Progress finding = SubProgress(options.Monitor, 0.4, 1.0);
   rest.Monitor = finding;
   return FindOutline(std::move(measured), rest);
 }

@@ -157,8 +157,9 @@ Message DropRepeated(const BoundaryLines& lines, std::vector<Piece>& pieces)
   }
   const std::size_t count = pieces.size() - kept.size();
   pieces = std::move(kept);
-  return count == 0 ? Message()
-                    : MakeMessage<sentences::RingsRepeated>(count, NameOfLine(lines, firstLine));
+  return count == 0
+    ? Message()
+    : MakeMessage<sentences::RingsRepeated>(count, "the " + NameOfLine(lines, firstLine));
 }
 
 /** Chains open pieces at their ends: the front of piece i is end 2 i, its back is end 2 i + 1. */

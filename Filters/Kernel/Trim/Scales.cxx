@@ -76,7 +76,7 @@ IdSet OutsideCores(
 {
   std::vector<Index> parents(count);
   std::iota(parents.begin(), parents.end(), 0);
-  ForEachStretch(count, Part(progress, 0.0, 0.6), [&](Index begin, Index end) {
+  ForEachStretch(count, SubProgress(progress, 0.0, 0.6), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       for (std::uint32_t k = neighbors.Offsets[v]; !near.Has(v) && k < neighbors.Offsets[v + 1];
@@ -89,14 +89,14 @@ IdSet OutsideCores(
     }
   });
   std::vector<Index> inner(count, 0), others(count, 0);
-  ForEachStretch(count, Part(progress, 0.6, 0.8), [&](Index begin, Index end) {
+  ForEachStretch(count, SubProgress(progress, 0.6, 0.8), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       ++(near.Has(v) ? others : inner)[RootOf(parents, v)];
     }
   });
   IdSet outside(count);
-  ForEachStretch(count, Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, SubProgress(progress, 0.8, 1.0), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       const Index root = RootOf(parents, v);
@@ -256,10 +256,10 @@ public:
   /** @return one per vertex of the list */
   std::vector<float> FindScales(bool hasCore, const Progress& progress)
   {
-    this->MeasureTriangles(Part(progress, 0.0, 0.1));
-    this->FindGroups(Part(progress, 0.1, 0.2));
-    this->FindEvents(Part(progress, 0.2, 0.6));
-    this->FollowEvents(Part(progress, 0.6, 1.0));
+    this->MeasureTriangles(SubProgress(progress, 0.0, 0.1));
+    this->FindGroups(SubProgress(progress, 0.1, 0.2));
+    this->FindEvents(SubProgress(progress, 0.2, 0.6));
+    this->FollowEvents(SubProgress(progress, 0.6, 1.0));
     const std::vector<float> ofParts = this->Parts.Scales(hasCore);
     std::vector<float> scales(this->List.Points.Count, 1.0f);
     for (Index v = 0; v < this->Surface.NumberOfPoints(); ++v)
@@ -387,8 +387,8 @@ private:
 
   void FindEvents(const Progress& progress)
   {
-    ForEachStretch(
-      this->Surface.NumberOfTriangles(), Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
+    ForEachStretch(this->Surface.NumberOfTriangles(), SubProgress(progress, 0.0, 0.3),
+      [&](Index begin, Index end) {
         for (Index t = begin; t < end; ++t)
         {
           int thinCorners = 0;
@@ -434,7 +434,7 @@ private:
       const std::array<Point2, 3> q = cornersOf(b.Triangle);
       return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end(), IsLower);
     };
-    Sort(this->Events.begin(), this->Events.end(), isBefore, Part(progress, 0.3, 1.0));
+    Sort(this->Events.begin(), this->Events.end(), isBefore, SubProgress(progress, 0.3, 1.0));
   }
 
   void FollowEvents(const Progress& progress)
@@ -552,18 +552,18 @@ std::vector<float> FindScales(const MeasuredTriangles& measured, const Neighbors
   {
     return {};
   }
-  const IdSet thin = OutsideCores(neighbors, near, count, Part(progress, 0.0, 0.1));
-  std::vector<Index> triangles = TrianglesAt(list, thin, Part(progress, 0.1, 0.15));
+  const IdSet thin = OutsideCores(neighbors, near, count, SubProgress(progress, 0.0, 0.1));
+  std::vector<Index> triangles = TrianglesAt(list, thin, SubProgress(progress, 0.1, 0.15));
   if (triangles.empty())
   {
     return {};
   }
-  FindSpacings(list, neighbors, CornersOf(list, triangles, Part(progress, 0.15, 0.2)), threads,
-    Part(progress, 0.2, 0.4), spacings);
+  FindSpacings(list, neighbors, CornersOf(list, triangles, SubProgress(progress, 0.15, 0.2)),
+    threads, SubProgress(progress, 0.2, 0.4), spacings);
   const PartialMesh partial(
-    list, measured.Border, atBorder, std::move(triangles), Part(progress, 0.4, 0.6));
+    list, measured.Border, atBorder, std::move(triangles), SubProgress(progress, 0.4, 0.6));
   return ThinTriangles(list, partial, atBorder, thin, spacings)
-    .FindScales(thin.Count() < count, Part(progress, 0.6, 1.0));
+    .FindScales(thin.Count() < count, SubProgress(progress, 0.6, 1.0));
 }
 
 } // namespace elevation

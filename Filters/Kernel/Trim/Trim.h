@@ -62,6 +62,8 @@ struct TrimOptions
   Lattice Grid; ///< the same
   /** Whether to return the parents of triangles. */
   bool ReturnParents = true;
+  /** How messages number points of the mesh, if not by their ids. */
+  std::function<std::int64_t(Index id)> NumberOf;
   /** Threads to use; 0: one per core. The result is the same. */
   int NumberOfThreads = 1;
   Progress Monitor;

@@ -84,7 +84,7 @@ TEST(Progress, OfPartsDoesNotFallWhereTheyMeet)
         EXPECT_LE(fraction, end);
         return true;
       };
-      Part(progress, begin, end)(1.0);
+      SubProgress(progress, begin, end)(1.0);
     }
   }
 }

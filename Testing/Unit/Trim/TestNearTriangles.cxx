@@ -139,6 +139,41 @@ TEST(NearTriangles, OfPartsAreThoseOfTheWhole)
   }
 }
 
+TEST(NearTriangles, AreThoseAroundThinAndTinyRings)
+{
+  Random random(34);
+  const Surface whole = RandomSurface(random, 3000);
+  const TriangleList list = whole.List();
+  const double thin = 1e-9, tiny = 1e-13;
+  for (const Point2 size : { Point2{ thin, 0.5 }, Point2{ 0.5, thin }, Point2{ tiny, tiny },
+         Point2{ 0.0, 0.5 }, Point2{ 0.5, 0.0 } })
+  {
+    std::vector<Point2> points;
+    Rings rings;
+    for (const Point2 corner :
+      { Point2{ 0, 0 }, Point2{ 1, 0 }, Point2{ 1, 1 }, Point2{ 0, 1 }, Point2{ 0, 0.5 } })
+    {
+      rings.Vertices.push_back(static_cast<Index>(points.size()));
+      points.push_back({ 0.25 + size.X * corner.X, 0.25 + size.Y * corner.Y });
+    }
+    rings.Offsets.push_back(static_cast<Index>(points.size()));
+    const auto swept = SweepAlongRings(list, points, rings, list.Count, 1, Progress());
+    ASSERT_TRUE(swept);
+    EXPECT_LT(swept->Near.size(), whole.Corners.size() / 3 / 4);
+    for (Index t = 0; t < list.Count; ++t)
+    {
+      const Index* const c = list.CornersOf(t);
+      const Point2 p = list.Points.At(c[0]), q = list.Points.At(c[1]), r = list.Points.At(c[2]);
+      const bool hasCorner = std::any_of(points.begin(), points.end(), [&](const Point2& corner) {
+        return Orientation(p, q, corner) >= 0 && Orientation(q, r, corner) >= 0 &&
+          Orientation(r, p, corner) >= 0;
+      });
+      const bool isNear = std::binary_search(swept->Near.begin(), swept->Near.end(), t);
+      EXPECT_TRUE(isNear || (!hasCorner && swept->IsOutward[t]));
+    }
+  }
+}
+
 TEST(NearTriangles, AreTrimmedAloneAsInTheWholeMesh)
 {
   Random random(32);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "LatticeOfRanks.h"
+#include "SharedLatticeSearch.h"
 
 #include <algorithm>
 #include <array>
@@ -78,7 +78,7 @@ void ForEachSlice(const PointSlices& points, const Progress& progress, const Vis
   points.ForEach([&](const PointView& slice) {
     const double begin = done / points.Count;
     done += slice.Count;
-    visit(slice, Part(progress, begin, done / points.Count));
+    visit(slice, SubProgress(progress, begin, done / points.Count));
   });
 }
 
@@ -129,7 +129,7 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
   std::vector<double> reals;
   ranks.Agree([&]() {
     LatticeSample own;
-    const Progress sampling = ranks.Watched(Part(progress, 0.0, 0.4));
+    const Progress sampling = ranks.Watched(SubProgress(progress, 0.0, 0.4));
     ForEachSlice(points, sampling, [&](const PointView& slice, const Progress& ofSlice) {
       notFinite.emplace_back();
       own.Add(SampleForLattice(slice, all.CountOfAll, threads, ofSlice, notFinite.back()));
@@ -149,7 +149,7 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
   ranks.Agree([&]() {
     const Box place = FullestPlace(all);
     auto ofSlice = notFinite.begin();
-    const Progress looking = ranks.Watched(Part(progress, 0.4, 0.7));
+    const Progress looking = ranks.Watched(SubProgress(progress, 0.4, 0.7));
     ForEachSlice(points, looking, [&](const PointView& slice, const Progress& part) {
       const std::vector<Point2> some = DistinctPointsIn(place, slice, *ofSlice++, threads, part);
       there.insert(there.end(), some.begin(), some.end());
@@ -174,12 +174,12 @@ bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
   {
     return false;
   }
-  const NodeBox nodes = NodesOfAll(ranks, points, all, steps, Part(progress, 0.7, 1.0));
+  const NodeBox nodes = NodesOfAll(ranks, points, all, steps, SubProgress(progress, 0.7, 1.0));
   return lattice.Set(steps, all, nodes, tolerance) && nodes.IsFilledEnough(all.Count);
 }
 
 bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
-  const std::function<void(const std::function<void(const PointRows&)>&)>& forEachRows,
+  const std::function<void(const std::function<void(const PointTable&)>&)>& forEachRows,
   const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice)
 {
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
@@ -190,8 +190,8 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
   Point2 place;                  // of that of this one
   ranks.Agree([&]() {
     steps = StepsOfGiven(options.GivenLattice);
-    const Progress looking = ranks.Watched(Part(progress, 0.0, 0.0));
-    forEachRows([&](const PointRows& rows) {
+    const Progress looking = ranks.Watched(SubProgress(progress, 0.0, 0.0));
+    forEachRows([&](const PointTable& rows) {
       const PointView view = ViewOf(rows);
       const Extent extent = FindExtent(view, threads, looking, [](Index, const Point2&) {});
       own.Join(extent);
@@ -215,7 +215,7 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
   {
     return false;
   }
-  const NodeBox nodes = NodesOfAll(ranks, points, box, steps, Part(progress, 0.7, 1.0));
+  const NodeBox nodes = NodesOfAll(ranks, points, box, steps, SubProgress(progress, 0.7, 1.0));
   if (!lattice.Set(steps, box, nodes, tolerance))
   {
     throw GivenLatticeTooLarge();

@@ -5,8 +5,8 @@
  * Trims one part of a mesh along a boundary or its outline, whose near triangles are trimmed with
  * those of all parts: see TrimParts.h. Private to the module.
  */
-#ifndef TrimOfPart_h
-#define TrimOfPart_h
+#ifndef TrimmedPart_h
+#define TrimmedPart_h
 
 #include "Adapt/Adapt.h"
 #include "BoundaryZone.h"
@@ -18,16 +18,14 @@
 #include <utility>
 #include <vector>
 
-class vtkPolyData;
-
 namespace elevation
 {
 
 /** The functions are steps, in their order. */
-class TrimOfPart
+class TrimmedPart
 {
 public:
-  explicit TrimOfPart(vtkSmartPointer<vtkPolyData> part)
+  explicit TrimmedPart(vtkSmartPointer<vtkPolyData> part)
     : Input(std::move(part))
   {
   }
@@ -38,10 +36,12 @@ public:
 
   /**
    * Finds the near triangles, and the sides of the others.
+   * @param[in] points       of the rings
    * @param[in] numberOfAll  triangles of all parts
    * @return false if the sweep cannot
    */
-  bool Sweep(const BoundaryLines& lines, double numberOfAll, int threads, const Progress& progress);
+  bool Sweep(const std::vector<Point2>& points, const Rings& rings, double numberOfAll, int threads,
+    const Progress& progress);
   /** The same without a boundary: the near triangles tell the outline. See FindPartOfOutline() */
   bool SweepForOutline(int margin, const TrimOptions& options, const Progress& progress);
   std::int64_t CountOfInnerPoints() const { return this->Outline.NumberOfInnerPoints; }
@@ -53,7 +53,7 @@ public:
   vtkSmartPointer<vtkPolyData> NearPart();
 
   /** Takes what has become of the near triangles. */
-  void Take(TrimmedPart&& back, const Progress& progress);
+  void Take(TrimmedZone&& back, const Progress& progress);
 
   /**
    * Writes the sides to outputs 0 and 1; nullptr: not wanted.
@@ -75,7 +75,7 @@ private:
   SweptAlongRings Swept;
   PartOfOutline Outline;   // without a boundary; its triangles and border are those of Swept
   std::vector<Index> Sent; // points of the near part
-  TrimmedPart Back;
+  TrimmedZone Back;
   std::vector<Index> Places;        // of the new points, among those of the output
   std::vector<Index> FarOnBoundary; // own points
   TrimmedPoints Points;

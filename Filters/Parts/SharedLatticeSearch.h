@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The lattice of points that are spread over ranks. Private to the module.
+ * The search for the lattice of points that are spread over ranks. Private to the module.
  */
-#ifndef LatticeOfRanks_h
-#define LatticeOfRanks_h
+#ifndef SharedLatticeSearch_h
+#define SharedLatticeSearch_h
 
 #include "Kernel/Cells/Cells.h"
 #include "Kernel/Lattice/Lattice.h"
-#include "PointRows.h"
+#include "PointTable.h"
 #include "Ranks.h"
 
 #include <functional>
@@ -53,7 +53,7 @@ bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
  * @throws Error on all ranks, as on one; of several points that do not fit, that with the lowest id
  */
 bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
-  const std::function<void(const std::function<void(const PointRows&)>&)>& forEachRows,
+  const std::function<void(const std::function<void(const PointTable&)>&)>& forEachRows,
   const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice);
 
 /** The lattice with the lowest node that a point of any rank is on as its origin. */

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "PointRows.h"
+#include "PointTable.h"
 
 #include "Adapt/Adapt.h"
 
@@ -185,7 +185,7 @@ bool HaveSameArrays(const Ranks& ranks, vtkPointSet* own)
   });
 }
 
-PointRows::PointRows(const std::vector<ArrayKind>& kinds)
+PointTable::PointTable(const std::vector<ArrayKind>& kinds)
   : Kinds(kinds)
 {
   for (const ArrayKind& kind : kinds)
@@ -194,13 +194,13 @@ PointRows::PointRows(const std::vector<ArrayKind>& kinds)
   }
 }
 
-bool PointRows::IsFinite(std::size_t place) const
+bool PointTable::IsFinite(std::size_t place) const
 {
   const double* const p = this->At(place);
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
-void PointRows::Read(vtkPointSet* points, vtkIdType first, const Progress& progress)
+void PointTable::Read(vtkPointSet* points, vtkIdType first, const Progress& progress)
 {
   const PointView view = ViewPoints(points).View;
   const std::size_t count = static_cast<std::size_t>(view.Count);
@@ -220,7 +220,7 @@ void PointRows::Read(vtkPointSet* points, vtkIdType first, const Progress& progr
   this->View(points->GetPointData());
 }
 
-void PointRows::View(vtkPointData* data)
+void PointTable::View(vtkPointData* data)
 {
   const vtkIdType count = static_cast<vtkIdType>(this->Count());
   for (std::size_t i = 0; i < this->Kinds.size(); ++i)
@@ -308,7 +308,7 @@ void UnpackArray(const ArrayKind& kind, vtkIdType first, vtkIdType count, const 
 }
 } // namespace
 
-Bytes PointRows::Pack(const std::vector<vtkIdType>& places) const
+Bytes PointTable::Pack(const std::vector<vtkIdType>& places) const
 {
   Bytes bytes;
   std::size_t row = 32;
@@ -338,12 +338,12 @@ Bytes PointRows::Pack(const std::vector<vtkIdType>& places) const
   return bytes;
 }
 
-void PointRows::Unpack(const std::vector<Bytes>& packed)
+void PointTable::Unpack(const std::vector<Bytes>& packed)
 {
   this->Unpack(packed.data(), packed.size());
 }
 
-void PointRows::Unpack(const Bytes* packed, std::size_t count)
+void PointTable::Unpack(const Bytes* packed, std::size_t count)
 {
   vtkIdType first = static_cast<vtkIdType>(this->Count()), all = first;
   for (const Bytes* bytes = packed; bytes != packed + count; ++bytes)
@@ -383,9 +383,9 @@ void PointRows::Unpack(const Bytes* packed, std::size_t count)
   }
 }
 
-void PointRows::Choose(const std::vector<vtkIdType>& places)
+void PointTable::Choose(const std::vector<vtkIdType>& places)
 {
-  PointRows chosen(this->Kinds);
+  PointTable chosen(this->Kinds);
   chosen.Coordinates.Resize(3 * places.size());
   chosen.Ids.Resize(places.size());
   vtkNew<vtkIdList> from;
@@ -404,7 +404,7 @@ void PointRows::Choose(const std::vector<vtkIdType>& places)
   *this = std::move(chosen);
 }
 
-PointView ViewOf(const PointRows& rows)
+PointView ViewOf(const PointTable& rows)
 {
   PointView view;
   view.Double = rows.Coordinates.data();

@@ -5,9 +5,10 @@
  * The border of a mesh in parts, on ranks or in pieces: which edges have one triangle in all of
  * them. Private to the module.
  */
-#ifndef BorderOfParts_h
-#define BorderOfParts_h
+#ifndef SharedBorder_h
+#define SharedBorder_h
 
+#include "Adapt/Adapt.h"
 #include "Kernel/Mesh/Mesh.h"
 #include "PointKeys.h"
 #include "Ranks.h"
@@ -17,8 +18,6 @@
 #include <map>
 #include <utility>
 #include <vector>
-
-class vtkPolyData;
 
 namespace elevation
 {
@@ -68,7 +67,7 @@ struct EdgesOfParts
 };
 
 /** The border of all parts. */
-struct BorderOfAll
+struct SharedBorder
 {
   std::vector<BorderEdge> Edges;   ///< by part and triangle
   std::vector<int> PartOfEdge;     ///< one each
@@ -81,8 +80,8 @@ struct BorderOfAll
   std::vector<Index> RegionOfEdge;
   std::map<RegionOfPart, Index> Regions; ///< those of the parts, as of all
 
-  BorderOfAll() = default;
-  explicit BorderOfAll(EdgesOfParts&& edges);
+  SharedBorder() = default;
+  explicit SharedBorder(EdgesOfParts&& edges);
   Index Find(const PointKey& key) const;
   PointView View() const;
 
@@ -104,7 +103,7 @@ void AppendBorder(const Mesh& mesh, const SharedPoints& points, const std::vecto
  * @param[in] edges  of the parts of this rank
  * @throws Error on all ranks if an edge has more than two triangles, or two on one side
  */
-BorderOfAll CollectBorder(const Ranks& ranks, EdgesOfParts&& edges);
+SharedBorder CollectBorder(const Ranks& ranks, EdgesOfParts&& edges);
 
 } // namespace elevation
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BorderOfParts.h"
+#include "SharedBorder.h"
 
 #include "Adapt/Adapt.h"
 
@@ -228,7 +228,7 @@ void KeepSingleEdges(EdgesOfParts& all)
 }
 } // namespace
 
-BorderOfAll::BorderOfAll(EdgesOfParts&& edges)
+SharedBorder::SharedBorder(EdgesOfParts&& edges)
 {
   std::vector<EdgeOfPart>& border = edges.OnBorder;
   const auto isOfRegion = [](const EdgeOfPart& edge) { return edge.Region != None; };
@@ -267,7 +267,7 @@ BorderOfAll::BorderOfAll(EdgesOfParts&& edges)
 }
 
 /** Regions are in the order of the first parts that have some of them. */
-void BorderOfAll::NumberRegions(const EdgesOfParts& edges)
+void SharedBorder::NumberRegions(const EdgesOfParts& edges)
 {
   for (const EdgeOfPart& edge : edges.OfRegions)
   {
@@ -304,14 +304,14 @@ void BorderOfAll::NumberRegions(const EdgesOfParts& edges)
   }
 }
 
-Index BorderOfAll::Find(const PointKey& key) const
+Index SharedBorder::Find(const PointKey& key) const
 {
   const auto found = std::lower_bound(this->Keys.begin(), this->Keys.end(), key);
   return found != this->Keys.end() && *found == key ? static_cast<Index>(found - this->Keys.begin())
                                                     : None;
 }
 
-PointView BorderOfAll::View() const
+PointView SharedBorder::View() const
 {
   PointView view;
   view.Double = this->Coordinates.data();
@@ -320,7 +320,7 @@ PointView BorderOfAll::View() const
 }
 
 // Those that are left on each rank are paired at a rank for each edge; what is single goes to all.
-BorderOfAll CollectBorder(const Ranks& ranks, EdgesOfParts&& edges)
+SharedBorder CollectBorder(const Ranks& ranks, EdgesOfParts&& edges)
 {
   std::vector<Bytes> packed(ranks.Count());
   ranks.Agree([&]() {
@@ -355,8 +355,8 @@ BorderOfAll CollectBorder(const Ranks& ranks, EdgesOfParts&& edges)
     toAll(edges.OfRegions);
     toAll(edges.Joined);
   }
-  BorderOfAll border;
-  ranks.Agree([&]() { border = BorderOfAll(std::move(edges)); });
+  SharedBorder border;
+  ranks.Agree([&]() { border = SharedBorder(std::move(edges)); });
   return border;
 }
 

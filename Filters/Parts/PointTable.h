@@ -4,9 +4,10 @@
  * @file
  * Points with their arrays, which go from rank to rank. Private to the module.
  */
-#ifndef PointRows_h
-#define PointRows_h
+#ifndef PointTable_h
+#define PointTable_h
 
+#include "Adapt/Adapt.h"
 #include "Bytes.h"
 #include "Kernel/Base/Base.h"
 #include "Ranks.h"
@@ -16,12 +17,6 @@
 #include <set>
 #include <string>
 #include <vector>
-
-class vtkAbstractArray;
-class vtkDataSetAttributes;
-class vtkPointData;
-class vtkPointSet;
-class vtkPointSet;
 
 namespace elevation
 {
@@ -48,12 +43,12 @@ std::vector<ArrayKind> CommonArrays(
 bool HaveSameArrays(const Ranks& ranks, vtkPointSet* own);
 
 /** Points: positions, global ids and the values of arrays, those of each kind. */
-class PointRows
+class PointTable
 {
 public:
-  PointRows() = default;
+  PointTable() = default;
   /** Of no points. */
-  explicit PointRows(const std::vector<ArrayKind>& kinds);
+  explicit PointTable(const std::vector<ArrayKind>& kinds);
 
   std::size_t Count() const { return this->Ids.size(); }
   const double* At(std::size_t place) const { return this->Coordinates.data() + 3 * place; }
@@ -83,7 +78,7 @@ private:
 };
 
 /** The positions, in place. */
-PointView ViewOf(const PointRows& rows);
+PointView ViewOf(const PointTable& rows);
 
 } // namespace elevation
 

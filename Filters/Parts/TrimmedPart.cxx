@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "TrimOfPart.h"
+#include "TrimmedPart.h"
 
 #include "Kernel/Mesh/Mesh.h"
 #include "PointKeys.h"
@@ -30,7 +30,7 @@ namespace
 constexpr char IsNear = 2; // neither kept nor outward: what comes back tells
 }
 
-void TrimOfPart::Read()
+void TrimmedPart::Read()
 {
   CheckArrays(this->Input);
   this->Triangles = ViewTriangles(this->Input);
@@ -38,7 +38,7 @@ void TrimOfPart::Read()
 }
 
 /** Leaves out triangles that are marked as another part's. */
-void TrimOfPart::LeaveOutCopies()
+void TrimmedPart::LeaveOutCopies()
 {
   this->List = this->Triangles.View;
   vtkUnsignedCharArray* const marks = GhostsOf(this->Input->GetCellData());
@@ -70,11 +70,11 @@ void TrimOfPart::LeaveOutCopies()
   this->List.Count = static_cast<Index>(this->Sources.size());
 }
 
-bool TrimOfPart::Sweep(
-  const BoundaryLines& lines, double numberOfAll, int threads, const Progress& progress)
+bool TrimmedPart::Sweep(const std::vector<Point2>& points, const Rings& rings, double numberOfAll,
+  int threads, const Progress& progress)
 {
-  std::optional<SweptAlongRings> swept = SweepAlongRings(
-    this->List, lines.Points.Places, JoinLines(lines), numberOfAll, threads, progress);
+  std::optional<SweptAlongRings> swept =
+    SweepAlongRings(this->List, points, rings, numberOfAll, threads, progress);
   if (swept)
   {
     this->Swept = std::move(*swept);
@@ -86,7 +86,7 @@ bool TrimOfPart::Sweep(
   return swept.has_value();
 }
 
-bool TrimOfPart::SweepForOutline(int margin, const TrimOptions& options, const Progress& progress)
+bool TrimmedPart::SweepForOutline(int margin, const TrimOptions& options, const Progress& progress)
 {
   ExtractOptions extraction;
   extraction.GapTolerance = options.GapTolerance;
@@ -105,7 +105,7 @@ bool TrimOfPart::SweepForOutline(int margin, const TrimOptions& options, const P
 }
 
 /** Of the near triangles and the border; its points are those of Sent. */
-vtkSmartPointer<vtkPolyData> TrimOfPart::NearPart()
+vtkSmartPointer<vtkPolyData> TrimmedPart::NearPart()
 {
   IdSet used(static_cast<Index>(this->Input->GetNumberOfPoints()));
   for (const Index t : this->Swept.Near)
@@ -157,13 +157,13 @@ vtkSmartPointer<vtkPolyData> TrimOfPart::NearPart()
   return part;
 }
 
-void TrimOfPart::Take(TrimmedPart&& back, const Progress& progress)
+void TrimmedPart::Take(TrimmedZone&& back, const Progress& progress)
 {
   this->Back = std::move(back);
   this->FindOwn(progress);
 }
 
-vtkIdType TrimOfPart::CountOfSide(int side) const
+vtkIdType TrimmedPart::CountOfSide(int side) const
 {
   const std::vector<char>& flags = this->Swept.IsOutward;
   return static_cast<vtkIdType>(std::count(flags.begin(), flags.end(), static_cast<char>(side)));
@@ -173,7 +173,7 @@ vtkIdType TrimOfPart::CountOfSide(int side) const
  * Finds which of the new points this part has, if not in its near part, and adds the others; and which
  * of the far points on the boundary.
  */
-void TrimOfPart::FindOwn(const Progress& progress)
+void TrimmedPart::FindOwn(const Progress& progress)
 {
   const std::size_t count = this->Back.IsInserted.size();
   for (const Index point : this->Back.OfOthers)
@@ -223,7 +223,7 @@ void TrimOfPart::FindOwn(const Progress& progress)
   }
 }
 
-TrimmedSide TrimOfPart::SideOf(int side, const Progress& progress) const
+TrimmedSide TrimmedPart::SideOf(int side, const Progress& progress) const
 {
   TrimmedSide written;
   const auto add = [this, &written](const auto& cornerOf, Index triangle) {
@@ -261,12 +261,12 @@ TrimmedSide TrimOfPart::SideOf(int side, const Progress& progress) const
   return written;
 }
 
-void TrimOfPart::Write(bool areInserted, bool areMarked, const BoundaryLines* boundary,
+void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* boundary,
   const TrimOptions& options, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
 {
   this->Points.AreMarked = areMarked;
   this->Points.Type = areInserted ? VTK_DOUBLE : this->Input->GetPoints()->GetDataType();
-  PassTrimmedPoints(this->Input, this->Points, Part(progress, 0.0, 0.2), kept);
+  PassTrimmedPoints(this->Input, this->Points, SubProgress(progress, 0.0, 0.2), kept);
   if (boundary)
   {
     std::vector<Index> onBoundary = this->FarOnBoundary;
@@ -288,9 +288,9 @@ void TrimOfPart::Write(bool areInserted, bool areMarked, const BoundaryLines* bo
   {
     if (vtkPolyData* const output = side == 0 ? kept : outward)
     {
-      TrimmedSide written = this->SideOf(side, Part(progress, 0.2, 0.6));
+      TrimmedSide written = this->SideOf(side, SubProgress(progress, 0.2, 0.6));
       PassCellData(this->Input, side == 0 ? FirstPolygon(this->Input) : 0, written, areInserted,
-        Part(progress, 0.6, 1.0), output);
+        SubProgress(progress, 0.6, 1.0), output);
       output->SetPolys(
         ToCellArray(std::move(written.Corners), ResolveNumberOfThreads(options.NumberOfThreads)));
       output->GetFieldData()->PassData(this->Input->GetFieldData());
