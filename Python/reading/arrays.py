@@ -104,7 +104,8 @@ def cloud_of_grid(path, z, x=None, y=None):
         x, y = numpy.meshgrid(x, y)
     if x.shape != z.shape or y.shape != z.shape:
         shapes = ", ".join(f"{name} {' x '.join(map(str, v.shape))}" for name, v in zip("xyz", (x, y, z)))
-        raise FileError(f"{path}: x needs {columns} values and y {rows}, or each as many as z; the shapes are {shapes}")
+        needed = f"x needs {columns} values and y {rows}, or each as many as z"
+        raise FileError(f"{path}: {needed}; the shapes are {shapes}")
     cloud = points_of_raster(path, *(v.astype("f8") for v in (x, y, z)))
     cloud.notes += notes
     return cloud
