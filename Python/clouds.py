@@ -229,6 +229,7 @@ class ReadOptions:
 
     columns: object = None  # None, or three names or numbers (from 1) of the x, y and z columns
     no_data: object = None  # None, or the elevation that marks missing values
+    skip_bad_lines: bool = False  # lines of a text that are no rows are left out
     keep_nulls: bool = False  # usual null values are kept, though they stand apart
     depth: bool = False  # z counts downwards; it is turned over
     progress: object = no_progress  # is called with the fraction read; what it raises ends it

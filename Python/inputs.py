@@ -34,7 +34,7 @@ from .messages import ElevationSurfaceError, Reason
 from .ranks import before, together, total
 from .reading import leave_out
 from .reading.columns import choose_columns
-from .reading.layouts import MISSING
+from .reading.known import MISSING
 from .reading.nulls import take_out
 from .reading.upwards import notes_on_up
 from .reading.vtk_files import points_of_grid

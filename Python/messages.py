@@ -33,7 +33,8 @@ class ElevationSurfaceWarning(UserWarning):
 
 
 class FileError(ElevationSurfaceError):
-    """A file that cannot be used. The text is one line and begins with the file's name."""
+    """A file that cannot be used. The text is one line and begins with the file's name; below a question
+    about columns are the first rows."""
 
 
 class PictureError(ElevationSurfaceError):

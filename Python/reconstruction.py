@@ -32,7 +32,7 @@ from .properties import COLOURS, PROPERTIES, checked
 from .ranks import extremes, total
 from .reading.arrays import cloud_of_columns, cloud_of_grid, columns_of
 from .reading.facing import faces_of, notes_on_faces
-from .spreading import followed
+from .spreading import followed, last_id, without_unused
 from .steps import Step, triangulate, trim_along, trim_few
 from .vtkElevationSurface import vtkFillElevationHoles
 
@@ -137,7 +137,10 @@ class Reconstruction:
 
     ranks     the controller of those that have a part of it each, or None. Counts and the report are
               those of all
-    surface   vtkPolyData with triangles
+    surface   vtkPolyData with triangles, without points that these do not use: its point array
+              OriginalPointIds has the numbers of points in the input, -1 of added ones
+    complete  the same with all points, those of the input first; surface itself with
+              remove_unused_points=False
     boundary  vtkPolyData, the rings that bound the surface; None without trimming
     holes     vtkPolyData, the outline of each hole, filled or not; None without filling
     delaunay, trim, fill   the filters that have run; None for those left out
@@ -166,7 +169,8 @@ class Reconstruction:
         self.times = {}
         self.notes, self.decided, self.warnings, self.gathered = [], [], [], []
         self.delaunay = self.trim = self.fill = self.outlined = None
-        self.surface = self.boundary = self.holes = None
+        self.surface = self.complete = self.boundary = self.holes = None
+        self.removes_unused = False
         self.triangles, self.points, self.reasons, self.lattice = {}, None, None, None
         self.number_of_points, self.bridged, self.hole_counts = 0, None, (0, 0)
         self.progress = None  # what run_chain() was given
@@ -203,7 +207,7 @@ class Reconstruction:
     def to_numpy(self) -> tuple[numpy.ndarray, numpy.ndarray]:
         """(points, triangles): (n, 3) float64, and (m, 3) integers that number the points.
 
-        The input's points come first, in their order, also those that no triangle uses.
+        Points of the input come first, in their order; surface has their numbers in the input.
         """
         points = vtk_to_numpy(self.surface.GetPoints().GetData()).astype("f8")
         ids = vtk_to_numpy(self.surface.GetPolys().GetConnectivityArray())
@@ -328,7 +332,7 @@ def run_chain(
             result.open_edge_length, result.why_opened = given["open_edge_length"], AS_GIVEN
         elif not given.get("maximum_elevation_error"):  # else long edges are no voids
             length, result.why_opened = length_to_open(ranks, last.GetOutput(), result)
-            filling.SetMaximumEdgeLength(length)
+            filling.SetOpenEdgeLength(length)
             result.open_edge_length = length
         result.fill = last = run("fill", filling)
         result.triangles["filled"] = total(ranks, last.GetOutput().GetNumberOfPolys())
@@ -337,10 +341,13 @@ def run_chain(
         voids.see(last.GetOutput())
         result.bridged = voids.find()
         result.hole_counts = hole_counts(ranks, result)
-    result.surface = last.GetOutput()
+    result.surface = result.complete = last.GetOutput()
     result.points, result.reasons = followed(
-        ranks, result.points, result.reasons, result.surface, cloud.points
+        ranks, result.points, result.reasons, result.complete, cloud.points
     )
+    result.removes_unused = given.get("remove_unused_points", True)
+    if result.removes_unused:
+        result.surface = without_unused(ranks, result.complete, last_id(ranks, cloud.points))
     return result
 
 

@@ -36,13 +36,13 @@ NAMES_IN_COLUMNS = ("text.read_text", "gocad", "iesx")  # modules of formats wit
 
 def check_options(path, **options):
     """Refuses an option that the kind of file has no use for."""
-    if any(options.get(name) is not None for name in MEANS_SOMETHING) and is_plain(path):
+    if any(options.get(name) not in (None, False) for name in MEANS_SOMETHING) and is_plain(path):
         check_use(path, recognise(path)[0], ReadOptions(**options))
 
 
 def check_use(path, kind, options):
     for name, modules in MEANS_SOMETHING.items():
-        if getattr(options, name) is not None and kind.module.split(".")[0] not in modules:
+        if getattr(options, name) not in (None, False) and kind.module.split(".")[0] not in modules:
             fits = " and ".join(NAMES.get(module, module) for module in modules)
             raise FileError(f"{path}: {option(name)} is for {fits}; this is {kind.name}")
 
@@ -94,7 +94,7 @@ def frame_of(path):
 
             frame, crs = read_frame(local)
         else:
-            cloud = read_any(local, ReadOptions(points_only=True))
+            cloud = read_by_format(local, ReadOptions(points_only=True))
             frame, crs = cloud.frame, cloud.crs
         if frame is None:
             raise FileError(f"{local}: is no raster with even steps, so there are no pixels like its own")

@@ -2,19 +2,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which columns of a table are x, y and z: by their names, else by their values.
 
-A choice that is not sure becomes a note that tells why; of two that are about as likely, an error
-shows both.
+Names, or the places of columns, give the readings that are possible; each has a score. If the best is clearly
+better than the next, a note tells what it rests on. If not, an error shows both, with the first rows.
 """
 
 import dataclasses
+import itertools
 import math
 import re
 
 import numpy
 
-from .column_names import COLOURS, Meaning, in_brackets, is_seismic, meaning, plain
+from .column_names import Meaning, in_brackets, is_seismic, meaning, plain
+from .known import (
+    CLEAR, CLEAR_OF_POOR, COLOURS, CROSSLINES, FINNISH, GOOD, INLINES, PARTS_OF_TIME, TIMES, WEIGHTS
+)
+from .nulls import usual_nulls
 from ..messages import FileError
 from ..names import option
+
+SHOWN = 3  # rows, below a question
 
 
 @dataclasses.dataclass
@@ -59,7 +66,7 @@ def choose_columns(path, rows, consecutive, number, names, width, columns, neede
         search.by_values()
     search.look_at_values()
     extras = search.extras()
-    shares = numpy.isfinite(search.values).mean(axis=0)
+    shares = numpy.isfinite(search.read).mean(axis=0)
     of_numbers = [i for i in range(width) if shares[i] > search.share_of_text[i]]
     z_name = names[search.indices[-1]] if names and needed == 3 else ""
     is_horizon = any(map(is_seismic, names)) if names else search.has_line_and_trace
@@ -74,14 +81,19 @@ class Search:
     def __init__(self, path, rows, consecutive, number, names, width, needed, advice):
         self.path, self.names, self.width, self.needed = path, names, width, needed
         self.axes, self.has_line_and_trace, self.has_swapped = "xyz"[:needed], False, False
+        self.has_times = False
         self.ids = set()  # columns that are so by their values
         self.can_be_chosen, self.advice = advice is None, advice or advice_on_columns()
-        self.row = next((row for row in rows if len(row) >= width), rows[0])
+        self.first_rows = rows[:SHOWN]
         table = [[number(w) for w in row[:width]] + [math.nan] * (width - len(row)) for row in rows]
         text = numpy.array([[value is None for value in row] for row in table], dtype=bool)
-        self.values = numpy.array(
+        self.read = numpy.array(
             [[math.nan if value is None else value for value in row] for row in table], dtype="f8"
         )
+        self.values = self.read.copy()  # without nulls, by which columns are judged
+        for column in self.values.T:
+            for _, found in usual_nulls(column):
+                column[found] = numpy.nan
         self.consecutive = consecutive
         self.share_of_text = text.mean(axis=0)
         self.decimals = [
@@ -90,16 +102,22 @@ class Search:
             for i in range(width)
         ]
         self.meanings = [meaning(name) for name in names] if names else [Meaning()] * width
-        letters = {"".join(plain(name)) for name in names or []}
-        if not {"r", "g", "b"} <= letters:  # single letters are colours only together
-            lone = [i for i, name in enumerate(names or []) if "".join(plain(name)) in "rgb"]
-            self.meanings = [Meaning() if i in lone else m for i, m in enumerate(self.meanings)]
-        if {"p", "i"} <= letters and not letters & set("nexy"):  # Finnish: pohjoinen, itä
-            finnish = {"p": Meaning("y", 2), "i": Meaning("x", 2)}
-            self.meanings = [
-                finnish.get("".join(plain(name)), m) for name, m in zip(names, self.meanings)
-            ]
+        letters = ["".join(plain(name)) for name in names or [""] * width]
+        if not {"r", "g", "b"} <= set(letters):  # single letters are colours only together
+            self.mean({letter: Meaning() for letter in "rgb"}, letters)
+        if set(FINNISH) <= set(letters) and not set(letters) & set("nexy"):
+            self.mean({letter: Meaning(axis, 2) for letter, axis in FINNISH.items()}, letters)
+        self.is_in_lines = not any(m.axis in ("x", "y") for m in self.meanings) and all(
+            words & set(letters) for words in (INLINES, CROSSLINES)
+        )
+        if self.is_in_lines:
+            of_lines = [(words, axis) for words, axis in ((INLINES, "x"), (CROSSLINES, "y"))]
+            self.mean({word: Meaning(axis, 8) for words, axis in of_lines for word in words}, letters)
         self.indices, self.notes, self.texts = None, [], {}
+
+    def mean(self, meanings, letters):
+        """Gives columns of some names another meaning."""
+        self.meanings = [meanings.get(name, m) for name, m in zip(letters, self.meanings)]
 
     # -- what the user said
 
@@ -129,31 +147,58 @@ class Search:
                 )
             self.indices.append(index)
 
+    # -- readings
+
+    def decide(self, readings, why="the columns can be read in two ways"):
+        """Sets the indices to the reading of the best score; asks where the next is about as good.
+
+        readings  {indices: score}, in the order in which they are shown
+        """
+        best, *others = sorted(readings, key=readings.get, reverse=True)
+        clear = CLEAR if readings[best] >= GOOD else CLEAR_OF_POOR
+        if others and readings[best] - readings[others[0]] < clear:
+            self.ask([one for one in readings if one in (best, others[0])], why)
+        self.indices = list(best)
+
+    def ask(self, readings, why):
+        """Raises the error that shows readings as options, and the first rows under the columns' numbers."""
+        if not self.can_be_chosen:
+            raise FileError(f"{self.path}: {why}; {self.advice}")
+        ways = " or ".join(f"{option('columns')} {self.numbered(one)}" for one in readings)
+        shown = [[str(i + 1) for i in range(self.width)]]
+        shown += [self.names] if self.names else []
+        shown += [row[: self.width] + [""] * (self.width - len(row)) for row in self.first_rows]
+        shown = [[word[:16] for word in row] for row in shown]
+        widths = [max(map(len, column)) for column in zip(*shown)]
+        lines = ["  ".join(word.rjust(w) for word, w in zip(row, widths)) for row in shown]
+        choose = f"choose {ways}" if readings else self.advice
+        raise FileError("\n  ".join([f"{self.path}: {why}; {choose}", *lines]))
+
     # -- names
 
     def by_names(self):
         """Whether names tell the columns; sets the indices then."""
-        chosen = {axis: self.best_named(axis) for axis in self.axes}
-        if not any(chosen.values()):
+        named = {axis: self.best_named(axis) for axis in self.axes}
+        if not any(named.values()):
             return False
-        self.match_x_and_y(chosen)
-        for axis, columns in chosen.items():
-            if len(columns) > 1:
-                self.refuse_two(
-                    [[c if a == axis else chosen[a][0] for a in self.axes] for c in columns[:2]]
-                    if all(chosen.values()) else None,
-                    f"{self.listed(columns)} may all be {axis}",
-                )
-        missing = [axis for axis in self.axes if not chosen[axis]]
-        taken = [columns[0] for columns in chosen.values() if columns]
+        missing = [axis for axis in self.axes if not named[axis]]
+        free = self.free_columns(sum(named.values(), []), len(missing)) if missing else []
+        known = ", ".join(f"{a} = {self.called(c[0])}" for a, c in named.items() if c)
+        why = f"the names tell {known}, but not {' and '.join(missing)}"
+        if len(free) < len(missing):
+            self.ask([], f"{why}; no column is left for it")
+        readings = {}
+        for indices in itertools.product(*(named[axis] or free for axis in self.axes)):
+            if len(set(indices)) == self.needed:
+                readings[indices] = GOOD + WEIGHTS["one pair"] * self.is_pair(*indices[:2])
+        doubtful = [axis for axis in self.axes if len(named[axis]) > 1]
         if missing:
-            self.fill_in(chosen, missing, taken)
-        self.indices = [chosen[axis][0] for axis in self.axes]
-        if missing or self.indices != list(range(self.width)):
-            text = ", ".join(f"{a} = {self.called(i)}" for a, i in zip(self.axes, self.indices))
-            left = f"; {missing[0]} is the only column left" if missing else ""
-            self.notes.append(f"columns by their names: {text}{left} (see {option('columns')})")
-        self.look_at_names()
+            why += f"; it may be {self.listed(free)}"
+        elif doubtful:
+            several = [i for axis in doubtful for i in named[axis]]
+            why = f"{self.listed(several)} may all be {' and '.join(doubtful)}"
+        self.decide(readings, why)
+        self.look_at_names(missing)
         return True
 
     def best_named(self, axis):
@@ -163,44 +208,35 @@ class Search:
         best = min((self.meanings[i].rank for i in found), default=0)
         return [i for i in found if self.meanings[i].rank == best]
 
-    def match_x_and_y(self, chosen):
-        """Of several x and y, those are left whose names have the same words beside."""
-        x, y = chosen["x"], chosen["y"]
-        if len(x) > 1 or len(y) > 1:
-            pairs = [
-                (i, j) for i in x for j in y
-                if self.meanings[i].beside == self.meanings[j].beside
-                and abs(self.meanings[i].rank - self.meanings[j].rank) < 2
-            ]
-            if len(pairs) == 1:
-                chosen["x"], chosen["y"] = [pairs[0][0]], [pairs[0][1]]
-            elif len(pairs) > 1:
-                z = (chosen.get("z") or [None])[:1]
-                self.refuse_two(
-                    [[*pair, *z][: self.needed] for pair in pairs[:2]] if None not in z else None,
-                    f"{self.listed([i for pair in pairs for i in pair])} may all be x and y",
-                )
+    def is_pair(self, x, y):
+        """Whether names of x and y have the same words beside, as X_utm and Y_utm do."""
+        x, y = self.meanings[x], self.meanings[y]
+        return bool(x.axis and y.axis) and x.beside == y.beside and abs(x.rank - y.rank) < 2
 
-    def fill_in(self, chosen, missing, taken):
-        """Finds the columns of axes that have no name of their own among the others."""
+    def free_columns(self, taken, count):
+        """Columns for axes that have no name of their own."""
         free = [
             i for i in range(self.width)
             if i not in taken and self.share_of_text[i] < 0.5 and not self.meanings[i].axis
         ]
-        others = [i for i in free if not self.meanings[i].role]
-        if not others:
-            others = [i for i in free if self.meanings[i].role in ("a measure", "a code")]
-        if len(others) == len(missing) == 1:
-            chosen[missing[0]] = others
-            return
-        known = ", ".join(f"{a} = {self.called(c[0])}" for a, c in chosen.items() if c)
-        lacks = " and ".join(missing)
-        could = f"it may be {self.listed(others or free)}" if free else "no column is left for it"
-        raise FileError(
-            f"{self.path}: the names tell {known}, but not {lacks}; {could}; {self.advice}"
-        )
+        for roles in (("",), ("a measure", "a code")):
+            others = [i for i in free if self.meanings[i].role in roles]
+            if others:
+                is_other = self.times(others)
+                likely = [i for i in others if i not in is_other and not self.is_id(i)]
+                return likely if len(likely) >= count else others
+        return []
 
-    def look_at_names(self):
+    def look_at_names(self, missing):
+        text = ", ".join(f"{a} = {self.called(i)}" for a, i in zip(self.axes, self.indices))
+        if self.is_in_lines:
+            self.notes.append(
+                f"no column is named as x or y: {text}; lengths count lines and traces, not metres "
+                f"(see {option('columns')})"
+            )
+        elif missing or self.indices != list(range(self.width)):
+            left = f"; {missing[0]} is the only column left" if missing else ""
+            self.notes.append(f"columns by their names: {text}{left} (see {option('columns')})")
         z = self.meanings[self.indices[-1]]
         x, y = self.indices[:2]
         if self.needed == 3:
@@ -224,73 +260,133 @@ class Search:
 
     def by_values(self):
         """Sets the indices from the values of the columns."""
+        every = list(range(self.width))
         if self.width == self.needed:
-            self.indices = list(range(self.width))
-            if self.names:
-                axes = "x, y or z" if self.needed == 3 else "x or y"
-                taken = ", ".join(f"{a} = {self.called(i)}" for i, a in enumerate(self.axes))
-                self.notes.append(f"no column is named as {axes}: {taken} (see {option('columns')})")
-            self.look_at_order()
+            self.in_their_order()
             return
-        numbers = [
-            i for i in range(self.width) if self.share_of_text[i] < 0.5 and len(self.finite(i))
-        ]
-        known = {i for i in numbers if self.meanings[i].role or self.meanings[i].axis}
-        usable = [i for i in numbers if i not in known]
+        numbers = [i for i in every if self.share_of_text[i] < 0.5 and len(self.finite(i))]
+        usable = [i for i in numbers if not self.meanings[i].role and not self.meanings[i].axis]
         if len(usable) < self.needed:
             usable = numbers
         if len(usable) < self.needed:
-            raise FileError(
-                f"{self.path}: {self.needed} columns of numbers are needed, "
-                f"and there {'is' if len(usable) == 1 else 'are'} {len(usable)}"
-            )
+            are = "is" if len(usable) == 1 else "are"
+            self.ask([], f"{self.needed} columns of numbers are needed, and there {are} {len(usable)}")
         left, reasons = self.without_others(usable)
-        chosen = self.most_like_points(left, reasons)
+        self.decide(self.scored(left))
+        chosen = self.indices
+        for i in left[: left.index(chosen[0])]:
+            values = self.finite(i)
+            each = self.is_whole(i) and len(numpy.unique(values)) == len(values)
+            self.ids |= {i} if each else set()
+            reasons[i] = (
+                "an id: whole numbers, each once" if each else "no coordinate beside the next"
+            )
         if self.needed == 3:
-            chosen = self.east_and_north(chosen, reasons)
-        self.indices = chosen
-        why = [
-            f"column {self.called(i)} is {reason}"
-            for i, reason in sorted(reasons.items()) if i < max(chosen)
-        ]
-        taken = ", ".join(f"{a} = {self.called(i)}" for a, i in zip(self.axes, chosen))
-        if chosen == list(range(self.needed)):
+            self.east_and_north(reasons)
+        taken = ", ".join(f"{a} = {self.called(i)}" for a, i in zip(self.axes, self.indices))
+        if self.indices == every[: self.needed]:
             self.notes.append(
                 f"the first {self.needed} of {self.width} columns are taken as "
                 f"{', '.join(self.axes)} (see {option('columns')})"
             )
-        else:
-            why = "; ".join(why) + "; " if why else ""
-            self.notes.append(f"columns by their values: {why}{taken} (see {option('columns')})")
+            return
+        why = [
+            f"column {self.called(i)} is {reason}; "
+            for i, reason in sorted(reasons.items()) if i < max(self.indices)
+        ]
+        self.notes.append(
+            f"columns by their values: {''.join(why)}{taken} (see {option('columns')})"
+        )
+
+    def in_their_order(self):
+        """Takes columns that are no more than needed as they stand."""
+        order = tuple(range(self.width))
+        readings = {order: GOOD}
+        if self.names:
+            axes = "x, y or z" if self.needed == 3 else "x or y"
+            taken = ", ".join(f"{a} = {self.called(i)}" for i, a in enumerate(self.axes))
+            self.notes.append(f"no column is named as {axes}: {taken} (see {option('columns')})")
+        if self.needed == 3 and not any(m.axis or m.role for m in self.meanings):
+            first = self.is_utm(0, 1) or self.is_utm(1, 0)
+            for other in ((1, 2, 0), (2, 1, 0)):  # as z, x, y
+                if self.is_utm(*other[:2]) and not first:
+                    readings[other] = GOOD
+            if self.may_be_latitude(*order):
+                readings = {(1, 0, 2): GOOD, order: GOOD}
+        self.decide(readings)
 
     def without_others(self, columns):
         """(columns that may be coordinates, {column: what it is else}), by the values."""
         left, reasons = list(columns), {}
-
-        def take(i, reason):
-            left.remove(i)
-            reasons[i] = reason
-
+        for i in self.times(left):
+            if len(left) > self.needed:
+                left.remove(i)
+                reasons[i], self.has_times = "a part of a date or time", True
         while len(left) > self.needed:
             first, second = left[:2]
             if self.is_id(first):
                 self.ids.add(first)
-                take(first, "an id: it counts up by one")
+                reason = "an id: it counts up by one"
             elif numpy.ptp(self.finite(first)) == 0:
-                take(first, "the same in all rows")
+                reason = "the same in all rows"
             elif self.is_class(first, second):
-                take(first, "a class or line: few whole numbers")
+                reason = "a class or line: few whole numbers"
             else:
                 break
+            reasons[left.pop(0)] = reason
         if self.needed == 3 and len(left) >= 5:
             for i in self.place_in_grid(left):
-                take(i, "a line, trace or place in a grid: others follow from it")
+                left.remove(i)
+                reasons[i] = "a line, trace or place in a grid: others follow from it"
                 self.has_line_and_trace = True
         return left, reasons
+
+    def scored(self, columns):
+        """{indices: score} of the readings of columns, in a row or with numbers of lines before z."""
+        count, readings = self.needed, {}
+        for k in range(len(columns) - count + 1):
+            reading = tuple(columns[k : k + count])
+            readings[reading] = self.score(reading) + WEIGHTS["stands first"] * (k == 0)
+            if k < 2 and self.is_grid(*reading[:2]) and not self.may_count(*reading[:2]):
+                readings[reading] += WEIGHTS["x and y are a grid"]
+        x, y, *others = columns
+        if count == 3 and self.counts_along(others[0]) and not (
+            self.counts_along(x) or self.counts_along(y)
+        ):
+            for z in others[1:]:
+                if not self.counts_along(z):
+                    first = tuple(columns[:3])
+                    behind = WEIGHTS["stands first"] + WEIGHTS["z behind lines"]
+                    readings[first] += WEIGHTS["z rises along lines"]
+                    readings[x, y, z] = self.score((x, y, z)) + behind
+                    break
+        return readings
+
+    def score(self, reading):
+        """How much columns look like x, y and z."""
+        x, y, *z = reading
+        spans = [float(numpy.ptp(self.finite(i))) if len(self.finite(i)) else 0.0 for i in reading]
+        alike = abs(self.decimals[x] - self.decimals[y]) <= 1
+        alike &= (self.decimals[x] == 0) == (self.decimals[y] == 0)
+        found = {
+            "as many decimals": alike,
+            "as wide as high": 0 < max(spans[:2]) <= 30 * min(spans[:2]),
+            "x is a line": self.is_line(x, y),
+            "x rises": self.always_rises(x),
+            "x and y count": self.may_count(x, y),
+        }
+        if z:
+            heights = abs(self.finite(z[0]))
+            found["z spans less"] = spans[2] <= 10 * max(spans[:2])
+            found["z is higher than any place"] = len(heights) > 0 and heights.min() > 1e5
+        return sum(WEIGHTS[what] for what, is_so in found.items() if is_so)
 
     def finite(self, i):
         values = self.values[:, i]
         return values[numpy.isfinite(values)]
+
+    def steps(self, i):
+        return numpy.diff(self.values[: self.consecutive, i])
 
     def is_whole(self, i):
         values = self.finite(i)
@@ -314,6 +410,25 @@ class Search:
         other = numpy.ptp(self.finite(beside)) > 30 * numpy.ptp(values)
         return few and (other or not self.is_whole(beside))
 
+    def times(self, columns):
+        """Columns that are years, months, days, hours, minutes and seconds, in which time goes on."""
+        for parts, k in itertools.product(TIMES, range(len(columns))):
+            found = columns[k : k + len(parts)]
+            if len(found) < len(parts) or found[-1] - found[0] >= len(parts):
+                continue
+            moment, even = 0.0, True
+            for part, i in zip(parts, found):
+                low, high, factor = PARTS_OF_TIME[part]
+                values = self.values[: self.consecutive, i]
+                even &= bool((values >= low).all() and (values <= high).all())
+                even &= part == "second" or self.is_whole(i)
+                moment = moment + factor * values
+            goes_on = even and (numpy.diff(moment) >= 0).mean() >= 0.99
+            small = "year" not in parts and self.finite(found[-1]).max(initial=0) < 30
+            if goes_on and len(moment) > 2 and numpy.ptp(moment) > 0 and not small:
+                return found
+        return []
+
     def place_in_grid(self, columns):
         """The two columns of whole numbers from which two others follow, as line and trace do."""
         for i, j in zip(columns, columns[1:]):
@@ -323,7 +438,8 @@ class Search:
             for pair in zip(rest, rest[1:]):
                 larger = self.size(pair) > self.size([i, j])
                 others = [k for k in rest if k > pair[1]][:1]
-                if larger and others and self.follow_from([i, j], list(pair)):
+                follow = self.follow_from([i, j], list(pair)) or self.are_rounded(pair, [i, j])
+                if larger and others and follow:
                     if not self.follow_from([i, j], [pair[0], *others]):  # as in a plane
                         return [i, j]
         return []
@@ -331,50 +447,30 @@ class Search:
     def size(self, columns):
         return float(numpy.prod([numpy.ptp(self.finite(i)) for i in columns]))
 
-    def follow_from(self, given, wanted):
-        """Whether columns are a turned and stretched copy of others, to a hundredth."""
-        rows = self.values[numpy.isfinite(self.values[:, given + wanted]).all(axis=1)]
+    def fit(self, given, wanted):
+        """(what columns leave of others when turned and stretched, the others), or None."""
+        rows = self.values[numpy.isfinite(self.values[:, [*given, *wanted]]).all(axis=1)]
         if len(rows) < 6:
-            return False
+            return None
         base = rows[:, given] - rows[:, given].mean(axis=0)
         goal = rows[:, wanted] - rows[:, wanted].mean(axis=0)
         factors, _, rank, _ = numpy.linalg.lstsq(base, goal, rcond=1e-9)
-        spread = goal.std(axis=0)
-        rest = (goal - base @ factors).std(axis=0)
         turned = abs(numpy.linalg.det(factors)) > 1e-6 * (numpy.abs(factors) ** 2).sum()
-        return bool(rank == 2 and turned and (spread > 0).all() and (rest < 0.01 * spread).all())
+        return (goal - base @ factors, goal) if rank == 2 and turned else None
 
-    def most_like_points(self, columns, reasons):
-        """Of three columns in a row, the first that look like x, y and z.
+    def follow_from(self, given, wanted):
+        """Whether columns are a turned and stretched copy of others, to a hundredth."""
+        found = self.fit(given, wanted)
+        if not found:
+            return False
+        rest, spread = found[0].std(axis=0), found[1].std(axis=0)
+        return bool((spread > 0).all() and (rest < 0.01 * spread).all())
 
-        The first three stay where they are about as good. What always rises before them may be a
-        time, or the x of sorted points: then both readings are shown.
-        """
-        count = self.needed
-        groups = [columns[k : k + count] for k in range(len(columns) - count + 1)]
-        marks = [self.likeness(group) for group in groups]
-        later = max(marks[1:], default=0)
-        best = marks.index(later, 1) if later > marks[0] else 0
-        doubtful = best and (marks[0] < 4 or self.is_line(*columns[:2]))
-        if later == 5 and self.always_rises(columns[0]):
-            best, doubtful = marks.index(later, 1), True
-        if best and later < marks[0] + 2:
-            if doubtful:
-                self.refuse_two([groups[0], groups[best]])
-            best = 0
-        if best == 0 and len(groups) > 2 and marks[2] == 5 and self.may_count(columns):
-            self.refuse_two([groups[0], groups[2]])
-        if best == 0 and marks[1:2] == [5] and not self.is_grid(*columns[:2]):
-            if self.is_grid(*groups[1][:2]):
-                self.refuse_two(groups[:2])
-        for i in columns[: columns.index(groups[best][0])]:
-            values = self.finite(i)
-            each = self.is_whole(i) and len(numpy.unique(values)) == len(values)
-            self.ids |= {i} if each else set()
-            reasons[i] = (
-                "an id: whole numbers, each once" if each else "no coordinate beside the next"
-            )
-        return groups[best]
+    def are_rounded(self, given, wanted):
+        """Whether whole numbers are the nearest to those that follow from others, as lines near points."""
+        found = self.fit(list(given), wanted)
+        wide = all(numpy.ptp(self.finite(i)) >= 5 for i in wanted)
+        return bool(found and wide and len(found[0]) >= 10 and abs(found[0]).max() < 0.75)
 
     def is_grid(self, x, y):
         """Whether each value of x stands once with each of y, here and there with a gap."""
@@ -384,65 +480,64 @@ class Search:
             return False
         return len(numpy.unique(rows, axis=0)) == len(rows)
 
-    def may_count(self, columns):
-        """Whether the first two may be line and trace: small, whole, in steps of one."""
-        if not all(self.is_whole(i) and abs(self.finite(i)).max() < 1e5 for i in columns[:2]):
+    def may_count(self, x, y):
+        """Whether columns may be line and trace: small, whole, in steps of one."""
+        if not all(self.is_whole(i) and abs(self.finite(i)).max() < 1e5 for i in (x, y)):
             return False
-        steps = abs(numpy.diff(self.values[: self.consecutive, columns[:2]], axis=0))
-        usual = [numpy.median(s[s > 0]) if (s > 0).any() else 0.0 for s in steps.T]
-        return usual == [1.0, 1.0] and all(self.decimals[i] for i in columns[2:4])
+        steps = [abs(self.steps(i)) for i in (x, y)]
+        usual = [numpy.median(s[s > 0]) if (s > 0).any() else 0.0 for s in steps]
+        return usual == [1.0, 1.0]
+
+    def counts_along(self, i):
+        """Whether whole numbers go one way, in even steps, but where a line begins."""
+        steps = self.steps(i)
+        steps = steps[steps != 0]
+        if not self.is_whole(i) or len(self.finite(i)) < 10 or not len(steps):
+            return False
+        one_way = max((steps > 0).mean(), (steps < 0).mean()) >= 0.8
+        return bool(one_way and (abs(steps) == numpy.median(abs(steps))).mean() >= 0.6)
 
     def always_rises(self, i):
         values = self.finite(i)
         return len(values) > 9 and bool((numpy.diff(values) > 0).all())
 
-    def likeness(self, group):
-        """How much columns look like x, y and z: at most 5 marks."""
-        x, y = group[:2]
-        spans = [float(numpy.ptp(self.finite(i))) if len(self.finite(i)) else 0.0 for i in group]
-        alike = abs(self.decimals[x] - self.decimals[y]) <= 1
-        alike &= (self.decimals[x] == 0) == (self.decimals[y] == 0)
-        marks = 2 * alike
-        marks += 0 < max(spans[:2]) <= 30 * min(spans[:2])
-        if len(group) == 3:
-            marks += 2 * (spans[2] <= 10 * max(spans[:2]))
-            z = self.finite(group[2])
-            marks -= 2 * (len(z) > 0 and abs(z).min() > 1e5)  # as high as no elevation
-        marks -= self.is_line(x, y)
-        return marks
-
     def is_line(self, i, beside):
         """The same whole number along runs of rows, through which others go in no even steps."""
-        values = self.values[: self.consecutive, [i, beside]]
-        steps = numpy.diff(values, axis=0)
+        steps = numpy.column_stack((self.steps(i), self.steps(beside)))
         within = steps[steps[:, 0] == 0, 1]
         if not self.is_whole(i) or not 0.7 * len(steps) < len(within) < len(steps):
             return False
         even = abs(within - numpy.median(within)) <= 0.01 * abs(numpy.median(within))
         return bool(even.mean() < 0.5)
 
-    def east_and_north(self, chosen, reasons):
+    def east_and_north(self, reasons):
         """x and y of points with numbers: surveyors write the northing first.
 
         Metres of UTM tell which it is. Otherwise a code behind z speaks for point, northing,
-        easting, elevation, code, and x,y,z as they stand is as likely.
+        easting, elevation, code, and x,y,z as they stand is as likely. So is it behind dates, where
+        latitude and longitude stand.
         """
-        named = [i for i in range(min(chosen)) if self.share_of_text[i] > 0.5]
-        if not named and self.ids.isdisjoint(reasons):
-            return chosen
-        first, second, z = chosen
-        swapped = [second, first, z]
-        if self.is_utm(second, first):
-            self.has_swapped = True
+        x, y, z = self.indices
+        named = [i for i in range(min(x, y, z)) if self.share_of_text[i] > 0.5]
+        has_ids = named or not self.ids.isdisjoint(reasons)
+        coded = any(self.share_of_text[i] > 0.5 for i in range(max(x, y, z) + 1, self.width))
+        if has_ids and self.is_utm(y, x):
+            self.has_swapped, self.indices = True, [y, x, z]
             self.notes.append(
-                f"column {self.called(first)} is taken as northing and {self.called(second)} as "
+                f"column {self.called(x)} is taken as northing and {self.called(y)} as "
                 "easting, by their sizes"
             )
-            return swapped
-        coded = any(self.share_of_text[i] > 0.5 for i in range(max(chosen) + 1, self.width))
-        if coded and not self.is_utm(first, second):
-            self.refuse_two([swapped, chosen])
-        return chosen
+        elif has_ids and coded and not self.is_utm(x, y) or self.may_be_latitude(x, y, z):
+            self.ask([(y, x, z), (x, y, z)], "the columns can be read in two ways")
+
+    def may_be_latitude(self, x, y, z):
+        """Whether columns may be latitude and longitude in this order, and not the other way."""
+        xs, ys = abs(self.finite(x)), abs(self.finite(y))
+        small = len(xs) and len(ys) and xs.max() <= 90 and ys.max() <= 180
+        if not small or min(self.decimals[x], self.decimals[y]) < 4:
+            return False
+        wide = max(numpy.ptp(self.finite(x)), numpy.ptp(self.finite(y)))
+        return self.has_times or ys.max() > 90 and wide < 0.1 * numpy.ptp(self.finite(z))
 
     def is_utm(self, x, y):
         """Whether columns are easting and northing of UTM by their sizes, in metres."""
@@ -450,18 +545,6 @@ class Search:
         if not len(x) or not len(y):
             return False
         return bool(160e3 < x.min() and x.max() < 840e3 and 1.1e6 < y.min() and y.max() < 10e6)
-
-    def look_at_order(self):
-        """Notes where three columns without names look like z, x, y."""
-        if self.needed == 2 or any(m.axis or m.role for m in self.meanings):
-            return
-        later = self.is_utm(1, 2) or self.is_utm(2, 1)
-        if later and not self.is_utm(0, 1) and not self.is_utm(1, 0):
-            order = [1, 2, 0] if self.is_utm(1, 2) else [2, 1, 0]
-            self.notes.append(
-                "the columns are taken as x, y, z in this order, but 2 and 3 are as large as "
-                f"coordinates of UTM; if 1 is z: {option('columns')} {self.numbered(order)}"
-            )
 
     # -- what the values tell of the choice
 
@@ -506,17 +589,6 @@ class Search:
     @staticmethod
     def numbered(columns):
         return ",".join(str(i + 1) for i in columns)
-
-    def refuse_two(self, readings, why="the columns can be read in two ways"):
-        """Raises the error that shows two readings and the options that decide."""
-        if not readings or not self.can_be_chosen:
-            raise FileError(f"{self.path}: {why}; {self.advice}")
-        words = []
-        for reading in readings:
-            pairs = [(a, i) for a, i in zip(self.axes, reading) if i < len(self.row)]
-            values = [f"{a} = {self.row[i]}" for a, i in pairs]
-            words.append(f"{option('columns')} {self.numbered(reading)} (first row: {', '.join(values)})")
-        raise FileError(f"{self.path}: {why}; choose {' or '.join(words)}")
 
     # -- the other columns
 

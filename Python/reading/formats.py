@@ -101,7 +101,7 @@ def is_plain_text(head):
 def is_table(head, path):
     """Text that begins with numbers, or names of columns and numbers. Asked early: so usual."""
     lines = lines_of(head)
-    if not is_text(head) or not lines or len(lines[0]) > 1000:
+    if not is_text(head) or not lines or len(lines[0]) > 1000 or lines[0].lstrip()[:1] in b"{[<":
         return False
     if len(lines) > 1 and len(re.split(rb"[,;\t]", lines[0])) > 2 and not numbers_of(lines[0]):
         del lines[0]  # names of columns

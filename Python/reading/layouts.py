@@ -9,46 +9,10 @@ import math
 import re
 
 from .column_names import is_beside, known_names, meaning, unit_of
+from .known import (
+    BLANK_IN_NUMBER, COMMA_IN_QUOTES, COMMENT_MARKS, ESRI_GRID, MISSING, NO_NUMBERS, NO_TABLES, SURFER_GRID
+)
 from ..messages import FileError
-
-COMMENT_MARKS = ("#", "%", "//", "!", "*", ">")
-MISSING = set(
-    "na n/a #n/a n.a. null none nil nodata no-data missing void - -- ? * -nan nan(ind)".split()
-) | {""}
-ESRI_GRID, SURFER_GRID = "an ESRI ASCII grid", "a Surfer grid"  # which GDAL reads
-# How files begin that are no tables, and what they are.
-NO_TABLES = (
-    (r"ncols\b", ESRI_GRID),
-    (r"dsaa\b", SURFER_GRID),
-    (r"fsasci\b", "a CPS-3 grid"),
-    (r"gocad\b", "a GOCAD file"),
-    (r"\*?11\d{4}[+-]", "a Leica GSI file"),
-    (r"\d+\n\d+\n(\S+ +\S+ +\S+ *\n){4}(\S+ +\S+ +\S+ +\S+ *\n){4}", "a Leica PTX scan"),
-    (r"<[?!a-z]", "XML or HTML"),
-    (r"[{\[]\s*[\"{\[]", "JSON"),
-)
-COMMA_IN_QUOTES = r"\"\s*[-+]?\d+,\d+\s*\"\s*,"  # "1,5","2,5"
-# What keeps words from being numbers, and what it is.
-BLANK_IN_NUMBER = r"\d[\u00a0\u202f]\d{3}"
-NO_NUMBERS = (
-    (
-        r"(?<!\w)\d{1,3}[,.' ]\d{3}[,.' ]\d{3}|\d,\d{3}\.\d|\d\.\d{3},\d|" + BLANK_IN_NUMBER,
-        "marks between thousands",
-    ),
-    (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", "degrees, minutes and seconds"),
-    (r"\d\s?[NSEW]\b", "a letter for north, south, east or west"),
-)
-
-
-# How a line begins that holds totals of the others, in the languages of the names of columns.
-SUMMARY = re.compile(
-    r"[\s;,|\"]*((?:grand\s+)?(?:total|subtotal|sum|mean|average|avg|max|min|maximum|minimum|"
-    r"median|range|rms|std|stdev|stddev|sd|mittel|mittelwert|summe|gesamt|moyenne|"
-    r"somme|standardabweichung|[eé]cart[ -]type|m[eé]dia|suma|soma|somma|totale|totaal|"
-    r"gemiddelde|m[ií]nimo|m[aá]ximo|minimo|massimo|srednia|\u015brednia|keskiarvo|summa)"
-    r"(?:[ .]*dev\w*\.?| value)?)[\"\s:=.]*(?:[;,\t|]|\s[-+\d.])",
-    re.I,
-)
 
 
 class Layout:

@@ -10,19 +10,13 @@ ten million points take some two seconds.
 import numpy
 
 from ..clouds import coordinates_of, keep_points
+from .known import NULLS
 from ..messages import Reason, counted, of_reason
 from ..names import option
 from ..progress import share, told_items
 from ..ranks import all_values, before, summed, together, total, widest
 from ..spreading import ids_of, places_of
 
-FLOAT_MAX = float(numpy.finfo("f4").max)
-NULLS = (
-    (-9999.0, -999.25, -999.0, -9999.25, -99999.0, -999999.0, -9999999.0, -99999.99, -9999.99)
-    + (9999.0, 99999.0, 999999.0, 9999900.0, 9999999.0, 999.25, 99999.99)
-    + (-32768.0, -32767.0, 32767.0, -2147483648.0, 2147483647.0)
-    + (1e30, -1e30, 1e20, -1e20, 1e35, 1.70141e38, FLOAT_MAX, -FLOAT_MAX, 3.4e38, -3.4e38)
-)
 SAMPLE = 200_000
 CHUNK = 1 << 21  # points at once: arrays of a size that memory is kept for
 SUSPECTS = 1000  # no more are looked at

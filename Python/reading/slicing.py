@@ -22,7 +22,8 @@ from ..ranks import agreed, rank_and_count, together, total
 from ..selecting import NothingChosen, Selection, as_option, none_chosen
 from . import NAMES_IN_COLUMNS, check_use
 from .formats import FORMATS, recognise
-from .nulls import NULLS, usual_nulls, zero_rows
+from .known import NULLS
+from .nulls import usual_nulls, zero_rows
 from .unpacking import STANDARD_INPUT, is_plain, named, unpacked
 from .upwards import notes_on_range
 

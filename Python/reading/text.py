@@ -17,9 +17,8 @@ import numpy
 
 from ..clouds import WHOLE, Cloud, Part, add_array, make_points
 from .columns import advice_on_columns, choose_columns
+from .known import COMMENT_MARKS, SUMMARY
 from .layouts import (
-    COMMENT_MARKS,
-    SUMMARY,
     check_marks,
     check_names,
     doubtful_marks,
@@ -32,12 +31,18 @@ from .layouts import (
 from ..messages import FileError, Reason, counted
 from ..progress import no_progress, told_items
 from ..selecting import MOST_VALUES, WordReader
+from ..names import option
 
 END_MARKS = b"\0\x1a\r\n "  # what DOS and full disks write behind the last line
 BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
 TAIL = 50  # lines at the end of a block among which summaries are looked for
 CHUNK = 1000  # lines that are tried at once where a block is not all numbers
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
+NAMED = 3  # that many lines of other kinds are named
+
+
+class BadLine(FileError):
+    """A line that is no row of the table."""
 
 
 # ---- blocks -----------------------------------------------------------------------------------
@@ -151,10 +156,13 @@ class Table:
     head_lines       lines before the data that are no comments, without blanks around
     headers, comments  how many lines before the data are such
     notes            for the user
+    skips            whether lines of other kinds are left out; bad_lines are [number, text] of those
+                     before the data
     """
 
-    def __init__(self, path, lines, columns, needed, advice):
+    def __init__(self, path, lines, columns, needed, advice, skips):
         self.path, self.needed, self.advice = path, needed, advice or advice_on_columns()
+        self.skips, self.can_skip, self.bad_lines = skips, advice is None, []
         self.layout = find_layout(path, lines[:5000], needed)
         head, preamble, self.comments = self.read_head(lines)
         self.head_lines = {lines[number - 1].strip() for number, _ in preamble}
@@ -182,11 +190,11 @@ class Table:
         if needed == 3:
             self.notes += doubtful_marks(rows, *self.indices)
             self.notes += doubtful_units(self.layout, head, self.names, self.indices)
-        begins = first_of_data(self, preamble)
+        begins = self.first_of_data(lines, preamble)
         if begins:
             self.first = begins - 1
             self.head_lines = {lines[n - 1].strip() for n, _ in preamble if n < begins}
-        self.headers = sum(number <= self.first for number, _ in preamble)
+        self.headers = sum(number <= self.first for number, _ in preamble) - len(self.bad_lines)
 
     def read_head(self, lines):
         """(lines before the data, those of them that are no comments, number of comments).
@@ -211,7 +219,19 @@ class Table:
         data = [line for line in lines[self.first : start] if self.is_row(line)]
         step = max(1, (len(lines) - start) // SAMPLE)
         later = [line for line in lines[start::step] if self.is_row(line)]
+        if self.skips:
+            data, later = ([line for line in some if self.is_like(line)] for some in (data, later))
         return [self.layout.words(line) for line in data + later], len(data)
+
+    def is_like(self, line):
+        """Whether a line holds enough numbers for a row."""
+        return self.layout.numbers(line) >= self.needed
+
+    def bad_line(self, number, line, why, advice=""):
+        """The error for a line that is no row."""
+        if self.can_skip and not (advice and self.is_like(line)):
+            advice = f"{option('skip_bad_lines')} leaves out such lines"
+        return BadLine(f"{self.path}, line {number}: {why}" + (advice and "; " + advice))
 
     def is_row(self, line):
         """Whether a line behind the header is data: not blank, no comment, header or summary."""
@@ -225,7 +245,9 @@ class Table:
     def name_columns(self, head, rows):
         """Sets words, width and names."""
         widths = collections.Counter(len(row) for row in rows)
-        self.words = self.width = max(len(rows[0]), widths.most_common(1)[0][0])
+        self.words = self.width = widths.most_common(1)[0][0]
+        if not self.skips:
+            self.words = self.width = max(len(rows[0]), self.width)
         # Where lines end with a separator, nothing stands behind it.
         ends = self.width > self.needed and not any("".join(row[self.width - 1 :]) for row in rows)
         self.names = find_names(self.layout, head, self.width, not ends)
@@ -233,35 +255,38 @@ class Table:
             self.width -= 1
             self.names = find_names(self.layout, head, self.width)
 
+    def first_of_data(self, lines, preamble):
+        """The number of the first line of what looked like a header but is data, as it lacks a value.
 
-def first_of_data(table, preamble):
-    """The number of the first line of what looked like a header but is data, as it lacks a value.
+        None where there is none. A line that looks like data but for one word is an error, no header.
+        """
+        for number, words in preamble:
+            try:
+                if self.lacks_a_value(number, words, lines[number - 1]):
+                    return number
+            except BadLine:
+                if not self.skips:
+                    raise
+                self.bad_lines.append([number, lines[number - 1].strip()])
+        return None
 
-    None where there is none. A line that looks like data but for one word is an error, no header.
-    """
-    path, width = table.path, table.width
-    for number, words in preamble:
-        values = [table.layout.number(word) for word in words]
+    def lacks_a_value(self, number, words, line):
+        """Whether a line before the data is a row without one of its values."""
+        values = [self.layout.number(word) for word in words]
         no_words = re.fullmatch(r"[-+\d.,;\seE]+", " ".join(words)) is not None
-        if 2 <= len(words) < width and (None not in values or no_words):
-            raise FileError(
-                f"{path}, line {number}: {len(words)} columns found where other lines have {width} "
-                "(mark it with # if it is no row of data)"
-            )
-        if len(words) < width:
-            continue
-        values = [values[i] for i in table.indices]
+        if 2 <= len(words) < self.width and (None not in values or no_words):
+            why = f"{len(words)} columns found where other lines have {self.width}"
+            raise self.bad_line(number, line, f"{why} (mark it with # if it is no row of data)")
+        if len(words) < self.width:
+            return False
+        values = [values[i] for i in self.indices]
         good = sum(v is not None and not math.isnan(v) for v in values)
         if None in values and good >= len(values) - 1:
             axis = values.index(None)
-            column = table.indices[axis]
-            raise FileError(
-                f"{path}, line {number}: '{words[column][:40]}' in column {column + 1} "
-                f"({'xyz'[axis]}) is not a number; {table.advice}"
-            )
-        if None not in values and good:
-            return number
-    return None
+            column = self.indices[axis]
+            why = f"'{words[column][:40]}' in column {column + 1} ({'xyz'[axis]}) is not a number"
+            raise self.bad_line(number, line, why, self.advice)
+        return None not in values and good > 0
 
 
 # ---- rows -------------------------------------------------------------------------------------
@@ -287,10 +312,16 @@ class Parser:
         self.ragged = []  # the first line with more words than others, and their number
         self.no_numbers = {}  # {index of an extra: [count, first line, word] of what is no number}
         self.summaries = []  # (line number, word)
+        # Lines of other kinds, and the first of them: [number, text].
+        first = table.bad_lines if blocks.begin == 0 else []
+        self.skipped, self.skipped_lines = len(first), first[:NAMED]
 
     def add(self, block, lines, skip):
         """Takes the lines of a block, but for the first so many, which are no data."""
-        plain = not skip and not any(mark.encode() in block for mark in COMMENT_MARKS)
+        before = self.skipped
+        if self.table.skips:
+            lines = self.without_short(block, lines, skip)
+        plain = not skip and before == self.skipped and not any(mark.encode() in block for mark in COMMENT_MARKS)
         if self.table.sees_summaries or any(map(self.table.summary, lines[-TAIL:])):
             plain = False
         rows = self.load(lines, b'"' in block) if plain else None
@@ -303,6 +334,22 @@ class Parser:
             self.add_carefully(lines, skip, b'"' in block)
         self.check_widths(block, lines, skip)
         self.line += len(lines)
+
+    def without_short(self, block, lines, skip):
+        """The lines with blanks for those that are too short for a row."""
+        lines = list(lines)
+        for i in self.of_other_width(block, lines):
+            words = self.table.layout.words(lines[i])
+            if i >= skip and self.table.is_row(lines[i]) and self.is_short(words):
+                self.skip(i, lines[i])
+                lines[i] = ""
+        return lines
+
+    def skip(self, i, line):
+        """Leaves out a line of another kind."""
+        self.skipped += 1
+        if len(self.skipped_lines) < NAMED:
+            self.skipped_lines.append([self.number(i), line.strip()])
 
     def number(self, i):
         """The number in the file of line i of the block."""
@@ -379,9 +426,23 @@ class Parser:
             some = kept[start : start + CHUNK]
             rows = self.load([lines[i] for i in some], quoted)
             if rows is None or len(rows) < len(some):
-                rows = numpy.array([self.row(lines[i], i) for i in some])
-            self.keep(rows, self.line + 1 + numpy.array(some), [lines[i] for i in some])
+                rows, some = self.rows(lines, some)
+            if some:
+                self.keep(rows, self.line + 1 + numpy.array(some), [lines[i] for i in some])
             self.alive(0.0)
+
+    def rows(self, lines, places):
+        """(the rows of the lines at some places, the places without those that are skipped)."""
+        rows, kept = [], []
+        for i in places:
+            try:
+                rows.append(self.row(lines[i], i))
+                kept.append(i)
+            except BadLine:
+                if not self.table.skips:
+                    raise
+                self.skip(i, lines[i])
+        return numpy.array(rows), kept
 
     def row(self, line, i):
         """The numbers of a line, its place in the block being i."""
@@ -397,19 +458,14 @@ class Parser:
         """A row that is not plain numbers: missing values, words in other columns, or an error."""
         table = self.table
         words, row = table.layout.words(line), []
-        where = f"{table.path}, line "
         for axis, index in zip("xyz", table.indices):
             if index >= len(words):
-                raise FileError(
-                    f"{where}{self.number(i)}: {counted(len(words), 'column')} found, "
-                    f"but {axis} is column {index + 1}"
-                )
+                why = f"{counted(len(words), 'column')} found, but {axis} is column {index + 1}"
+                raise table.bad_line(self.number(i), line, why)
             value = table.layout.number(words[index])
             if value is None:
-                raise FileError(
-                    f"{where}{self.number(i)}: '{words[index][:40]}' in column {index + 1} ({axis}) is "
-                    f"not a number; {table.advice}"
-                )
+                why = f"'{words[index][:40]}' in column {index + 1} ({axis}) is not a number"
+                raise table.bad_line(self.number(i), line, why, table.advice)
             row.append(value)
         for index in table.extras:
             value = table.layout.number(words[index]) if index < len(words) else math.nan
@@ -437,8 +493,13 @@ class Parser:
                 self.ragged = self.ragged or [self.number(i), len(words)]
                 if table.layout.separator:
                     return
-            elif len(words) < table.words and not table.layout.separator:
-                self.refuse_short(words, i)
+            elif self.is_short(words):
+                why = (
+                    f"{counted(len(words), 'column')} found where {table.words} are expected, and "
+                    "blanks do not show which one lacks; part the columns by commas or write nan for "
+                    "what is missing"
+                )
+                raise table.bad_line(self.number(i), lines[i], why)
 
     def of_other_width(self, block, lines):
         """The places of lines that may have more or fewer words than the others."""
@@ -461,17 +522,15 @@ class Parser:
         counts = numpy.diff(numpy.searchsorted(begins, ends), prepend=0)
         return numpy.flatnonzero(counts != table.words).tolist()
 
-    def refuse_short(self, words, i):
-        """Raises the error for a line with fewer words, unless only text lacks behind numbers."""
-        number = self.table.layout.number
-        for column in self.table.of_numbers:
-            if column >= len(words) or number(words[column]) is None:
-                raise FileError(
-                    f"{self.table.path}, line {self.number(i)}: "
-                    f"{counted(len(words), 'column')} found where {self.table.words} are "
-                    "expected, and blanks do not show which one lacks; part the columns by commas "
-                    "or write nan for what is missing"
-                )
+    def is_short(self, words):
+        """Whether blanks part fewer words than others have, unless only text lacks behind numbers."""
+        table = self.table
+        if len(words) >= table.words or table.layout.separator:
+            return False
+        return any(
+            column >= len(words) or table.layout.number(words[column]) is None
+            for column in table.of_numbers
+        )
 
     def take(self):
         """(rows, line numbers) since the last call. There must be some."""
@@ -489,6 +548,8 @@ class Parser:
             "repeated": self.repeated,
             "ragged": self.ragged,
             "summaries": self.summaries,
+            "skipped": self.skipped,
+            "skipped_lines": self.skipped_lines,
             "no_numbers": {str(i): [found] for i, found in self.no_numbers.items()},
         }
 
@@ -496,6 +557,7 @@ class Parser:
         """Takes the facts of the whole file as its own."""
         self.comments, self.repeated = facts["comments"], facts["repeated"]
         self.ragged, self.summaries = facts["ragged"], facts["summaries"]
+        self.skipped, self.skipped_lines = facts["skipped"], facts["skipped_lines"]
         self.no_numbers = {
             int(i): [sum(count for count, *_ in found), *found[0][1:]]
             for i, found in facts["no_numbers"].items()
@@ -524,6 +586,10 @@ class Parser:
             words = ", ".join(f"line {line:,} ({word})" for line, word in self.summaries[:5])
             more = f" and {len(self.summaries) - 5:,} more" if len(self.summaries) > 5 else ""
             notes.append(f"summary lines are left out: {words}{more}")
+        if self.skipped:
+            words = [f"line {line:,} ({text[:20]})" for line, text in self.skipped_lines[:NAMED]]
+            more = f" and {self.skipped - NAMED:,} more" if self.skipped > NAMED else ""
+            notes.append(f"lines of other kinds are left out: {', '.join(words)}{more}")
         for index, (count, line, word) in self.no_numbers.items():
             words = counted(count, "word is no number", "words are no numbers")
             where = f"line {line:,}" if count == 1 else f"first in line {line:,}"
@@ -531,7 +597,7 @@ class Parser:
         return notes
 
 
-def parsed(path, columns, needed, advice, progress, named=False, part=WHOLE):
+def parsed(path, columns, needed, advice, progress, named=False, part=WHOLE, skips=False):
     """Yields the Parser of a text file, or of a part of it, before and after each block of lines."""
     done = 0.0
 
@@ -541,7 +607,7 @@ def parsed(path, columns, needed, advice, progress, named=False, part=WHOLE):
         if head is None:
             raise FileError(f"{path}: is empty")
         head = lines_of(head[0])
-        table = Table(path, head, columns, needed, advice)
+        table = Table(path, head, columns, needed, advice, skips)
         parser, skip = Parser(table, blocks, lambda _: progress(done), named), 0
         yield parser
         for block, read in blocks:
@@ -555,10 +621,12 @@ def parsed(path, columns, needed, advice, progress, named=False, part=WHOLE):
             yield parser
 
 
-def parse(path, columns, needed, advice, progress, named=False):
+def parse(path, columns, needed, advice, progress, named=False, skips=False):
     """(parser, rows, line numbers, notes) of a text file."""
-    for parser in parsed(path, columns, needed, advice, progress, named):
+    for parser in parsed(path, columns, needed, advice, progress, named, skips=skips):
         pass
+    if not parser.parts:
+        raise FileError(f"{path}: no line is a row of x, y and z")
     return (parser, *parser.take(), parser.told())
 
 
@@ -592,7 +660,7 @@ def read_text(path, options):
     """
     named = bool(options.where or options.layer)
     parser, rows, numbers, notes = parse(
-        path, options.columns, 3, None, options.progress, named
+        path, options.columns, 3, None, options.progress, named, options.skip_bad_lines
     )
     table = parser.table
     cloud = Cloud(None, notes, lines=numbers)
@@ -619,7 +687,8 @@ class TextSlices:
 
     def __init__(self, path, options, part):
         self.parsed = parsed(
-            path, options.columns, 3, None, options.progress, bool(options.where), part
+            path, options.columns, 3, None, options.progress, bool(options.where), part,
+            options.skip_bad_lines,
         )
         self.parser = next(self.parsed)
 

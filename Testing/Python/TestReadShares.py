@@ -127,6 +127,8 @@ def options_of(chance, kind):
         options["keep_nulls"] = True
     if kind == "txt" and chance.random() < 0.4:
         options["columns"] = chance.choice(((2, 1, 3), (1, 2, 4), (3, 2, 1)))
+    if kind == "txt" and chance.random() < 0.4:
+        options["skip_bad_lines"] = True
     if kind == "las" and chance.random() < 0.5:
         options["classes"] = chance.choice(((1,), (2,), (1, 2), (5,)))
     if chance.random() < 0.3:

@@ -197,8 +197,13 @@ class Tables(unittest.TestCase):
     def refusal(self, content, **options):
         with self.assertRaises(FileError) as caught:
             self.read(content, **options)
-        self.assertNotIn("\n", str(caught.exception))
+        self.assert_one_line(str(caught.exception))
         return str(caught.exception)
+
+    def assert_one_line(self, text):
+        """A question about columns has the first rows below it, under their numbers."""
+        rows = text.split("\n")[1:]
+        self.assertTrue(not rows or rows[0].split() == [str(i + 1) for i in range(len(rows[0].split()))])
 
     def assert_coordinates(self, cloud, expected):
         numpy.testing.assert_array_equal(
@@ -334,7 +339,8 @@ class Doubts(Tables):
         rows, _ = columns_of("id nx ny z code")
         text = "".join(",".join(row) + "\n" for row in rows)
         error = self.refusal(text)
-        for words in ("two ways", "--columns 3,2,4", "--columns 2,3,4", f"x = {NEAR_Y[0]}"):
+        for words in ("two ways", "--columns 3,2,4", "--columns 2,3,4", "\n  1        2 ",
+                      f"\n  1  {NEAR_X[0]}  {NEAR_Y[0]}  {Z[0]}"):
             self.assertIn(words, error)
         expected = numpy.column_stack((NEAR_Y, NEAR_X, Z))
         self.assert_coordinates(self.read(text, columns=["3", "2", "4"]), expected)
@@ -343,8 +349,7 @@ class Doubts(Tables):
         rows = "\n1 2 3 4 5\n3 4 5 6 7\n5 5 5 5 9\n"
         for head, words in (
             ("X Y Z_depth Z_time Q", "columns 3 (Z_depth) and 4 (Z_time) may all be z"),
-            ("X_utm Y_utm X_local Y_local Z", "--columns 1,2,5 (first row: x = 1, y = 2, z = 5) or "
-             "--columns 3,4,5"),
+            ("X_utm Y_utm X_local Y_local Z", "choose --columns 1,2,5 or --columns 3,4,5\n"),
             ("X Y Depth TWT Q", "may all be z"),
             ("Easting Easting Northing Z Q", "may all be x"),
         ):
@@ -424,7 +429,6 @@ class Doubts(Tables):
             ("7.5E 48.2N 230\n", "a letter for north"),
             ("1\u00a0000,5 2\u00a0000,5 3 4\n", "marks between thousands"),
             ("2\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n" + "1 0 0 0\n" * 4 + "1 2 3 0.5\n", "PTX"),
-            ("Inline,Crossline,Z\n1,2,3\n2,2,5\n2,5,9\n", "columns 1 (Inline) and 2 (Crossline)"),
         ):
             with self.subTest(words):
                 self.assertIn(words, self.refusal(text))
@@ -536,11 +540,10 @@ class Doubts(Tables):
         cloud = self.read("X;Y;Depth;Corrected depth\n" + rows)
         self.assertIn("column 4 (Corrected depth) could be too", " ".join(cloud.notes))
 
-    def test_three_columns_without_names_that_look_like_z_x_y_are_told(self):
+    def test_three_columns_without_names_that_look_like_z_x_y_are_asked_about(self):
         text = "124.61;455047.36;5623112.03\n130.25;455160.25;5623112.75\n"
-        cloud = self.read(text)
-        self.assertEqual(cloud.points.GetPoint(0), (124.61, 455047.36, 5623112.03))
-        self.assertIn("if 1 is z: --columns 2,3,1", " ".join(cloud.notes))
+        self.assertIn("--columns 1,2,3 or --columns 2,3,1\n", self.refusal(text))
+        self.assertEqual(self.read(text, columns="1,2,3").points.GetPoint(0)[0], 124.61)
         self.assertEqual(len(self.read("Z;X;Y\n" + text).notes), 2)
 
     def test_summary_lines_are_left_out_and_told(self):
@@ -617,6 +620,118 @@ def random_table(generator):
     points.append([f"{v:.2f}" for v in z])
     words = [[str(v) for v in column] for column in before + points + after]
     return words, len(before)
+
+
+class OthersBeside(Tables):
+    """What stands beside x, y and z in tables without their names, and is taken for none of them."""
+
+    def table(self, *columns):
+        return "".join(" ".join(map(str, row)) + "\n" for row in zip(*columns))
+
+    def test_nulls_are_left_out_before_columns_are_judged(self):
+        generator = numpy.random.default_rng(8)
+        count = 829
+        x, y = generator.uniform(0, 4000, (2, count)).round(2)
+        z = (1700 + x / 50 + y / 90).round(2)
+        others = [generator.normal(0, 900, count).round(2), generator.uniform(0, 1, count).round(2)]
+        z[[5, 80, 300, 828]] = 1e30
+        cloud = self.read(self.table(x + 400000, y + 6500000, z, *others, numpy.arange(count) % 5))
+        self.assert_coordinates(cloud, numpy.column_stack((x + 400000, y + 6500000, z)))
+
+    def picks(self, shift):
+        """Name, x, y, inline, crossline and z of picks along five lines; x is moved by shift(inline)."""
+        inline, crossline = numpy.divmod(numpy.arange(100), 20)
+        inline, crossline = 2100 + 7 * inline, 800 + 5 * crossline
+        generator = numpy.random.default_rng(4)
+        x = 430000 + 25.0 * inline + shift(inline) + generator.uniform(-9, 9, 100)
+        y = 6780000 + 12.5 * crossline + generator.uniform(-4, 4, 100)
+        z = (1900 + x / 100 - y / 900).round(2)
+        return [["Top"] * 100, x.round(2), y.round(2), inline, crossline, z]
+
+    def test_the_number_of_a_line_is_no_height(self):
+        columns = self.picks(lambda inline: 0.0)
+        for order in ([0, 1, 2, 3, 4, 5], [0, 1, 2, 4, 3, 5], [0, 3, 4, 1, 2, 5]):
+            cloud = self.read(self.table(*(columns[i] for i in order)))
+            self.assert_coordinates(cloud, numpy.column_stack((columns[1], columns[2], columns[5])))
+            self.assertIn("a line, trace or place in a grid", " ".join(cloud.notes))
+        columns = self.picks(lambda inline: 900.0 * (inline % 3))  # no plane of lines
+        error = self.refusal(self.table(*columns))
+        self.assertIn("choose --columns 2,3,4 or --columns 2,3,6\n", error)
+        self.assertIn("\n    1          2  ", error)
+        self.assertIn(f"\n  Top  {columns[1][0]}  {columns[2][0]}  2100  800  ", error)
+        # Whole heights that rise and fall are heights.
+        columns[3] = (1900 + 20 * numpy.sin(columns[1] / 30)).astype(int)
+        cloud = self.read(self.table(*columns[1:]))
+        self.assert_coordinates(cloud, numpy.column_stack(columns[1:4]))
+
+    def test_lines_and_traces_are_x_and_y_where_no_others_are(self):
+        for head in ("Inline Crossline Z", "IL XL Z", "Inline Crossline Z Correlation Tracking_Order"):
+            rows, width = [], len(head.split())
+            for i in range(30):
+                rows.append([100 + i // 6, 200 + 2 * (i % 6), 1800.5 + i, 0.5, 7][:width])
+            cloud = self.read(head + "\n" + self.table(*zip(*rows)))
+            self.assert_coordinates(cloud, [row[:3] for row in rows])
+            self.assertIn("lengths count lines and traces, not metres", " ".join(cloud.notes))
+        self.assertIn("z = 5", " ".join(self.read(
+            "Inline Crossline X Y Z\n1 2 3 4 5\n1 3 3 5 5\n2 2 4 4 5\n").notes))
+
+    def test_dates_and_times_are_no_coordinates(self):
+        generator = numpy.random.default_rng(6)
+        second = numpy.arange(300) * 7
+        lat, lon = (54.3 + second / 9e4).round(6), (10.2 + second / 7e4).round(6)
+        depth = generator.uniform(8, 12, 300).round(2)
+        clock = [12 + second // 3600, second // 60 % 60, second % 60]
+        date = [[2019] * 300, [7] * 300, [23] * 300]
+        for before in (clock, [*date, *clock], [*reversed(date), *clock], [*date, *clock[:2]]):
+            n = len(before)
+            error = self.refusal(self.table(*before, lat, lon, depth))
+            self.assertIn(f"--columns {n + 2},{n + 1},{n + 3} or --columns {n + 1},{n + 2},{n + 3}\n",
+                          error)
+            self.assertIn(f"{lat[1]}  {lon[1]}", error)
+            x, y = (lon * 1e4 + 400000).round(2), (lat * 1e4 + 5500000).round(2)
+            cloud = self.read(self.table(*before, x, y, depth))
+            self.assert_coordinates(cloud, numpy.column_stack((x, y, depth)))
+            self.assertIn("a part of a date or time", " ".join(cloud.notes))
+        head = "Year Month Day Hour Min Sec Lat Lon Signal Echo\n"
+        text = head + self.table(*date, *clock, lat, lon, depth, depth + 1)
+        self.assertIn("but not z; it may be columns 9 (Signal) and 10 (Echo)", self.refusal(text))
+
+    def test_degrees_that_can_be_read_one_way_only_are_asked_about(self):
+        text = self.table(LAT, LON + 100, Z)
+        self.assertIn("choose --columns 2,1,3 or --columns 1,2,3\n", self.refusal(text))
+
+
+class LinesOfOtherKinds(Tables):
+    def test_they_are_an_error_that_says_how_they_are_left_out(self):
+        points = [(452000 + 13.5 * i, 5411000 + i * i % 90, 230.25 + i % 7) for i in range(40)]
+
+        def rows(separator, form="{}"):
+            return [separator.join(form.format(v) for v in point) for point in points]
+
+        profiles = rows(" ")
+        profiles[0:0], profiles[21:21], profiles[43:] = ["Profile 1"], ["EOD", "Profile 2"], ["EOD"]
+        station = [f"{7 + i},{row},GRD" for i, row in enumerate(rows(","))]
+        station[3:3], station[9:9], station[30:30] = ["JB,NM16"], ["BS,OP1,BP7"], ["--a word"]
+        codes = [f"P{i} {row}" for i, row in enumerate(rows(" "))]
+        codes[0:0], codes[12:12], codes[30:30] = ["ST 12.5 1.5"], ["ST 13.5 1.5"], ["08 1 2"]
+        for lines, first, left_out in (
+            (profiles, "line 22", "line 22 (EOD), line 23 (Profile 2), line 44 (EOD)"),
+            (station, "line 4", "line 4 (JB,NM16), line 10 (BS,OP1,BP7), line 31 (--a word)"),
+            (codes, "line 13", "line 13 (ST 13.5 1.5), line 31 (08 1 2)"),
+            (profiles + ["EOD"] * 50, "line 22", "line 44 (EOD) and 50 more"),
+        ):
+            text = "\n".join(lines) + "\n"
+            error = self.refusal(text)
+            self.assertIn(f", {first}: ", error)
+            self.assertTrue(error.endswith("; --skip-bad-lines leaves out such lines"), error)
+            cloud = self.read(text, skip_bad_lines=True)
+            self.assert_coordinates(cloud, points)
+            told = [note for note in cloud.notes if note.startswith("lines of other kinds are left out: ")]
+            self.assertIn(left_out, told[0])
+        self.assertIn("no line is a row", self.refusal(
+            "a 1 2 3\nb 2 3 4\n", columns="1,2,3", skip_bad_lines=True))
+        # A line with a wrong column is no line of another kind.
+        self.assertIn("--columns chooses", self.refusal("1 2 3\n4 5 6\n4 five 6 7\n"))
 
 
 class OneNameMissing(Tables):
@@ -730,7 +845,7 @@ class Parsing(Tables):
                     take_out(self.read("\n".join(rows)), ReadOptions())
                     read += 1
                 except FileError as error:
-                    self.assertNotIn("\n", str(error))
+                    self.assert_one_line(str(error))
         self.assertGreaterEqual(read, 100)  # those without garbage, at least
 
     def test_blocks_are_joined_and_lines_counted_through_them(self):

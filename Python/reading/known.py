@@ -1,0 +1,213 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is known of tables: the words and signs by which columns, nulls and layouts are told, and what speaks
+for a reading of columns. Nothing here does anything."""
+
+import re
+
+
+def _words(text):
+    return frozenset(text.split())
+
+
+# Names of English, German, French, Spanish, Portuguese, Norwegian, Italian, Dutch and Polish, some
+# of Finnish and Czech, as plain() writes them: (axis, rank, direction, names). A lower rank is the
+# better name.
+AXES = (
+    ("x", 0, "", _words("x")),
+    ("y", 0, "", _words("y")),
+    ("z", 0, "", _words("z")),
+    ("x", 1, "", _words(
+        "easting eastings east rechtswert rechts rw ostwert ost oest este leste est abscisse "
+        "abscissa abscisa absis oost oosting ostkoordinate wschod wschodnia ostkoordinat "
+        "oestkoordinat ostverdi eastcoordinate coordeste oosten rechtsw oestverdi "
+        "ita itakoordinaatti"
+    )),
+    ("y", 1, "", _words(
+        "northing northings north hochwert hoch hw nordwert nord norte ordonnee ordenada ordinata "
+        "ordinate noord noording nordkoordinate polnoc polnocna nordkoordinat nordverdi noorden "
+        "hochw pohjoinen pohjoiskoordinaatti"
+    )),
+    ("z", 1, "", _words(
+        "elevation elevations elev elevacion elevacao elevazione height heights hgt ht hoehe hohe "
+        "gelaendehoehe gelandehohe altitude alt altitud altura altezza cota cote quota kote hoyde "
+        "hoeyde hoogte wysokosc rzedna topography level niveau rl orthoheight ellipheight "
+        "gelaende gelande terrenghoyde terrenghoeyde moh maaiveld maaiveldhoogte bodemhoogte "
+        "hoogteligging wys rzednaterenu pnm quotaslm altimetria altimetrie topo grundhoehe "
+        "bodenhoehe bodenhohe gok gokhoehe meereshohe meereshoehe hojde hoejde hoeydekote hae msl "
+        "nap nhn amsl korkeus vyska"
+    )),
+    ("x", 2, "", _words("e oe")),
+    ("y", 2, "", _words("n")),
+    ("z", 2, "", _words("h")),
+    ("z", 2, "depth", _words(
+        "depth depths tiefe profondeur prof profundidad profundidade profondita dybde diepte "
+        "glebokosc tvd tvdss sounding soundings sonde bathymetry bathymetrie tvdm wassertiefe "
+        "meerestiefe wasserstiefe bunndybde havdybde vanndybde waterdiepte bodemdiepte profund "
+        "waterdepth seabeddepth"
+    )),
+    ("z", 2, "time", _words("twt owt twtt laufzeit")),
+    ("x", 3, "", _words(
+        "lon long longitude lng laenge lange laengengrad langengrad longitud lengdegrad lengde "
+        "lengtegraad longitudine dlugosc lonx longitudeddeg laengde"
+    )),
+    ("y", 3, "", _words(
+        "lat latitude breite breitengrad latitud breddegrad bredde breedtegraad latitudine "
+        "szerokosc laty"
+    )),
+    ("z", 4, "time", _words("time zeit temps tiempo tempo tid tijd czas")),
+)
+# Words that may stand beside the name of an axis.
+BESIDE = _words(
+    "utm coord coords coordinate coordinates koordinate koordinaten koordinat koordinaat "
+    "coordinaat coordenada coordenadas coordonnee coordonnees coordinata wspolrzedna wsp point pt "
+    "p map world gps wgs etrs epsg local grid proj projected geo m ft feet meter meters metre "
+    "metres us deg degree degrees degr dd decimal ms s km mm cm cdp bin center centre centroid "
+    "mid midpoint source receiver shot sp ellipsoid ellipsoidal ell ellip ellipsoidische ortho "
+    "orthometric orthometrique msl above sea surface top base gk rd lambert ngf nap nhn nn dhhn "
+    "ground terrain water bed value val pos position posisjon wgs84 total station survey surveyed "
+    "zone geografica geograficzna geographique geographische decimale z in du de la le den der "
+    "gridded slm snm nmm gnss rtk true average mbsl amsl asl navd ngvd odn lv rt sirgas ed psad "
+    "magna irenet osgb bng cs crs srs seabed seafloor bottom dtm dem dgm dsm mdt bunn fond fondo "
+    "bodem grund uber ueber sobre sur over reduced boven l ii iii iv sjobunn"
+)
+# What a column with such a name is, when it is no coordinate. A name that holds one of the words of
+# "measure" is no coordinate whatever else it holds.
+ROLES = (
+    ("an id", _words(
+        "id fid oid objectid nr no num nummer number numero point pt pkt punkt punktnr "
+        "punktnummer ptnr punto ponto punti punt puntnr puntnummer pnr pno name matricule station "
+        "index row pid ptid ident uid gid serial nome nombre nom nazwa numer naam pointid "
+        "pointnumber pointno pointname p idx piste pistenumero pistenro bod cislo cislobodu cb eb"
+    )),
+    ("a line, trace or place in a grid", _words(
+        "line inline il iline xline crossline xl trace tr cdp cmp sp shotpoint shot bin ffid "
+        "linje linie linea ligne linha profil profile track col column swath lijn traza spur "
+        "traco"
+    )),
+    ("a date or a time", _words(
+        "date datum fecha data dato hour gpstime timestamp utc epoch datetime second seconds tow "
+        "utctime heure hora uhrzeit year month day hours minute minutes min hh mm yyyy doy sec jahr monat "
+        "tag stunde annee mois jour minuto segundo ano mes dia hr"
+    )),
+    ("a colour", _words("red green blue r g b rot gruen grun blau rouge vert bleu alpha rgb")),
+    ("a code", _words(
+        "code kod kode codigo codice class classification klasse classe return returns user flag "
+        "description desc remark comment bemerkung beschreibung descripcion descricao opis "
+        "bemerking"
+    )),
+    ("a measure", _words(
+        "intensity amplitude quality std stddev sigma sd rms error err uncertainty accuracy "
+        "precision velocity speed heading pitch roll nx ny nz normal confidence hdop pdop vdop "
+        "tide draft angle slope aspect undulation geoid dev deviation residual delta dx dy dz "
+        "thickness offset snr weight fold scan beam ping mean stdev count density tpu tvu thu fom "
+        "antenna ant target instrument prism rod pole vel vx vy vz"
+    )),
+)
+ABBREVIATED = _words("cb eb")  # "č.b.", also as read from another code page
+COLOURS = {
+    "red": _words("red r rot rouge"),
+    "green": _words("green g gruen grun vert"),
+    "blue": _words("blue b blau bleu"),
+}
+UNITS = {
+    "metres": _words("m meter meters metre metres mtr"),
+    "feet": _words("ft feet foot usft ftus sft"),
+    "kilometres": _words("km kilometer kilometers kilometre kilometres"),
+    "centimetres": _words("cm centimeter centimeters centimetre centimetres"),
+    "millimetres": _words("mm millimeter millimeters millimetre millimetres"),
+}
+UNITS_OF_TIME = _words("s sec secs second seconds ms msec msecs millisecond milliseconds us")
+HORIZONS = _words("horizon horizons horizont horizonte horisont orizzonte horyzont hor tvdss")
+SEISMIC = _words("inline il iline xline crossline xl trace tr cdp cmp")
+LETTERS_OF_AXES = _words("e oe n h")
+LETTERS = str.maketrans({"ø": "oe", "æ": "ae", "ß": "ss", "ł": "l", "Ø": "Oe", "Ł": "L"})
+
+# ---- lines and words ----------------------------------------------------------------------------
+
+COMMENT_MARKS = ("#", "%", "//", "!", "*", ">")
+MISSING = set(
+    "na n/a #n/a n.a. null none nil nodata no-data missing void - -- ? * -nan nan(ind)".split()
+) | {""}
+ESRI_GRID, SURFER_GRID = "an ESRI ASCII grid", "a Surfer grid"  # which GDAL reads
+# How files begin that are no tables, and what they are.
+NO_TABLES = (
+    (r"ncols\b", ESRI_GRID),
+    (r"dsaa\b", SURFER_GRID),
+    (r"fsasci\b", "a CPS-3 grid"),
+    (r"gocad\b", "a GOCAD file"),
+    (r"\*?11\d{4}[+-]", "a Leica GSI file"),
+    (r"\d+\n\d+\n(\S+ +\S+ +\S+ *\n){4}(\S+ +\S+ +\S+ +\S+ *\n){4}", "a Leica PTX scan"),
+    (r"<[?!a-z]", "XML or HTML"),
+    (r"[{\[]\s*[\"{\[]", "JSON"),
+)
+COMMA_IN_QUOTES = r"\"\s*[-+]?\d+,\d+\s*\"\s*,"  # "1,5","2,5"
+# What keeps words from being numbers, and what it is.
+BLANK_IN_NUMBER = r"\d[\u00a0\u202f]\d{3}"
+NO_NUMBERS = (
+    (
+        r"(?<!\w)\d{1,3}[,.' ]\d{3}[,.' ]\d{3}|\d,\d{3}\.\d|\d\.\d{3},\d|" + BLANK_IN_NUMBER,
+        "marks between thousands",
+    ),
+    (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", "degrees, minutes and seconds"),
+    (r"\d\s?[NSEW]\b", "a letter for north, south, east or west"),
+)
+
+
+# How a line begins that holds totals of the others, in the languages of the names of columns.
+SUMMARY = re.compile(
+    r"[\s;,|\"]*((?:grand\s+)?(?:total|subtotal|sum|mean|average|avg|max|min|maximum|minimum|"
+    r"median|range|rms|std|stdev|stddev|sd|mittel|mittelwert|summe|gesamt|moyenne|"
+    r"somme|standardabweichung|[eé]cart[ -]type|m[eé]dia|suma|soma|somma|totale|totaal|"
+    r"gemiddelde|m[ií]nimo|m[aá]ximo|minimo|massimo|srednia|\u015brednia|keskiarvo|summa)"
+    r"(?:[ .]*dev\w*\.?| value)?)[\"\s:=.]*(?:[;,\t|]|\s[-+\d.])",
+    re.I,
+)
+
+# ---- nulls --------------------------------------------------------------------------------------
+
+FLOAT_MAX = 3.4028234663852886e38
+NULLS = (
+    (-9999.0, -999.25, -999.0, -9999.25, -99999.0, -999999.0, -9999999.0, -99999.99, -9999.99)
+    + (9999.0, 99999.0, 999999.0, 9999900.0, 9999999.0, 999.25, 99999.99)
+    + (-32768.0, -32767.0, 32767.0, -2147483648.0, 2147483647.0)
+    + (1e30, -1e30, 1e20, -1e20, 1e35, 1.70141e38, FLOAT_MAX, -FLOAT_MAX, 3.4e38, -3.4e38)
+)
+
+# ---- readings of columns ------------------------------------------------------------------------
+
+INLINES, CROSSLINES = _words("inline il iline"), _words("crossline xline xl")
+FINNISH = {"p": "y", "i": "x"}  # pohjoinen, itä
+# What speaks for a reading of columns as x, y and z by their values, and against it. Some differences of
+# sums are those of cases: "stands first" outweighs a fault of all but the weightiest.
+WEIGHTS = {
+    "one pair": 10,  # of names
+    "as many decimals": 16,  # x and y
+    "as wide as high": 6,  # to a factor of 30
+    "z spans less": 16,  # than ten times what x and y do
+    "z is higher than any place": -16,
+    "stands first": 10,
+    "x rises": -7,  # in all rows, as a time does
+    "x is a line": -10,
+    "x and y count": -7,  # as line and trace do
+    "x and y are a grid": 7,
+    "z rises along lines": -10,  # whole numbers, as those of lines are
+    "z behind lines": -8,
+}
+# A reading is certain if the next is this much worse; more, where the reading itself is no good one.
+GOOD, CLEAR, CLEAR_OF_POOR = 30, 4, 6
+# The parts of a time: least, most, and how many seconds they are.
+PARTS_OF_TIME = {
+    "year": (1900, 2100, 366 * 86400.0), "month": (1, 12, 31 * 86400.0), "day": (1, 31, 86400.0),
+    "day of year": (1, 366, 86400.0), "hour": (0, 24, 3600.0), "minute": (0, 59, 60.0),
+    "second": (0, 61, 1.0),
+}
+TIMES = tuple(
+    tuple(parts.split(", "))
+    for parts in (
+        "year, month, day, hour, minute, second", "day, month, year, hour, minute, second",
+        "month, day, year, hour, minute, second", "year, day of year, hour, minute, second",
+        "year, month, day, hour, minute", "year, day of year, hour, minute", "year, month, day",
+        "day, month, year", "month, day, year", "hour, minute, second",
+    )
+)

@@ -1,0 +1,9 @@
+GOCAD VSet 1
+HEADER {
+name: a
+}
+VRTX 1 0 0 1.5
+VRTX 2 10 0 2.5
+VRTX 3 0 10 3.5
+VRTX 4 10 10 4.5
+END
