@@ -53,7 +53,8 @@ def project(path, cloud):
         return cloud.crs
     if (abs(xy) > (LONGITUDES, LATITUDES)).any():
         bad = xy[(abs(xy) > (LONGITUDES, LATITUDES)).any(axis=1)][0]
-        raise FileError(f"{path}: {bad[0]:.10g}, {bad[1]:.10g} is no longitude and latitude, as {option('project')} needs")
+        where = f"{bad[0]:.10g}, {bad[1]:.10g}"
+        raise FileError(f"{path}: {where} is no longitude and latitude, as {option('project')} needs")
     around = numpy.where(xy[:, 0] < 0, xy[:, 0] + 360.0, xy[:, 0])
     if numpy.ptp(around) < numpy.ptp(xy[:, 0]):  # on both sides of the antimeridian
         xy[:, 0] = around

@@ -51,7 +51,8 @@ def read_points(path, options):
     try:
         corners = numpy.array([[places[node] for node in row] for row in faces[:, 2:].tolist()])
     except KeyError as error:
-        raise FileError(f"{path}: is damaged: an element has the node {error.args[0]:g}, which is not there") from None
+        node = f"{error.args[0]:g}"
+        raise FileError(f"{path}: is damaged: an element has the node {node}, which is not there") from None
     if len(corners) and not options.points_only:
         cloud.notes += check_faces(path, made_of(xyz, corners), options)
     return cloud

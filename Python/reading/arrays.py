@@ -3,8 +3,6 @@
 """Arrays of numpy: rows of x, y, z; columns by name; grids of elevations, with x and y or without.
 Of files, .npy and .npz, and as reconstruct() takes them."""
 
-import zipfile
-
 import numpy
 
 from ..clouds import Cloud, add_array, make_points, slices
@@ -20,7 +18,7 @@ def loaded(path):
     try:
         found = numpy.load(path, mmap_mode="r", allow_pickle=False)
         return dict(found) if hasattr(found, "files") else found
-    except (ValueError, OSError, EOFError, SyntaxError, zipfile.BadZipFile, KeyError) as error:
+    except Exception as error:  # damage shows itself in many ways, of numpy, tokenize, zipfile and zlib
         raise FileError(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
 
 
@@ -104,7 +102,8 @@ def cloud_of_grid(path, z, x=None, y=None):
         x, y = numpy.meshgrid(x, y)
     if x.shape != z.shape or y.shape != z.shape:
         shapes = ", ".join(f"{name} {' x '.join(map(str, v.shape))}" for name, v in zip("xyz", (x, y, z)))
-        raise FileError(f"{path}: x needs {columns} values and y {rows}, or each as many as z; the shapes are {shapes}")
+        needed = f"x needs {columns} values and y {rows}, or each as many as z"
+        raise FileError(f"{path}: {needed}; the shapes are {shapes}")
     cloud = points_of_raster(path, *(v.astype("f8") for v in (x, y, z)))
     cloud.notes += notes
     return cloud

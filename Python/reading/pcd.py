@@ -3,6 +3,7 @@
 """Points of PCD files, as the Point Cloud Library writes them. What Debian has for Python, python3-pcl, has no
 doubles and no fields but x, y, z and colour, and is gone from Debian 13."""
 
+import math
 import re
 import struct
 
@@ -33,7 +34,8 @@ def read_header(path, stream):
         names = [name if name != "_" else f"_{i}" for i, name in enumerate(words["FIELDS"])]
         kinds = [f"<{KINDS[kind]}{int(size)}" for kind, size in zip(words["TYPE"], words["SIZE"])]
         shape = [(name, kind, (count,)) for name, kind, count in zip(names, kinds, counts)]
-        words["POINTS"] = int(words["POINTS"][0]) if "POINTS" in words else int(words["WIDTH"][0]) * int(words["HEIGHT"][0])
+        sizes = [words["POINTS"][0]] if "POINTS" in words else [words["WIDTH"][0], words["HEIGHT"][0]]
+        words["POINTS"] = math.prod(map(int, sizes))
         return words, numpy.dtype([field for field in shape if field[2] != (0,)])
     except (KeyError, IndexError, ValueError, TypeError) as error:
         raise FileError(f"{path}: is cut off or damaged within its header: {error}") from None
@@ -125,7 +127,8 @@ def read_points(path, options):
         values = rows[name][keep]
         if name in ("rgb", "rgba") and values.dtype.itemsize == 4 and values.shape[1] == 1:
             packed = numpy.ascontiguousarray(values).view("<u4").ravel()
-            values, name = numpy.column_stack([packed >> 16 & 255, packed >> 8 & 255, packed & 255]).astype("u1"), "RGB"
+            values = numpy.column_stack([packed >> shift & 255 for shift in (16, 8, 0)]).astype("u1")
+            name = "RGB"
         if name not in ("x", "y", "z"):
             add_array(cloud.points, name, values[:, 0] if values.shape[1] == 1 else values)
     if rows["x"].dtype == "<f4":

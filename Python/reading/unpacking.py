@@ -46,7 +46,7 @@ def is_archive(path):
     try:
         with zipfile.ZipFile(path) as archive:
             return not any(WHOLE.search(name) for name in archive.namelist())
-    except (OSError, zipfile.BadZipFile, ValueError):
+    except (OSError, zipfile.BadZipFile, ValueError, NotImplementedError):
         with open(path, "rb") as stream:
             return stream.read(4) == b"PK\3\4" and not WHOLE.search(path)
 

@@ -9,6 +9,7 @@ import unittest
 import numpy
 from in_folder import InFolder, coordinates
 from vtkelevationsurface import reconstruct
+from vtkelevationsurface.messages import FileError
 
 X, Y = numpy.arange(20) * 5.0 + 100, numpy.arange(15) * -4.0 + 900
 Z = numpy.random.default_rng(1).normal(size=(15, 20))
@@ -64,6 +65,21 @@ class Arrays(InFolder):
             self.assertEqual(result.surface.GetNumberOfPolys(), expected)
             found = coordinates(result.cloud)
             numpy.testing.assert_allclose(found, NODES, rtol=1e-6)
+
+    def test_no_wrong_byte_makes_anything_but_one_line(self):
+        random = numpy.random.default_rng(6)
+        for name, content in (
+            ("a.npy", packed(numpy.save, Z)), ("a.npz", packed(numpy.savez, x=X, y=Y, z=Z)),
+            ("b.npz", packed(numpy.savez_compressed, z=Z)),
+        ):
+            for _ in range(60):
+                wrong = bytearray(content)
+                for at in random.integers(0, len(wrong) if random.integers(2) else 128, 2):
+                    wrong[at] = random.integers(0, 256)
+                try:
+                    self.read(bytes(wrong), name)
+                except FileError as error:
+                    self.assertNotIn("\n", str(error))
 
     def test_what_does_not_fit_is_refused(self):
         for words, given in (
