@@ -95,7 +95,7 @@ class Input(unittest.TestCase):
 
     def test_what_is_no_cloud_of_points_is_refused_in_words(self):
         for points, error, words in (
-            (SHEET[:, :2], ValueError, "rows of 3 numbers are needed; the shape is 144 x 2"),
+            (SHEET[:, :2], ValueError, "rows of 3 numbers are needed, or x= and y= of a grid; the shape is 144 x 2"),
             (SHEET[0], ValueError, "the shape is 3"),
             (numpy.empty((0, 3)), ValueError, "the shape is 0 x 3"),
             ([["a", "b", "c"]], TypeError, "points: not an array of numbers"),
