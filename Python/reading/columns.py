@@ -346,19 +346,18 @@ class Search:
         """{indices: score} of the readings of columns, in a row or with numbers of lines before z."""
         count, readings = self.needed, {}
         for k in range(len(columns) - count + 1):
-            reading = tuple(columns[k : k + count])
-            readings[reading] = self.score(reading) + (
-                WEIGHTS["a column is left out"] * (k - 1) if k else WEIGHTS["stands first"]
-            )
-            if k == 1 and self.is_grid(*reading[:2]) and not self.is_grid(*columns[:2]):
-                readings[reading] += WEIGHTS["x and y are a grid"]
-        x, y, *others = columns
-        if count == 3 and self.counts_along(others[0]) and not self.may_count(x, y):
-            beside = readings[tuple(columns[:3])] + WEIGHTS["z rises along lines"]
-            for z in others[1:]:
-                score = self.score((x, y, z)) + WEIGHTS["stands first"] + WEIGHTS["z behind lines"]
-                readings[x, y, z] = score + WEIGHTS["a column is left out"] * self.counts_along(z)
-            readings[tuple(columns[:3])] = beside
+            x, y, *z = columns[k : k + count]
+            place = WEIGHTS["a column is left out"] * (k - 1) if k else WEIGHTS["stands first"]
+            if k == 1 and self.is_grid(x, y) and not self.is_grid(*columns[:2]):
+                place += WEIGHTS["x and y are a grid"]
+            readings[x, y, *z] = self.score((x, y, *z)) + place
+            others = columns[k + count :]
+            if z and others and self.counts_along(z[0]) and not self.may_count(x, y):
+                readings[x, y, *z] += WEIGHTS["z rises along lines"]
+                for other in others:
+                    behind = WEIGHTS["z behind lines"] + place
+                    behind += WEIGHTS["a column is left out"] * self.counts_along(other)
+                    readings[x, y, other] = self.score((x, y, other)) + behind
         return readings
 
     def score(self, reading):

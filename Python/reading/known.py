@@ -198,7 +198,7 @@ WEIGHTS = {
     "z behind lines": -8,
 }
 # A reading is certain if the next is this much worse; more, where the reading itself is no good one.
-GOOD, CLEAR, CLEAR_OF_POOR = 30, 4, 6
+GOOD, CLEAR, CLEAR_OF_POOR = 33, 4, 6
 # The parts of a time: least, most, and how many seconds they are.
 PARTS_OF_TIME = {
     "year": (1900, 2100, 366 * 86400.0), "month": (1, 12, 31 * 86400.0), "day": (1, 31, 86400.0),
