@@ -109,7 +109,8 @@ set(es_Adapt
   PatchedSurface
   ReportMessages
   Requests
-  TrimmedSurface)
+  TrimmedSurface
+  UsedPoints)
 set(es_headers_Adapt
   Adapt VTKClasses VTKVersions)
 set(es_Parts

@@ -29,6 +29,10 @@ set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}"
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_BINDIR}")
 set(es_library_destination "${CMAKE_INSTALL_LIBDIR}")
+if (SKBUILD) # by pip: the library lies in the package, which finds it there
+  set(es_library_destination "vtkelevationsurface")
+  set(CMAKE_INSTALL_RPATH "$ORIGIN")
+endif ()
 set(es_cmake_destination "${CMAKE_INSTALL_LIBDIR}/cmake/vtkElevationSurface")
 
 set(CMAKE_CXX_STANDARD 17)
@@ -169,8 +173,12 @@ install(FILES "${CMAKE_CURRENT_SOURCE_DIR}/LICENSE"
 
 # ---- Python ------------------------------------------------------------------------------------
 if (ES_WRAP_PYTHON)
-  if (NOT ES_PARAVIEW)
+  if (SKBUILD)
+    set(es_python_destination ".")
+  elseif (NOT ES_PARAVIEW)
     vtk_module_python_default_destination(es_python_destination)
+  endif ()
+  if (NOT ES_PARAVIEW)
     set(es_python_program "${Python3_EXECUTABLE}")
   endif ()
   vtk_module_wrap_python(
@@ -188,7 +196,7 @@ if (ES_WRAP_PYTHON)
     "${CMAKE_BINARY_DIR}/${es_python_package}/__init__.py" @ONLY)
   file(GLOB_RECURSE es_python_files CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}/Python"
     "${CMAKE_CURRENT_SOURCE_DIR}/Python/*.py" "${CMAKE_CURRENT_SOURCE_DIR}/Python/help.txt"
-    "${CMAKE_CURRENT_SOURCE_DIR}/Python/properties.ini")
+    "${CMAKE_CURRENT_SOURCE_DIR}/Python/properties.ini" "${CMAKE_CURRENT_SOURCE_DIR}/Python/py.typed")
   foreach (file IN LISTS es_python_files)
     configure_file("Python/${file}" "${CMAKE_BINARY_DIR}/${es_python_package}/${file}" COPYONLY)
     get_filename_component(folder "${file}" DIRECTORY)
@@ -199,6 +207,23 @@ if (ES_WRAP_PYTHON)
   install(FILES "${CMAKE_BINARY_DIR}/${es_python_package}/__init__.py"
     DESTINATION "${es_python_package}"
     COMPONENT   "${es_python_component}")
+
+  # The entry points of pyproject.toml, by which PyVista finds the package; pip writes its own.
+  if (NOT ES_PARAVIEW AND NOT SKBUILD)
+    set(es_metadata "${es_python_package}-${PROJECT_VERSION}.dist-info")
+    file(STRINGS pyproject.toml es_lines REGEX "^\\[project\\.entry-points|= \"vtkelevationsurface\\.")
+    list(TRANSFORM es_lines REPLACE "^.project.entry-points.(\"[^\"]*\").$" "[\\1]")
+    list(JOIN es_lines "\n" es_lines)
+    string(REPLACE "\"" "" es_lines "${es_lines}")
+    file(WRITE "${CMAKE_BINARY_DIR}/${es_metadata}/entry_points.txt" "${es_lines}\n")
+    file(WRITE "${CMAKE_BINARY_DIR}/${es_metadata}/METADATA"
+      "Metadata-Version: 2.1\nName: vtkelevationsurface\nVersion: ${PROJECT_VERSION}\n"
+      "Summary: ${PROJECT_DESCRIPTION}\n")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS pyproject.toml)
+    install(DIRECTORY "${CMAKE_BINARY_DIR}/${es_metadata}"
+      DESTINATION "${es_python_destination}"
+      COMPONENT   "${es_python_component}")
+  endif ()
 endif ()
 
 # ---- the ParaView plugin -----------------------------------------------------------------------

@@ -28,16 +28,19 @@ FillOptions OptionsOf(vtkFillElevationHoles* filter)
 {
   FillOptions options;
   options.MaximumHoleSize = filter->GetMaximumHoleSize();
-  options.MaximumHoleEdges =
-    static_cast<Index>(std::min<vtkIdType>(filter->GetMaximumHoleEdges(), VTK_INT_MAX));
+  // Clamped to what Index holds; negative values stay so, for CheckOptions().
+  const auto toIndex = [](vtkIdType count, Index most) {
+    return static_cast<Index>(std::clamp<vtkIdType>(count, VTK_INT_MIN, most));
+  };
+  options.MaximumHoleEdges = toIndex(filter->GetMaximumHoleEdges(), VTK_INT_MAX);
   options.Spacing = filter->GetSpacing();
   options.FillCutOuts = filter->GetFillCutOuts();
   options.Method = static_cast<Interpolation>(filter->GetInterpolation());
   const vtkIdType most = filter->GetMaximumNumberOfInsertedPoints();
-  options.MaximumInsertedPoints = static_cast<Index>(
-    most > 0 ? std::min<vtkIdType>(most, MaximumNumberOfPoints) : MaximumNumberOfPoints);
-  options.MaximumExpectedPoints = static_cast<Index>(
-    std::min<vtkIdType>(filter->GetMaximumNumberOfExpectedPoints(), MaximumNumberOfPoints));
+  options.MaximumInsertedPoints =
+    most == 0 ? MaximumNumberOfPoints : toIndex(most, MaximumNumberOfPoints);
+  options.MaximumExpectedPoints =
+    toIndex(filter->GetMaximumNumberOfExpectedPoints(), MaximumNumberOfPoints);
   options.NumberOfThreads = filter->GetNumberOfThreads();
   return options;
 }
@@ -93,7 +96,7 @@ int vtkFillElevationHoles::FillOutputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkFillElevationHoles::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return elevation::Guarded(this, outputVector, this->Messages, [&] {
+  return elevation::Guarded(this, request, outputVector, this->Messages, this->ErrorCode, [&] {
     return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
       ? elevation::MakeOutputs(inputVector, outputVector)
       : this->Superclass::ProcessRequest(request, inputVector, outputVector);
@@ -105,11 +108,12 @@ int vtkFillElevationHoles::RequestData(
 {
   elevation::FilterRun call(
     this, this->Controller, request, inputVector, outputVector, this->Messages);
+  call.CleanedOutputs = this->RemoveUnusedPoints ? 1 : 0;
   call.Sums = { &this->NumberOfHoles, &this->NumberOfFilledHoles };
   call.Spread = [this](elevation::Block& block, const elevation::Ranks& ranks) {
     FillResult patches;
     if (!elevation::FillOnRanks(ranks, elevation::OptionsOf(this), this->InterpolatePointData != 0,
-          this->MaximumEdgeLength, block, patches))
+          this->OpenEdgeLength, block, patches))
     {
       return false;
     }
@@ -126,7 +130,8 @@ int vtkFillElevationHoles::RequestData(
     const elevation::Progress& progress = block.Progress;
     vtkPolyData* const input = vtkPolyData::SafeDownCast(block.Input);
     Report(progress, 0.0);
-    elevation::CheckMaximumEdgeLength(this->MaximumEdgeLength);
+    FillOptions options = elevation::OptionsOf(this);
+    elevation::CheckOptions(options, this->OpenEdgeLength);
     elevation::CheckArrays(input);
     const elevation::PointsOfDataSet points = elevation::ViewPoints(input);
     const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
@@ -135,12 +140,11 @@ int vtkFillElevationHoles::RequestData(
     mesh.ConnectTwins(firstPolygon, SubProgress(progress, 0.15, 0.4));
     Holes found = elevation::FindHoles(mesh, firstPolygon, SubProgress(progress, 0.4, 0.5));
     Mesh opened;
-    const bool isOpened = this->MaximumEdgeLength > 0.0 &&
+    const bool isOpened = this->OpenEdgeLength > 0.0 &&
       elevation::OpenLongTriangles(
-        mesh, this->MaximumEdgeLength, found, opened, SubProgress(progress, 0.5, 0.55));
+        mesh, this->OpenEdgeLength, found, opened, SubProgress(progress, 0.5, 0.55));
     const bool isToBeFilled = found.Count() > 0;
 
-    FillOptions options = elevation::OptionsOf(this);
     if (this->InterpolatePointData)
     {
       options.Attributes = elevation::AttributesOf(input->GetPointData());
@@ -153,8 +157,9 @@ int vtkFillElevationHoles::RequestData(
     }
     const elevation::Progress filling = SubProgress(progress, 0.55, isToBeFilled ? 0.85 : 0.55);
     options.Monitor = filling;
-    const FillResult patches =
+    FillResult patches =
       elevation::FillHoles(isOpened ? opened : mesh, points.View, std::move(found), options);
+    patches.FirstNumber = elevation::NextHole(input);
 
     MakeSurface(input, mesh, patches, this->InterpolatePointData,
       SubProgress(progress, isToBeFilled ? 0.85 : 0.55, 0.97), block.Outputs[0]);
@@ -172,6 +177,13 @@ int vtkFillElevationHoles::RequestData(
   });
 }
 
+void vtkFillElevationHoles::SetMaximumEdgeLength(double length)
+{
+  elevation::ReportMessages(this, {},
+    { elevation::MakeMessage<elevation::sentences::EdgeLengthRenamed>() }, this->Messages);
+  this->SetOpenEdgeLength(length);
+}
+
 const char* vtkFillElevationHoles::GetInterpolationAsString() const
 {
   static const char* const names[] = { "NeighborMean", "Membrane", "ThinPlate", "Adaptive",
@@ -182,7 +194,7 @@ const char* vtkFillElevationHoles::GetInterpolationAsString() const
 void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
+  os << indent << "OpenEdgeLength: " << this->OpenEdgeLength << "\n";
   os << indent << "MaximumHoleSize: " << this->MaximumHoleSize << "\n";
   os << indent << "MaximumHoleEdges: " << this->MaximumHoleEdges << "\n";
   os << indent << "MaximumNumberOfInsertedPoints: " << this->MaximumNumberOfInsertedPoints << "\n";
@@ -191,6 +203,7 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Spacing: " << this->Spacing << "\n";
   os << indent << "Interpolation: " << this->GetInterpolationAsString() << "\n";
   os << indent << "InterpolatePointData: " << (this->InterpolatePointData ? "On" : "Off") << "\n";
+  os << indent << "RemoveUnusedPoints: " << (this->RemoveUnusedPoints ? "On" : "Off") << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "NumberOfHoles: " << this->NumberOfHoles << "\n";

@@ -6,7 +6,7 @@
  *
  * A hole is an empty region that the surface encloses. The outer boundary of a component is never a
  * hole. A component that lies inside a hole, an island, stays, and the ring around it is filled.
- * Voids that triangles with long edges bridge are no holes: see MaximumEdgeLength, which opens them.
+ * Voids that triangles with long edges bridge are no holes: see OpenEdgeLength, which opens them.
  *
  * @par Input:
  * A vtkPolyData of triangles, an elevation surface from any source, of one or more components. x,y is
@@ -17,7 +17,8 @@
  *   triangles, counter-clockwise seen from +z. Point arrays FilledPoint (vtkUnsignedCharArray, 1 for
  *   new points) and FilledError (vtkDoubleArray, the standard error of z of new points, 0 for points
  *   of the input, NaN where nothing tells it); cell array HoleId (vtkIdTypeArray, -1 for cells of
- *   the input). Other point arrays: see InterpolatePointData.
+ *   the input). Other point arrays: see InterpolatePointData. Where the input has been filled before,
+ *   its arrays of these names stay, and holes have the numbers after the largest of its triangles.
  * - 1, the report: one closed line for each hole, filled or not, its rim, counter-clockwise. Cell data
  *   HoleId, Status (HoleStatusType), NumberOfEdges, Perimeter, Area, NumberOfInsertedPoints,
  *   Interpolation (the one used).
@@ -30,7 +31,8 @@
  * on the order of the input's points and cells, only their ids do; nor on the number of threads or
  * ranks. Holes that stay open are listed, with the reason.
  *
- * Errors leave empty outputs and name the cell or array: an input that is no elevation surface is
+ * Errors leave empty outputs, fail the request (but in ParaView), set GetErrorCode() and name the
+ * property, cell or array: an input that is no elevation surface is
  * refused. An abort also leaves empty output, which counts as up to date: call Modified() to start
  * again. A composite input gives outputs of the same structure, each block filled on its own.
  *
@@ -83,7 +85,7 @@ public:
     TOO_LARGE = 1,      ///< left open because of MaximumHoleSize
     TOO_MANY_EDGES = 2, ///< left open because of MaximumHoleEdges
     FAILED = 3,         ///< could not be filled; a warning says why
-    REPLACED = 4,       ///< filled: long triangles bridged it, see MaximumEdgeLength
+    REPLACED = 4,       ///< filled: long triangles bridged it, see OpenEdgeLength
     CUT_OUT = 5,        ///< left open: a given boundary has cut it out, see FillCutOuts
   };
 
@@ -140,8 +142,7 @@ public:
   /**
    * The length in x,y, in input units, above which an edge is long. A region of triangles with a
    * long edge, connected by edges, is then a hole too: a patch replaces its triangles, and output 1
-   * lists it behind the other holes, with status REPLACED. 0 (default): none. A negative value or
-   * NaN is an error.
+   * lists it behind the other holes, with status REPLACED. 0 (default): none.
    *
    * - The rim of a region is its border: along the rest of the surface, along the surface's own
    *   outer border, along a hole, which is filled apart. Regions may enclose islands and holes,
@@ -154,7 +155,7 @@ public:
    * - Where the surface's points lie on a lattice, the nodes of a region are filled as those of a
    *   hole; edges that are kept inside are then those between nodes. Without Spacing, the default
    *   is the mean length of all edges of a region, on its rim and inside, that are not long (if
-   *   there are none: MaximumEdgeLength). In a region of lines, which has more such edges inside
+   *   there are none: OpenEdgeLength). In a region of lines, which has more such edges inside
    *   than on its rim, each of them counts as at least a tenth of the gap beside it: where lines are
    *   more than ten times as far apart as their points, as contour lines are, the spacing follows
    *   the gaps. As in holes, points are graded where lengths differ more
@@ -169,39 +170,45 @@ public:
    *
    * Cost: one more pass over the triangles.
    */
-  vtkSetMacro(MaximumEdgeLength, double);
-  vtkGetMacro(MaximumEdgeLength, double);
+  vtkSetMacro(OpenEdgeLength, double);
+  vtkGetMacro(OpenEdgeLength, double);
+  ///@}
+
+  ///@{
+  /** Deprecated: the name that OpenEdgeLength had. Setting it warns. */
+  void SetMaximumEdgeLength(double length);
+  double GetMaximumEdgeLength() const { return this->OpenEdgeLength; }
   ///@}
 
   ///@{
   /**
    * The largest hole that is filled: the diagonal of the bounding box of its rim in x,y, in input
-   * units. 0 (default): no limit; negative values are taken as 0.
+   * units. 0 (default): no limit.
    */
-  vtkSetClampMacro(MaximumHoleSize, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetMacro(MaximumHoleSize, double);
   vtkGetMacro(MaximumHoleSize, double);
   ///@}
 
   ///@{
   /**
    * The most boundary edges of a hole that is filled; edges of the rim and of islands count.
-   * 0 (default): no limit; negative values are taken as 0.
+   * 0 (default): no limit.
    */
-  vtkSetClampMacro(MaximumHoleEdges, vtkIdType, 0, VTK_ID_MAX);
+  vtkSetMacro(MaximumHoleEdges, vtkIdType);
   vtkGetMacro(MaximumHoleEdges, vtkIdType);
   ///@}
 
   ///@{
   /**
    * The most new points in all holes together. Default: 100 million, which take about 50 GB of
-   * memory. 0: no limit but that of 357,913,941 points of a surface; negative values are taken as
-   * 0. Before any hole is filled, each, from the smallest on, is granted the most points that it
-   * may take, by its area and spacing, and a long thin one also by its length. It fails if fewer
-   * are left, so the largest fail first; of equal ones, those with the largest HoleId. Which holes
-   * fail depends on the input and this number alone, not on threads or free memory. Holes that
-   * other limits leave open are granted none.
+   * memory. 0: no limit but that of 357,913,941 points of a surface. Before any hole is filled,
+   * each, from the smallest on, is granted the most points that it may take, by its area and
+   * spacing, and a long thin one also by its length. It fails if fewer are left, so the largest
+   * fail first; of equal ones, those with the largest HoleId. Which holes fail depends on the input
+   * and this number alone, not on threads or free memory. Holes that other limits leave open are
+   * granted none.
    */
-  vtkSetClampMacro(MaximumNumberOfInsertedPoints, vtkIdType, 0, VTK_ID_MAX);
+  vtkSetMacro(MaximumNumberOfInsertedPoints, vtkIdType);
   vtkGetMacro(MaximumNumberOfInsertedPoints, vtkIdType);
   ///@}
 
@@ -223,20 +230,19 @@ public:
    * The most new points that may be expected of all holes together; if there are more, nothing is
    * filled, and an error reports how many, their memory, and a Spacing that would do. The estimate
    * takes no time: it follows from areas and spacings of the holes that MaximumHoleSize and
-   * MaximumHoleEdges admit. 0 (default): ten times the points of the input, but at least a million;
-   * negative values are taken as 0. Where MaximumNumberOfInsertedPoints is no larger, it leaves the
-   * largest holes open instead.
+   * MaximumHoleEdges admit. 0 (default): ten times the points of the input, but at least a million.
+   * Where MaximumNumberOfInsertedPoints is no larger, it leaves the largest holes open instead.
    */
-  vtkSetClampMacro(MaximumNumberOfExpectedPoints, vtkIdType, 0, VTK_ID_MAX);
+  vtkSetMacro(MaximumNumberOfExpectedPoints, vtkIdType);
   vtkGetMacro(MaximumNumberOfExpectedPoints, vtkIdType);
   ///@}
 
   ///@{
   /**
    * Distance of new points in x,y, in input units. 0 (default): that of the lattice, or for each
-   * hole the mean length of its boundary edges; negative values are taken as 0.
+   * hole the mean length of its boundary edges.
    */
-  vtkSetClampMacro(Spacing, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetMacro(Spacing, double);
   vtkGetMacro(Spacing, double);
   ///@}
 
@@ -255,12 +261,26 @@ public:
 
   ///@{
   /**
-   * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
-   * without threads by default, as in ParaView. The output is the same, byte for byte, for any
-   * number. Small holes are filled several at a time. Holes of more than some ten thousand
-   * points are filled one after the other, each triangulated on several threads. Range: 0 to 1024.
+   * Whether points that no cell has are removed from output 0, and the point array OriginalPointIds
+   * (vtkIdTypeArray) is added, as in vtkGridDelaunay2D; it is -1 for new points. Off (default): all
+   * points of the input come first.
    */
-  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkSetMacro(RemoveUnusedPoints, bool);
+  vtkGetMacro(RemoveUnusedPoints, bool);
+  vtkBooleanMacro(RemoveUnusedPoints, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Threads to use, of those that vtkSMPTools has: 0 (default) to 1024, of which 0 is all. Its
+   * backend and number are as you have set them; where VTK starts without threads (backend
+   * Sequential), vtkSMPTools::SetBackend("STDThread") or VTK_SMP_BACKEND_IN_USE=STDThread in the
+   * environment gives them. Debian's VTK has them, and the plugin gives them to ParaView. The
+   * output is the same, byte for byte, for any number. Small holes are filled several at a time.
+   * Holes of more than some ten thousand points are filled one after the other, each triangulated
+   * on several threads.
+   */
+  vtkSetMacro(NumberOfThreads, int);
   vtkGetMacro(NumberOfThreads, int);
   ///@}
 
@@ -296,7 +316,9 @@ public:
    * are "Words":
    * NothingToFill, HoleNotFilled and RegionNotFilled (with a reason: BordersTouch, SizeOutOfRange,
    * MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall, PointsCoincide), MoreHolesNotFilled,
-   * BordersMeet, TooManyPointsToFill, TooManyPointsByDefault, InvalidEdgeLength, ArraysLeftOut,
+   * BordersMeet, TooManyPointsToFill, TooManyPointsByDefault, InvalidOpenEdgeLength, InvalidHoleSize,
+   * InvalidHoleEdges, InvalidSpacing, InvalidInsertedPoints, InvalidExpectedPoints, InvalidThreads,
+   * EdgeLengthRenamed, ArraysLeftOut,
    * OnOneRank (with a reason: PartsDoNotFit), RankWaits, NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
@@ -309,7 +331,7 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  double MaximumEdgeLength = 0.0;
+  double OpenEdgeLength = 0.0;
   double MaximumHoleSize = 0.0;
   vtkIdType MaximumHoleEdges = 0;
   vtkIdType MaximumNumberOfInsertedPoints = 100000000;
@@ -318,6 +340,7 @@ protected:
   double Spacing = 0.0;
   int Interpolation = ADAPTIVE;
   bool InterpolatePointData = true;
+  bool RemoveUnusedPoints = false;
   int NumberOfThreads = 0;
 
   vtkIdType NumberOfHoles = 0;

@@ -92,6 +92,7 @@ elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
     return unconstrained;
   }
   elevation::CheckPointArrays(source, "The constraints'");
+  elevation::WarnOfLattice(options, warnings);
   const elevation::PointsOfDataSet own = elevation::ViewPoints(source);
   const ConstraintLines lines = LinesOf(
     source, own, points, options.NumberOfThreads, SubProgress(progress, 0.0, 0.02), warnings);
@@ -168,7 +169,7 @@ void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
 {
   if (constrained.Result.NumberOfHullPoints == 0)
   {
-    warnings.push_back(elevation::MakeMessage<elevation::sentences::NoTriangle>(points.Count));
+    elevation::WarnOfNoTriangle(points.Count, warnings);
     return;
   }
   try
@@ -188,22 +189,14 @@ void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
 elevation::ConstrainedTriangulation TriangulateSpread(
   const elevation::Ranks& ranks, elevation::DelaunayOptions options, elevation::Block& block)
 {
-  elevation::CheckLimits(options);
+  elevation::CheckOptions(options);
   options.Monitor = block.Progress;
   elevation::TriangulateParts parts(ranks);
   parts.Add(block.Input, options.Monitor);
   parts.Triangulate(block.Outputs.empty() ? 0 : 1, block.Second, options, block.Warnings);
   const elevation::TriangulateParts::Totals& all = parts.All();
   elevation::WarnOfLeft("point", parts.LeftOut(), block.Warnings);
-  if (all.Settled == 0)
-  {
-    block.Warnings.push_back(
-      elevation::MakeMessage<elevation::sentences::NoTriangle>(all.Points));
-  }
-  else if (all.Effect.AreMostMissing())
-  {
-    block.Warnings.push_back(elevation::AdviceOnLimit(options.MaximumEdgeLength, all.Effect));
-  }
+  parts.WarnOfMissing(block.Warnings);
   elevation::ConstrainedTriangulation counts;
   counts.NumberOfCrossings = all.Crossings;
   ranks.Agree([&]() {
@@ -253,7 +246,7 @@ int vtkGridDelaunay2D::FillOutputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkGridDelaunay2D::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return elevation::Guarded(this, outputVector, this->Messages, [&] {
+  return elevation::Guarded(this, request, outputVector, this->Messages, this->ErrorCode, [&] {
     return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
       ? elevation::MakeOutputs(inputVector, outputVector)
       : this->Superclass::ProcessRequest(request, inputVector, outputVector);
@@ -283,7 +276,8 @@ int vtkGridDelaunay2D::RequestData(
   elevation::FilterRun call(
     this, this->Controller, request, inputVector, outputVector, this->Messages);
   call.Second = "constraints";
-  call.IsFirst = true;
+  call.CleanedOutputs = this->RemoveUnusedPoints ? 1 : 0;
+  call.ListsUnused = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
     &this->NumberOfRedundantPoints, &this->NumberOfConstraintCrossings, &this->NumberOfAddedPoints,
     &this->NumberOfLattices };
@@ -309,7 +303,7 @@ int vtkGridDelaunay2D::RequestData(
     const elevation::Progress& progress = block.Progress;
     vtkPolyData* const output = block.Outputs.front();
     elevation::Report(progress, 0.0);
-    elevation::CheckLimits(options);
+    elevation::CheckOptions(options);
     elevation::CheckPointArrays(block.Input);
     const elevation::PointsOfDataSet points = elevation::ViewPoints(block.Input);
     vtkPolyData* const draped = this->DrapeConstraints ? block.Second : nullptr;
@@ -397,6 +391,7 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << "\n";
   os << indent << "LatticeTolerance: " << this->LatticeTolerance << "\n";
   os << indent << "LatticeFound: " << this->GetLatticeFound() << "\n";
+  os << indent << "RemoveUnusedPoints: " << (this->RemoveUnusedPoints ? "On" : "Off") << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "NumberOfDuplicatePoints: " << this->NumberOfDuplicatePoints << "\n";

@@ -37,7 +37,8 @@
  *
  * With constraints it is the constrained Delaunay triangulation, exact and unique in the same way.
  *
- * Errors leave empty output and name the point, cell or value; an abort also leaves empty output,
+ * Errors leave empty output, fail the request (but in ParaView), set GetErrorCode() and name the
+ * property, point or cell; an abort also leaves empty output,
  * which counts as up to date: call Modified() to start again. A composite input gives output of the
  * same structure, each block a surface of its own.
  *
@@ -222,8 +223,8 @@ public:
    * The lattice, if it is known: the x,y of a node, of the first step and of the second, as in the
    * field data array Lattice of an output. With LatticeMode Automatic all points must fit it, else
    * it is an error that names the first one that does not. So parts of a cloud get the triangles of
-   * the whole cloud's lattice, also where they are too few to find it. Default: steps of 0; the
-   * lattice is looked for.
+   * the whole cloud's lattice, also where they are too few to find it. With constraints it is not
+   * used, and a warning says so. Default: steps of 0; the lattice is looked for.
    */
   vtkSetVector6Macro(Lattice, double);
   vtkGetVector6Macro(Lattice, double);
@@ -232,9 +233,10 @@ public:
   ///@{
   /**
    * How far a point may lie from its node, along each of the two steps, in steps: 0.01 (default) is
-   * 0.25 for a step of 25. Clamped to 0 .. 0.25. Two points that are not equal never share a node.
+   * 0.25 for a step of 25. Less than 0 or more than 0.25 is an error. Two points that are not equal
+   * never share a node.
    */
-  vtkSetClampMacro(LatticeTolerance, double, 0.0, 0.25);
+  vtkSetMacro(LatticeTolerance, double);
   vtkGetMacro(LatticeTolerance, double);
   ///@}
 
@@ -243,12 +245,28 @@ public:
 
   ///@{
   /**
-   * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
-   * without threads by default, as in ParaView. The output is the same, byte for byte, for any
-   * number. From some thousands of points on, several threads bin the points and grow the
-   * triangles, or find the lattice and triangulate it. Range: 0 to 1024.
+   * Whether points without a triangle are removed from the output, and the point array
+   * OriginalPointIds (vtkIdTypeArray) is added: the input's global ids, or else the places of points
+   * in it (on several ranks, in the points of rank after rank; in a composite, in the block); -1 for
+   * points that constraints add. An array of this name that the input has stays, and goes on: so it
+   * names the points of the first filter's input. UnusedPointIds are such ids, too. Off (default):
+   * all points of the input are in the output.
    */
-  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkSetMacro(RemoveUnusedPoints, bool);
+  vtkGetMacro(RemoveUnusedPoints, bool);
+  vtkBooleanMacro(RemoveUnusedPoints, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Threads to use, of those that vtkSMPTools has: 0 (default) to 1024, of which 0 is all. Its
+   * backend and number are as you have set them; where VTK starts without threads (backend
+   * Sequential), vtkSMPTools::SetBackend("STDThread") or VTK_SMP_BACKEND_IN_USE=STDThread in the
+   * environment gives them. Debian's VTK has them, and the plugin gives them to ParaView. The
+   * output is the same, byte for byte, for any number. From some thousands of points on, several
+   * threads bin the points and grow the triangles, or find the lattice and triangulate it.
+   */
+  vtkSetMacro(NumberOfThreads, int);
   vtkGetMacro(NumberOfThreads, int);
   ///@}
 
@@ -295,14 +313,14 @@ public:
    * name and a value. A message begins with the row ("error" or "warning", its code). Then come
    * ("text", the sentence with its values in braces, {points}, and with properties as
    * {property:Spacing}); in a composite ("block", the name of the block); and a row for each value.
-   * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent, whose
-   * text has the same for people, are invoked. Codes, besides those of data that are invalid, which
-   * are "Words":
-   * NoTriangle, FewTriangles, FewTrianglesAdvice, InvalidEdgeLength, InvalidElevationError,
-   * TwoLimits, NoLines, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
-   * NonFinitePointOfLine, LinesElsewhere, LinesFarOutside, PolygonsAreLines, LinesNotDraped,
-   * LinesNotSettled, ArraysLeftOut, OnOneRank (with a reason: ErrorNeedsAll, DrapingNeedsAll),
-   * RankWaits, EmptyBlocks, NotEnoughMemory, Stopped.
+   * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent,
+   * whose text has the same for people, are invoked. Codes, besides those of data that are invalid,
+   * which are "Words": NoTriangle, FewTriangles, FewTrianglesAdvice, InvalidEdgeLength,
+   * InvalidElevationError, InvalidLatticeTolerance, InvalidThreads, TwoLimits, LatticeNotUsed,
+   * NoLines, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, NonFinitePointOfLine,
+   * LinesElsewhere, LinesFarOutside, PolygonsAreLines, LinesNotDraped, LinesNotSettled,
+   * ArraysLeftOut, OnOneRank (with a reason: ErrorNeedsAll, DrapingNeedsAll), RankWaits,
+   * NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 
@@ -324,6 +342,7 @@ protected:
   int LatticeMode = AUTOMATIC;
   double Lattice[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   double LatticeTolerance = 0.01;
+  bool RemoveUnusedPoints = false;
   int NumberOfThreads = 0;
 
   vtkIdType NumberOfLattices = 0;

@@ -161,7 +161,7 @@ int vtkTrimOutwardTriangles::FillOutputPortInformation(int, vtkInformation* info
 vtkTypeBool vtkTrimOutwardTriangles::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return elevation::Guarded(this, outputVector, this->Messages, [&] {
+  return elevation::Guarded(this, request, outputVector, this->Messages, this->ErrorCode, [&] {
     return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
       ? elevation::MakeOutputs(inputVector, outputVector)
       : this->Superclass::ProcessRequest(request, inputVector, outputVector);
@@ -191,6 +191,7 @@ int vtkTrimOutwardTriangles::RequestData(
   elevation::FilterRun call(
     this, this->Controller, request, inputVector, outputVector, this->Messages);
   call.Second = "boundary";
+  call.CleanedOutputs = this->RemoveUnusedPoints ? 2 : 0;
   call.Sums = { &this->NumberOfOutwardTriangles, &this->NumberOfRecoveredEdges,
     &this->NumberOfPointsLeftOut, &this->NumberOfInsertedPoints };
   call.Maxima = { &this->EffectiveGapTolerance };
@@ -219,11 +220,7 @@ int vtkTrimOutwardTriangles::RequestData(
     vtkPolyData* const given = block.Second;
     Report(progress, 0.0);
     elevation::CheckArrays(input);
-    const elevation::Message wrong = elevation::WrongOption(options);
-    if (!wrong.IsEmpty())
-    {
-      throw elevation::CodedError(wrong);
-    }
+    elevation::CheckOptions(options);
     if (given)
     {
       elevation::CheckArrays(given, "The boundary's");
@@ -281,6 +278,7 @@ void vtkTrimOutwardTriangles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "GridSteps: " << this->GridSteps[0] << ", " << this->GridSteps[1] << ", "
      << this->GridSteps[2] << ", " << this->GridSteps[3] << "\n";
   os << indent << "RecoverBoundary: " << (this->RecoverBoundary ? "On" : "Off") << "\n";
+  os << indent << "RemoveUnusedPoints: " << (this->RemoveUnusedPoints ? "On" : "Off") << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "EffectiveGapTolerance: " << this->EffectiveGapTolerance << "\n";

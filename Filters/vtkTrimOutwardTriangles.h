@@ -37,7 +37,8 @@
  * recovered. The result does not depend on the number of threads or ranks. Nothing is written to the
  * inputs.
  *
- * Errors leave empty outputs and name the cell, point or edge; an abort also leaves empty output,
+ * Errors leave empty outputs, fail the request (but in ParaView), set GetErrorCode() and name the
+ * property, cell, point or edge; an abort also leaves empty output,
  * which counts as up to date: call Modified() to start again. A composite input gives outputs of the
  * same structure, each block trimmed on its own, along the same boundary.
  *
@@ -198,13 +199,26 @@ public:
 
   ///@{
   /**
-   * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
-   * without threads by default, as in ParaView. The output is the same, byte for byte, for any
-   * number. Several threads read the triangles, measure the spacing of the points for the
-   * boundary that is extracted, and write the outputs; work near the boundary is done on one.
-   * Range: 0 to 1024.
+   * Whether points that no cell has are removed from outputs 0 and 1, each for itself, and the point
+   * array OriginalPointIds (vtkIdTypeArray) is added, as in vtkGridDelaunay2D; it is -1 for points
+   * that are inserted. Off (default): both have all points.
    */
-  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkSetMacro(RemoveUnusedPoints, bool);
+  vtkGetMacro(RemoveUnusedPoints, bool);
+  vtkBooleanMacro(RemoveUnusedPoints, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Threads to use, of those that vtkSMPTools has: 0 (default) to 1024, of which 0 is all. Its
+   * backend and number are as you have set them; where VTK starts without threads (backend
+   * Sequential), vtkSMPTools::SetBackend("STDThread") or VTK_SMP_BACKEND_IN_USE=STDThread in the
+   * environment gives them. Debian's VTK has them, and the plugin gives them to ParaView. The
+   * output is the same, byte for byte, for any number. Several threads read the triangles, measure
+   * the spacing of the points for the boundary that is extracted, and write the outputs; work near
+   * the boundary is done on one.
+   */
+  vtkSetMacro(NumberOfThreads, int);
   vtkGetMacro(NumberOfThreads, int);
   ///@}
 
@@ -262,7 +276,7 @@ public:
    * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent, whose
    * text has the same for people, are invoked. Codes, besides those of data that are invalid, which
    * are "Words":
-   * NothingToTrim, InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut,
+   * NothingToTrim, InvalidThreads, InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut,
    * BoundaryLeavesOutAll, RingsRepeated, BoundaryEnclosesNothing (reasons: NothingInRing,
    * NothingBetweenRings, BoundaryElsewhere), StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
    * ArraysLeftOut, OnOneRank (with a reason: NormalsNeedAll, PartsDoNotFit), RankWaits,
@@ -283,6 +297,7 @@ protected:
   double GridSteps[4] = { 0.0, 0.0, 0.0, 0.0 };
   bool RecoverBoundary = true;
   int BoundaryEdges = FOLLOW_SURFACE;
+  bool RemoveUnusedPoints = false;
   int NumberOfThreads = 0;
 
   double EffectiveGapTolerance = 0.0;

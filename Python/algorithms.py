@@ -190,7 +190,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
     report as vtkTable. GetReport() gives the report as text.
 
     Properties are set by Set<Name>(), the name being that of reconstruct() without underscores:
-    SetMaximumEdgeLength(25.0), SetInterpolation("membrane") or (1).
+    SetOpenEdgeLength(25.0), SetInterpolation("membrane") or (1).
     """
 
     TITLE = "Reconstruct Elevation Surface"

@@ -237,6 +237,7 @@ class ReadOptions:
     layer: object = None  # None, or the name of a layer or variable, of files that hold several
     classes: object = None  # None, or the numbers of the classes of a LAS file to read
     where: object = None  # None, or what conditions_of() takes: which points to read, by columns
+    project: bool = False  # degrees become metres, of a UTM zone
     points_only: bool = False  # points of a mesh are wanted, whatever its triangles are
 
     def __post_init__(self):

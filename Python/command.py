@@ -11,7 +11,7 @@ import numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import reading
-from .clouds import Cloud, ReadOptions, bare_lines, merged, notes_on
+from .clouds import Cloud, ReadOptions, bare_lines, crs_of, merged, notes_on, set_crs
 from .gdal_common import name_of, reference_of
 from .given_lines import fitted
 from .heights import check_heights
@@ -27,6 +27,7 @@ from .options import (
 )
 from .names import PROGRAM, written_for
 from .pieces import Pieces
+from .projecting import project
 from .ranks import agreed, by_first, together, total
 from .reconstruction import check_spacing, least_reach, run_chain
 from .report import picture_subtitle, print_report
@@ -122,11 +123,14 @@ class Run:
         cloud = self.timed("read", "reading", self.read_clouds)
         self.check_spacing(least_reach(cloud.points))
         self.set_crs(cloud)
+        crs = project(options.file, cloud) if options.project else cloud.crs
         lines = {}
         if options.boundary:
             lines["boundary"] = reading.read_boundary(options.boundary)
         if options.faults:
             lines["faults"] = self.read_faults(cloud)
+        for data in lines.values() if options.project else ():
+            set_crs(data, crs_of(data) or crs)  # lines that tell none are in that of the points
         names = {"points": options.files[0], "boundary": options.boundary, "faults": options.faults}
         lines, notes = fitted(cloud, lines, names, options.given, options.strict)
         cloud.notes += notes + notes_on(cloud, lines)

@@ -17,7 +17,7 @@ NOT_ASKED |= {"DAAS", "STACTA", "STACIT", "PostGISRaster", "PDF", "Rasterlite", 
 # Those that are asked for points and lines.
 VECTORS = (
     "GPKG,ESRI Shapefile,GeoJSON,GeoJSONSeq,ESRIJSON,TopoJSON,DXF,CAD,DGN,GML,LIBKML,KML,GPX,"
-    "FlatGeobuf,MapInfo File,OGR_GMT,SQLite,S57,OGR_VRT,AVCE00,JML"
+    "FlatGeobuf,OpenFileGDB,MapInfo File,OGR_GMT,SQLite,S57,OGR_VRT,AVCE00,JML"
 ).split(",")
 
 SAME_PLACES = [

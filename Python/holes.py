@@ -65,7 +65,7 @@ def report_of_holes(outlines, bridged, fill, why_opened=None, ranks=None):
     cut_out = by_status.get("cut out", 0)
     found = sum(not hole["bridged"] or hole["status"] == "replaced" for hole in holes) - cut_out
     return {
-        "open_edge_length": fill.GetMaximumEdgeLength(),
+        "open_edge_length": fill.GetOpenEdgeLength(),
         "open_edge_length_is": why_opened,
         "found": found,
         "filled": by_status.get("filled", 0) + by_status.get("replaced", 0),

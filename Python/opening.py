@@ -57,7 +57,7 @@ def length_to_open(ranks, surface, result):
     area, shortest, longest = measured(ranks, surface)
     length, why = length_of(area, shortest, longest, result.lattice)
     of_cell = CELL_DIAGONALS * max(together(ranks, lambda: [result.cloud.largest_cell]))
-    if 0 < length < of_cell:
+    if 0 < length < of_cell or not length and of_cell and result.cloud.grid:
         return of_cell, f"{CELL_DIAGONALS:g} diagonals of the grid's largest cell"
     return length, why
 

@@ -12,6 +12,11 @@ def suffix_of(path):
     return os.path.splitext(path)[1].lower()
 
 
+def is_geodatabase(path):
+    """Whether a folder is an ESRI file geodatabase, which is one file to users."""
+    return suffix_of(path.rstrip("/")) == ".gdb" and os.path.exists(os.path.join(path, "gdb"))
+
+
 def partial_path(path):
     """Where a result is written until it is whole."""
     folder, name = os.path.split(path)
@@ -29,6 +34,8 @@ def check_readable(path):
     """Refuses what cannot be opened, before any reader sees it."""
     if not os.path.exists(path):
         raise FileError(f"{path}: no such file")
+    if is_geodatabase(path):
+        return
     if os.path.isdir(path):
         raise FileError(f"{path}: is a folder, not a file")
     if not os.path.isfile(path):

@@ -68,8 +68,12 @@ def check_together(given, name_of=str, among=PROPERTIES):
 
 
 def set_properties(algorithm, step, given):
-    """Gives a filter the properties that are its own, as checked() has them. Returns it."""
+    """Gives a filter the properties that are its own, as checked() has them. Returns it.
+
+    Unused points are removed at the end of the chain: reports need all of them.
+    """
     for name, value in given.items():
-        if PROPERTIES[name].step in (step, "") and PROPERTIES[name].setter:
+        is_own = PROPERTIES[name].step in (step, "") and name != "remove_unused_points"
+        if is_own and PROPERTIES[name].setter:
             getattr(algorithm, PROPERTIES[name].setter)(value)
     return algorithm

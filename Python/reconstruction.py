@@ -30,16 +30,19 @@ from .opening import length_to_open
 from .paths import check_suffix
 from .properties import COLOURS, PROPERTIES, checked
 from .ranks import extremes, total
+from .reading.arrays import cloud_of_columns, cloud_of_grid, columns_of
 from .reading.facing import faces_of, notes_on_faces
-from .spreading import followed
+from .spreading import followed, last_id, without_unused
 from .steps import Step, triangulate, trim_along, trim_few
 from .vtkElevationSurface import vtkFillElevationHoles
 
 # ---- input ------------------------------------------------------------------------------------
 
 
-def as_cloud(points: Points) -> Cloud:
-    """Points of any accepted kind as a Cloud."""
+def as_cloud(points: Points, x: Any = None, y: Any = None) -> Cloud:
+    """Points of any accepted kind as a Cloud; x and y are those of a grid."""
+    if x is not None or y is not None:
+        return cloud_of_grid("points", array_of(points, "points", None), x, y)
     if isinstance(points, Cloud):
         return points
     if isinstance(points, vtkPointSet):
@@ -54,7 +57,15 @@ def as_cloud(points: Points) -> Cloud:
         return points_of_grid("points", points)
     if isinstance(points, vtkDataSet):
         raise TypeError(f"points: {points.GetClassName()} has no elevations; a vtkPointSet has")
-    return Cloud(make_points(array_of(points, "points", (3,))))
+    fields = getattr(getattr(points, "dtype", None), "names", None)
+    if fields or hasattr(points, "keys"):
+        return cloud_of_columns("points", *columns_of("points", points))
+    array = array_of(points, "points", None)
+    if array.shape[1] != 3:
+        raise ValueError(
+            f"points: rows of 3 numbers are needed, or x= and y= of a grid; the shape is {shape_of(array)}"
+        )
+    return Cloud(make_points(array))
 
 
 def cloud_of_mesh(points):
@@ -70,18 +81,21 @@ def cloud_of_mesh(points):
 
 
 def array_of(values, what, widths):
-    """(n, width) doubles. Raises TypeError or ValueError that names what it is."""
+    """(n, width) doubles; widths: those allowed, None: any. Raises TypeError or ValueError that names what it is."""
     try:
         if isinstance(values, numpy.ma.MaskedArray):
             values = values.astype("f8").filled(numpy.nan)
         array = numpy.asarray(values, dtype="f8")
     except (TypeError, ValueError):
         raise TypeError(f"{what}: not an array of numbers, one row for each point") from None
-    if array.ndim != 2 or array.shape[1] not in widths or len(array) == 0:
-        wide = " or ".join(str(width) for width in widths)
-        shape = " x ".join(str(length) for length in array.shape) or "a single number"
-        raise ValueError(f"{what}: rows of {wide} numbers are needed; the shape is {shape}")
+    if array.ndim != 2 or widths and array.shape[1] not in widths or len(array) == 0:
+        wide = " or ".join(str(width) for width in widths or (3,))
+        raise ValueError(f"{what}: rows of {wide} numbers are needed; the shape is {shape_of(array)}")
     return array
+
+
+def shape_of(array):
+    return " x ".join(str(length) for length in array.shape) or "a single number"
 
 
 def as_lines(lines: Lines, what: str, are_rings: bool) -> vtkPolyData:
@@ -123,7 +137,10 @@ class Reconstruction:
 
     ranks     the controller of those that have a part of it each, or None. Counts and the report are
               those of all
-    surface   vtkPolyData with triangles
+    surface   vtkPolyData with triangles, without points that these do not use: its point array
+              OriginalPointIds has the numbers of points in the input, -1 of added ones
+    complete  the same with all points, those of the input first; surface itself with
+              remove_unused_points=False
     boundary  vtkPolyData, the rings that bound the surface; None without trimming
     holes     vtkPolyData, the outline of each hole, filled or not; None without filling
     delaunay, trim, fill   the filters that have run; None for those left out
@@ -152,7 +169,8 @@ class Reconstruction:
         self.times = {}
         self.notes, self.decided, self.warnings, self.gathered = [], [], [], []
         self.delaunay = self.trim = self.fill = self.outlined = None
-        self.surface = self.boundary = self.holes = None
+        self.surface = self.complete = self.boundary = self.holes = None
+        self.removes_unused = False
         self.triangles, self.points, self.reasons, self.lattice = {}, None, None, None
         self.number_of_points, self.bridged, self.hole_counts = 0, None, (0, 0)
         self.progress = None  # what run_chain() was given
@@ -189,7 +207,7 @@ class Reconstruction:
     def to_numpy(self) -> tuple[numpy.ndarray, numpy.ndarray]:
         """(points, triangles): (n, 3) float64, and (m, 3) integers that number the points.
 
-        The input's points come first, in their order, also those that no triangle uses.
+        Points of the input come first, in their order; surface has their numbers in the input.
         """
         points = vtk_to_numpy(self.surface.GetPoints().GetData()).astype("f8")
         ids = vtk_to_numpy(self.surface.GetPolys().GetConnectivityArray())
@@ -314,7 +332,7 @@ def run_chain(
             result.open_edge_length, result.why_opened = given["open_edge_length"], AS_GIVEN
         elif not given.get("maximum_elevation_error"):  # else long edges are no voids
             length, result.why_opened = length_to_open(ranks, last.GetOutput(), result)
-            filling.SetMaximumEdgeLength(length)
+            filling.SetOpenEdgeLength(length)
             result.open_edge_length = length
         result.fill = last = run("fill", filling)
         result.triangles["filled"] = total(ranks, last.GetOutput().GetNumberOfPolys())
@@ -323,10 +341,13 @@ def run_chain(
         voids.see(last.GetOutput())
         result.bridged = voids.find()
         result.hole_counts = hole_counts(ranks, result)
-    result.surface = last.GetOutput()
+    result.surface = result.complete = last.GetOutput()
     result.points, result.reasons = followed(
-        ranks, result.points, result.reasons, result.surface, cloud.points
+        ranks, result.points, result.reasons, result.complete, cloud.points
     )
+    result.removes_unused = given.get("remove_unused_points", True)
+    if result.removes_unused:
+        result.surface = without_unused(ranks, result.complete, last_id(ranks, cloud.points))
     return result
 
 
@@ -352,6 +373,8 @@ Lines = Union[vtkPolyData, numpy.ndarray, Sequence, None]
 def reconstruct(
     points: Points,
     *,
+    x: Any = None,
+    y: Any = None,
     boundary: Lines = None,
     faults: Lines = None,
     trim: bool = True,
@@ -362,9 +385,12 @@ def reconstruct(
 ) -> Reconstruction:
     """Reconstructs an elevation surface z = f(x, y) from points.
 
-    points    (n, 3) array of x, y, z, whose values are taken as they are; a vtkPointSet or PyVista
-              mesh, whose points and point data are used; a flat vtkImageData or vtkRectilinearGrid, whose active point scalars are
-              elevations, NaN where there is none; or what read() returns
+    points    (n, 3) array of x, y, z, whose values are taken as they are; columns by name: a dictionary,
+              a table of pandas or an array with fields; a (rows, columns) array of elevations, with x
+              and y; a vtkPointSet or PyVista mesh, whose points and point data are used; a flat
+              vtkImageData or vtkRectilinearGrid, whose active point scalars are elevations, NaN where
+              there is none; or what read() returns
+    x, y      of a grid: of its columns and rows, or of each of its nodes
     boundary  closed lines that bound the surface: vtkPolyData, an (n, 2) or (n, 3) array, or a list
               of such arrays; None: found from the points. Gaps of up to 1 % of a ring's length are
               closed, and rings that cross themselves made valid (that needs python3-gdal)
@@ -387,7 +413,7 @@ def reconstruct(
     is an ElevationSurfaceWarning and in the notes. Takes about a second for a million points.
     """
     given = checked(properties)
-    cloud = as_cloud(points)
+    cloud = as_cloud(points, x, y)
     if boundary is not None:
         boundary = as_lines(boundary, "boundary", True)
     if faults is not None:

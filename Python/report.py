@@ -141,7 +141,7 @@ def distance_of(result, reasons, ids):
         measured &= reasons != OUT_OF_OUTLINE
     began = time.perf_counter()
     distance = distance_to(
-        result.surface, coordinates, measured, result.measuring, result.ranks, ids
+        result.complete, coordinates, measured, result.measuring, result.ranks, ids
     )
     result.times["measure"] = time.perf_counter() - began
     return distance
@@ -149,7 +149,7 @@ def distance_of(result, reasons, ids):
 
 def reasons_unused(result):
     """(n,) numbers of REASONS, or 0, for the points that Reconstruction.reasons are of."""
-    used = used_points(result.ranks, result.surface)[: len(result.reasons)]
+    used = used_points(result.ranks, result.complete)[: len(result.reasons)]
     return numpy.where((result.reasons == 0) & ~used, OUT_OF_OUTLINE, result.reasons)
 
 

@@ -19,6 +19,7 @@ from .messages import ElevationSurfaceError, Messages
 from .ranks import agreed, all_values, before, collected, packed, shared, together, total, unpacked
 from .vtkElevationSurface import vtkTrimOutwardTriangles
 
+ORIGINAL_IDS = "OriginalPointIds"  # of points of the input, in a surface without unused points
 IDS = "PlaceInInput"  # made for the way, where points have no global ids
 GHOSTS = vtkDataSetAttributes.GhostArrayName()
 OF_A_RANK = ("WorkOfRank", "WorkOfTrim")  # field data
@@ -50,15 +51,20 @@ def own_points(output):
     return ~marked_points(output, vtkDataSetAttributes.DUPLICATEPOINT)
 
 
+def last_id(ranks, points):
+    """The largest of ids_of() the points that all ranks have given; points: those of this rank."""
+    ids, count = points.GetPointData().GetGlobalIds(), points.GetNumberOfPoints()
+    have_ids = ranks and not total(ranks, count > 0 and ids is None)
+    last = vtk_to_numpy(ids).max(initial=-1) if ids and have_ids else count - 1
+    last = all_values(ranks, [last])
+    return last.max() if have_ids else (last + 1).sum() - 1  # the filter numbers them, rank after rank
+
+
 def number_of_own(ranks, triangulation, points):
     """How many of the points that all ranks have given belong to this rank now; points: its input."""
     if ranks is None:
         return points.GetNumberOfPoints()
-    ids, count = points.GetPointData().GetGlobalIds(), points.GetNumberOfPoints()
-    have_ids = not total(ranks, count > 0 and ids is None)
-    last = vtk_to_numpy(ids).max(initial=-1) if ids and have_ids else count - 1
-    last = all_values(ranks, [last])
-    last = last.max() if have_ids else (last + 1).sum() - 1  # the filter numbers them, rank after rank
+    last = last_id(ranks, points)
     return int(numpy.count_nonzero(own_points(triangulation) & (ids_of(ranks, triangulation) <= last)))
 
 
@@ -99,6 +105,38 @@ def followed(ranks, earlier, reasons, later, points):
     return later, numpy.array([reasons.get(one, 0) for one in new.tolist()], dtype="u1")
 
 
+def without_unused(ranks, surface, last):
+    """A surface without the points that no triangle has, as the filters' RemoveUnusedPoints makes it.
+
+    last  last_id() of the input
+    """
+    used, data = used_points(ranks, surface), surface.GetPointData()
+    original, ids = data.GetArray(ORIGINAL_IDS), ids_of(ranks, surface)
+    if original is None:
+        given = data.GetGlobalIds()
+        numbers = numpy.where(ids <= last, ids if given is None else vtk_to_numpy(given), -1)
+        original = numpy_to_vtkIdTypeArray(numbers, deep=True)
+        original.SetName(ORIGINAL_IDS)
+    whole = vtkPolyData()
+    whole.ShallowCopy(surface)
+    whole.GetPointData().AddArray(original)
+    unused, why = (surface.GetFieldData().GetArray(f"UnusedPoint{what}") for what in ("Ids", "Reasons"))
+    if unused:
+        set_unused(whole, vtk_to_numpy(original)[vtk_to_numpy(unused)], vtk_to_numpy(why))
+    return whole if used.all() else with_points(whole, numpy.flatnonzero(used))
+
+
+def with_points(surface, keep):
+    """A surface with the points that are kept, which are all that its triangles have."""
+    kept = some_points(surface, keep)
+    set_places(kept, vtk_to_numpy(surface.GetPoints().GetData())[keep])
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
+    kept.SetPolys(cells_of(numpy.searchsorted(keep, corners).reshape(-1, 3)))
+    kept.GetCellData().ShallowCopy(surface.GetCellData())
+    kept.GetFieldData().ShallowCopy(surface.GetFieldData())
+    return kept
+
+
 def places_of(ranks, wanted, ids):
     """The places of points among those of all ranks by their ids; ids: those of this rank."""
     ids = numpy.sort(ids, kind="stable")
@@ -110,10 +148,6 @@ def gather_points(ranks, points):
     rank; the others have none. A filter that is given no triangle does it, by the rules of all filters."""
     gatherer, given = vtkTrimOutwardTriangles(), points.NewInstance()
     given.ShallowCopy(points)
-    # The filter takes it for what was triangulated, and does not report that there are no triangles.
-    unused = vtkIdTypeArray()
-    unused.SetName("UnusedPointIds")
-    given.GetFieldData().AddArray(unused)
     are_numbered = points.GetPointData().GetGlobalIds() or not points.GetNumberOfPoints()
     if total(ranks, not are_numbered):  # else points at one place would count once
         count = points.GetNumberOfPoints()
@@ -184,7 +218,7 @@ def gather_surface(ranks, result):
         lines = getattr(result, name)
         if lines is not None:
             setattr(result, name, joined(shared(ranks, lambda: lines)))
-    own, part = ranks.GetLocalProcessId(), result.surface
+    own, part = ranks.GetLocalProcessId(), result.complete
     having = together(ranks, lambda: [own] if part.GetNumberOfPoints() else [])
     result.surface = vtkPolyData()
     if own:
@@ -206,6 +240,8 @@ def gather_surface(ranks, result):
     for name in OF_A_RANK:
         result.surface.GetFieldData().RemoveArray(name)
     set_counts(result.surface, (result.delaunay, result.trim, result.fill))
+    if result.removes_unused:
+        result.surface = without_unused(None, result.surface, result.number_of_points - 1)
 
 
 def joined_by_ids(ranks, parts):

@@ -16,6 +16,7 @@
 #include "ReportMessages.h"
 #include "Requests.h"
 #include "TrimmedSurface.h"
+#include "UsedPoints.h"
 #include "VTKVersions.h"
 
 #endif

@@ -30,6 +30,14 @@ ConstraintLines ToLines(
   return lines;
 }
 
+void WarnOfLattice(const DelaunayOptions& options, std::vector<Message>& warnings)
+{
+  if (options.GivenLattice.IsSet() && options.UseLattice == LatticeMode::Automatic)
+  {
+    warnings.push_back(MakeMessage<sentences::LatticeNotUsed>());
+  }
+}
+
 void CheckLines(const ConstraintLines& lines, const Box& box, std::vector<Message>& warnings)
 {
   if (lines.Vertices.empty())

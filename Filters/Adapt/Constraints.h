@@ -23,6 +23,9 @@ namespace elevation
 ConstraintLines ToLines(
   vtkPolyData* source, const PointsOfDataSet& points, const Progress& progress);
 
+/** Warns of a given lattice, which lines do not keep to. */
+void WarnOfLattice(const DelaunayOptions& options, std::vector<Message>& warnings);
+
 /**
  * Checks that lines and points are in the same place.
  * @param[in] box  of the finite points

@@ -16,9 +16,18 @@
 namespace elevation
 {
 
-void CheckLimits(const DelaunayOptions& options)
+void CheckOptions(const DelaunayOptions& options)
 {
-  CheckMaximumEdgeLength(options.MaximumEdgeLength);
+  constexpr double mostOfStep = 0.25;
+  CheckThreads(options.NumberOfThreads);
+  if (!(options.LatticeTolerance >= 0.0 && options.LatticeTolerance <= mostOfStep))
+  {
+    throw MakeError<sentences::InvalidLatticeTolerance>(options.LatticeTolerance, mostOfStep);
+  }
+  if (!(options.MaximumEdgeLength >= 0.0))
+  {
+    throw MakeError<sentences::InvalidEdgeLength>(options.MaximumEdgeLength);
+  }
   const double error = options.MaximumElevationError;
   if (!(error >= 0.0) || std::isinf(error))
   {

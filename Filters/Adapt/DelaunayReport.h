@@ -14,8 +14,8 @@
 namespace elevation
 {
 
-/** @throws Error if MaximumEdgeLength or MaximumElevationError is wrong, or both are set */
-void CheckLimits(const DelaunayOptions& options);
+/** @throws Error naming a property that cannot be used, or two that exclude each other */
+void CheckOptions(const DelaunayOptions& options);
 
 /** Adds the field data on points, lines and lattice. */
 void AddReport(

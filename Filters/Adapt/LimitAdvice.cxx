@@ -15,6 +15,14 @@ double RoundedUp(double length)
 }
 } // namespace
 
+void WarnOfNoTriangle(vtkIdType points, std::vector<Message>& warnings)
+{
+  if (points > 0)
+  {
+    warnings.push_back(MakeMessage<sentences::NoTriangle>(points));
+  }
+}
+
 Message AdviceOnLimit(double limit, const EffectOfLimit& effect)
 {
   const Message what = MakeMessage<sentences::FewTriangles>(limit, effect.Missing, effect.Vertices);

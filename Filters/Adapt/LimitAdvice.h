@@ -44,6 +44,9 @@ inline vtkIdType PlaceOfQuantile(double part, vtkIdType count)
   return static_cast<vtkIdType>(part * static_cast<double>(count - 1));
 }
 
+/** Warns that points, if there are any, have made no triangle. */
+void WarnOfNoTriangle(vtkIdType points, std::vector<Message>& warnings);
+
 /** That most points are without a triangle, and which limit would keep them. */
 Message AdviceOnLimit(double limit, const EffectOfLimit& effect);
 

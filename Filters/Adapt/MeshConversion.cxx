@@ -4,6 +4,7 @@
 
 #include "Kernel/Base/Base.h"
 #include "Kernel/Messages/Messages.h"
+#include "UsedPoints.h"
 
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkAppendPolyData.h"
@@ -452,7 +453,8 @@ void CopyTuples(vtkDataSetAttributes* input, vtkIdType count,
   }
 }
 
-vtkSmartPointer<vtkPolyData> ChosenPoints(vtkPolyData* source, const std::vector<Index>& chosen)
+vtkSmartPointer<vtkPolyData> ChosenPoints(
+  vtkPolyData* source, const std::vector<Index>& chosen, const Progress& progress)
 {
   auto data = vtkSmartPointer<vtkPolyData>::New();
   vtkNew<vtkPoints> points;
@@ -465,7 +467,7 @@ vtkSmartPointer<vtkPolyData> ChosenPoints(vtkPolyData* source, const std::vector
   data->SetPoints(points);
   CopyTuples(
     source->GetPointData(), ids->GetNumberOfIds(), [&](vtkIdType i) { return chosen[i]; },
-    Progress(), data->GetPointData());
+    progress, data->GetPointData());
   return data;
 }
 
@@ -649,12 +651,13 @@ void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSet
     vtkAbstractArray* before = input->GetAbstractArray(i);
     const double count = input->GetNumberOfArrays();
     const Progress ofArray = SubProgress(progress, i / count, (i + 1) / count);
-    const vtkSmartPointer<vtkAbstractArray> after =
-      Extend(before, numberOfNew, IsIdArray(input, before), SubProgress(ofArray, 0.0, 0.5));
+    const bool areOriginalIds = IsOriginalIds(before);
+    const vtkSmartPointer<vtkAbstractArray> after = Extend(before, numberOfNew,
+      areOriginalIds || IsIdArray(input, before), SubProgress(ofArray, 0.0, 0.5));
     const bool areGlobalIds =
       before == input->GetAbstractAttribute(vtkDataSetAttributes::GLOBALIDS) &&
       NumberNewTuples(numberOfNew, after);
-    if (valuesOf && !areGlobalIds && !IsGhostArray(before))
+    if (valuesOf && !areGlobalIds && !areOriginalIds && !IsGhostArray(before))
     {
       const NewValues values = valuesOf(before, after, SubProgress(ofArray, 0.5, 0.7));
       const bool areNormals = before == input->GetAbstractAttribute(vtkDataSetAttributes::NORMALS);

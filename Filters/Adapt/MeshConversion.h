@@ -111,7 +111,8 @@ void CopyTuples(vtkDataSetAttributes* input, vtkIdType count,
   vtkDataSetAttributes* output);
 
 /** Some points with their data. */
-vtkSmartPointer<vtkPolyData> ChosenPoints(vtkPolyData* source, const std::vector<Index>& chosen);
+vtkSmartPointer<vtkPolyData> ChosenPoints(vtkPolyData* source, const std::vector<Index>& chosen,
+  const Progress& progress = Progress());
 
 /** Whether the values are float or double, so that they can be interpolated. */
 bool IsFloatingPoint(vtkAbstractArray* array);
@@ -154,8 +155,8 @@ struct NewValues
 /**
  * Passes all arrays of the input, extended by new tuples with the values of valuesOf(input array,
  * output array, progress), normals at unit length. A tuple without a value gets NaN, 0 or an empty
- * string; in arrays of ids, -1 in place of 0 (the largest number of an unsigned type). Ghost flags
- * are 0. Global ids go on after the largest; where their type has no such number, they are treated
+ * string; in arrays of ids, -1 in place of 0 (the largest number of an unsigned type). Original ids
+ * (UsedPoints.h) have no values there. Ghost flags are 0. Global ids go on after the largest; where their type has no such number, they are treated
  * as other values, and no longer marked as global ids. Without new tuples, the input's own arrays
  * are passed.
  */

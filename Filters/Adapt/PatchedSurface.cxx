@@ -18,9 +18,44 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace elevation
 {
+
+namespace
+{
+constexpr const char* NameOfHoles = "HoleId";
+} // namespace
+
+void CheckOptions(const FillOptions& options, double openEdgeLength)
+{
+  CheckThreads(options.NumberOfThreads);
+  if (!(openEdgeLength >= 0.0))
+  {
+    throw MakeError<sentences::InvalidOpenEdgeLength>(openEdgeLength);
+  }
+  if (!(options.MaximumHoleSize >= 0.0))
+  {
+    throw MakeError<sentences::InvalidHoleSize>(options.MaximumHoleSize);
+  }
+  if (options.MaximumHoleEdges < 0)
+  {
+    throw MakeError<sentences::InvalidHoleEdges>(options.MaximumHoleEdges);
+  }
+  if (!(options.Spacing >= 0.0) || std::isinf(options.Spacing))
+  {
+    throw MakeError<sentences::InvalidSpacing>(options.Spacing);
+  }
+  if (options.MaximumInsertedPoints < 0)
+  {
+    throw MakeError<sentences::InvalidInsertedPoints>(options.MaximumInsertedPoints);
+  }
+  if (options.MaximumExpectedPoints < 0)
+  {
+    throw MakeError<sentences::InvalidExpectedPoints>(options.MaximumExpectedPoints);
+  }
+}
 
 bool IsInterpolated(vtkPointData* pointData, vtkAbstractArray* array)
 {
@@ -125,6 +160,38 @@ void PassCells(vtkPolyData* input, const Mesh& mesh, const std::vector<Index>& k
 }
 } // namespace
 
+Index NextHole(vtkPolyData* input)
+{
+  auto* const holes =
+    vtkIdTypeArray::SafeDownCast(input->GetCellData()->GetAbstractArray(NameOfHoles));
+  Index next = 0;
+  for (vtkIdType i = 0; holes && i < holes->GetNumberOfValues(); ++i)
+  {
+    const vtkIdType hole = std::min<vtkIdType>(holes->GetValue(i), MaximumNumberOfPoints);
+    next = std::max(next, static_cast<Index>(hole + 1));
+  }
+  return next;
+}
+
+namespace
+{
+/**
+ * What filling has said of tuples of the input before, in the array of this name and type, or one value.
+ * @param[in] sourceOf  the tuple of the input that tuple i is
+ */
+template <typename Array, typename Value, typename SourceOf>
+void PassEarlier(vtkDataSetAttributes* input, vtkIdType count, const Value& value,
+  const SourceOf& sourceOf, Array* array)
+{
+  auto* const earlier = Array::SafeDownCast(input->GetAbstractArray(array->GetName()));
+  const bool isThere = earlier && earlier->GetNumberOfComponents() == 1;
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    array->SetValue(i, isThere ? earlier->GetValue(sourceOf(i)) : value);
+  }
+}
+} // namespace
+
 void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches, bool interpolate,
   const Progress& progress, vtkPolyData* output)
 {
@@ -133,11 +200,13 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   PassPoints(
     input, patches, interpolate, SubProgress(progress, 0.0, isExtended ? 0.6 : 0.0), output);
   Report(progress, isExtended ? 0.6 : 0.15);
+  const vtkIdType before = input->GetNumberOfPoints();
   vtkNew<vtkUnsignedCharArray> isNew;
   isNew->SetName("FilledPoint");
   isNew->SetNumberOfTuples(output->GetNumberOfPoints());
-  std::fill_n(isNew->GetPointer(0), input->GetNumberOfPoints(), 0);
-  std::fill_n(isNew->GetPointer(0) + input->GetNumberOfPoints(), patches.NumberOfPoints(), 1);
+  const auto asInInput = [](vtkIdType i) { return i; };
+  PassEarlier(input->GetPointData(), before, 0, asInInput, isNew.Get());
+  std::fill_n(isNew->GetPointer(0) + before, patches.NumberOfPoints(), 1);
   // An array of the input that it replaces may be the active scalars, say; this one is not.
   output->GetPointData()->RemoveArray(isNew->GetName());
   output->GetPointData()->AddArray(isNew);
@@ -145,9 +214,9 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   vtkNew<vtkDoubleArray> errors;
   errors->SetName("FilledError");
   errors->SetNumberOfTuples(output->GetNumberOfPoints());
-  std::fill_n(errors->GetPointer(0), input->GetNumberOfPoints(), 0.0);
+  PassEarlier(input->GetPointData(), before, 0.0, asInInput, errors.Get());
   std::copy(patches.StandardErrors.begin(), patches.StandardErrors.end(),
-    errors->GetPointer(0) + input->GetNumberOfPoints());
+    errors->GetPointer(0) + before);
   output->GetPointData()->RemoveArray(errors->GetName());
   output->GetPointData()->AddArray(errors);
 
@@ -156,15 +225,17 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   PassCells(input, mesh, kept, patches, SubProgress(progress, 0.7, 0.9), output);
   Report(progress, 0.9);
   vtkNew<vtkIdTypeArray> holeIds;
-  holeIds->SetName("HoleId");
-  const vtkIdType ofInput = FirstPolygon(input) + static_cast<vtkIdType>(kept.size());
+  holeIds->SetName(NameOfHoles);
+  const vtkIdType first = FirstPolygon(input);
+  const vtkIdType ofInput = first + static_cast<vtkIdType>(kept.size());
   holeIds->SetNumberOfTuples(ofInput + patches.NumberOfTriangles());
-  vtkIdType* holeId = holeIds->GetPointer(0);
-  holeId = std::fill_n(holeId, ofInput, -1);
+  PassEarlier(input->GetCellData(), ofInput, -1,
+    [&](vtkIdType cell) { return cell < first ? cell : first + kept[cell - first]; }, holeIds.Get());
+  vtkIdType* holeId = holeIds->GetPointer(0) + ofInput;
   for (std::size_t hole = 0; hole < patches.Reports.size(); ++hole)
   {
     holeId = std::fill_n(holeId, patches.TriangleOffsets[hole + 1] - patches.TriangleOffsets[hole],
-      static_cast<vtkIdType>(hole));
+      patches.FirstNumber + static_cast<vtkIdType>(hole));
   }
   output->GetCellData()->RemoveArray(holeIds->GetName());
   output->GetCellData()->AddArray(holeIds);
@@ -182,8 +253,8 @@ void MakeReport(
     }
     output->GetCellData()->AddArray(array);
   };
-  vtkIdType id = 0;
-  add("HoleId", vtkNew<vtkIdTypeArray>().Get(), [&id](const HoleReport&) { return id++; });
+  vtkIdType id = patches.FirstNumber;
+  add(NameOfHoles, vtkNew<vtkIdTypeArray>().Get(), [&id](const HoleReport&) { return id++; });
   add("Status", vtkNew<vtkUnsignedCharArray>().Get(),
     [](const HoleReport& report) { return static_cast<unsigned char>(report.Status); });
   add("NumberOfEdges", vtkNew<vtkIdTypeArray>().Get(),
@@ -241,7 +312,7 @@ std::vector<Message> WarningsOf(const FillResult& patches)
       const auto make = holes.IsRegion(hole)
         ? MakeMessage<sentences::RegionNotFilled, Index, Index, Message>
         : MakeMessage<sentences::HoleNotFilled, Index, Index, Message>;
-      warnings.push_back(make(hole, report.NumberOfEdges, report.Reason));
+      warnings.push_back(make(patches.FirstNumber + hole, report.NumberOfEdges, report.Reason));
     }
   }
   if (failed > listed)

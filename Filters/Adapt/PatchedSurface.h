@@ -20,6 +20,12 @@
 namespace elevation
 {
 
+/**
+ * @param[in] openEdgeLength  the OpenEdgeLength of the filter
+ * @throws Error naming a property that cannot be used
+ */
+void CheckOptions(const FillOptions& options, double openEdgeLength);
+
 /** Whether the values of an array at new points are interpolated as z is. */
 bool IsInterpolated(vtkPointData* pointData, vtkAbstractArray* array);
 
@@ -28,6 +34,9 @@ std::vector<Values> AttributesOf(vtkPointData* pointData);
 
 /** Whether the output has float points, so that new points must be rounded to float. */
 bool HasFloatPoints(vtkPolyData* input);
+
+/** The number of the next hole: those filled before have lower ones, in the array HoleId of cells. */
+Index NextHole(vtkPolyData* input);
 
 /** Output 0. */
 void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches, bool interpolate,

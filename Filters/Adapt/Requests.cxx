@@ -6,9 +6,13 @@
 #include "VTKVersions.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkCallbackCommand.h"
 #include "vtkDataObject.h"
+#include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkPolyData.h"
@@ -43,17 +47,58 @@ void EndWithError(vtkAlgorithm* filter, vtkInformationVector* outputs,
   ReportMessages(filter, { MessageOf(failure) }, {}, messages);
 }
 
+namespace
+{
+vtkInformationIntegerKey* IsReportedKey()
+{
+  static auto* const key = vtkInformationIntegerKey::MakeKey("IS_REPORTED", "ElevationSurface");
+  return key;
+}
+} // namespace
+
+int AfterError(vtkAlgorithm* filter)
+{
+  vtkExecutive* const executive = filter->GetExecutive();
+  if (executive->IsA("vtkPVCompositeDataPipeline"))
+  {
+    return 1;
+  }
+  // Where there is an observer, VTK leaves the output window alone. Without GlobalWarningDisplay
+  // there is no line, and the observer would stay.
+  if (vtkObject::GetGlobalWarningDisplay())
+  {
+    vtkNew<vtkCallbackCommand> once;
+    once->SetCallback([](vtkObject* caller, unsigned long, void* self, void*) {
+      caller->RemoveObserver(static_cast<vtkCommand*>(self));
+    });
+    once->SetClientData(once.Get());
+    executive->AddObserver(vtkCommand::ErrorEvent, once);
+  }
+  return 0;
+}
+
+void MarkAsReported(vtkDataObject* output)
+{
+  output->GetInformation()->Set(IsReportedKey(), 1);
+}
+
+void CopyMark(vtkDataObject* original, vtkDataObject* copy)
+{
+  copy->GetInformation()->CopyEntry(original->GetInformation(), IsReportedKey());
+}
+
 bool NeedsWarning(vtkPolyData* meshWithoutTriangles)
 {
   return meshWithoutTriangles->GetNumberOfPoints() > 0 &&
-    !meshWithoutTriangles->GetFieldData()->HasArray("UnusedPointIds");
+    !meshWithoutTriangles->GetInformation()->Has(IsReportedKey());
 }
 
-void CheckMaximumEdgeLength(double length)
+void CheckThreads(int threads)
 {
-  if (!(length >= 0.0))
+  constexpr int most = 1024;
+  if (threads < 0 || threads > most)
   {
-    throw MakeError<sentences::InvalidEdgeLength>(length);
+    throw MakeError<sentences::InvalidThreads>(threads, most);
   }
 }
 

@@ -11,6 +11,9 @@
 #include "Kernel/Base/Base.h"
 #include "VTKClasses.h"
 
+#include "vtkDemandDrivenPipeline.h"
+#include "vtkErrorCode.h"
+#include "vtkInformation.h"
 #include "vtkType.h"
 
 #include <exception>
@@ -25,24 +28,41 @@ void EndWithError(vtkAlgorithm* filter, vtkInformationVector* outputs,
   const std::exception& failure, vtkStringArray* messages);
 
 /**
+ * What ProcessRequest returns after an error that has been reported: 0. The line that the executive
+ * adds then, which tells the user nothing, is kept from the output window; observers of the
+ * executive get it. In ParaView it is 1: after a request that has failed, ParaView 5.11 never
+ * updates the picture of this output again.
+ */
+int AfterError(vtkAlgorithm* filter);
+
+/**
  * Answers a request of the pipeline. An exception that would leave the filter, as when there is no
  * memory even for what surrounds FilterRun::Run(), becomes an error: after an exception VTK takes
  * the filter to be at work for ever, and runs it no more.
- * @param[in] answer  returns what ProcessRequest returns; after an error that is 1, as Run() says
+ * @param[out] errorCode  the filter's; that of the last request for data
+ * @param[in] answer  returns 0 after an error that has been reported
  */
 template <typename Answer>
-int Guarded(
-  vtkAlgorithm* filter, vtkInformationVector* outputs, vtkStringArray* messages, Answer&& answer)
+int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector* outputs,
+  vtkStringArray* messages, unsigned long& errorCode, Answer&& answer)
 {
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
+  {
+    errorCode = vtkErrorCode::NoError;
+  }
   try
   {
-    return answer();
+    if (const int result = answer())
+    {
+      return result;
+    }
   }
   catch (const std::exception& error)
   {
     EndWithError(filter, outputs, error, messages);
   }
-  return 1;
+  errorCode = vtkErrorCode::UnknownError;
+  return AfterError(filter);
 }
 
 /**
@@ -53,13 +73,17 @@ int Guarded(
 Progress ProgressOf(vtkAlgorithm* filter);
 
 /**
- * Whether a mesh without triangles needs a warning. It needs none where the filter before has told
- * why: a mesh without points comes of an error, and vtkGridDelaunay2D leaves its counts.
+ * Marks a data set as the output of a filter of this module, which has reported why there are no
+ * triangles, if there are none. The mark is in the object's information, which no array can fake.
  */
+void MarkAsReported(vtkDataObject* output);
+/** Marks a copy if the original is marked. */
+void CopyMark(vtkDataObject* original, vtkDataObject* copy);
+/** Whether a mesh without triangles needs a warning: it has points, and no mark. */
 bool NeedsWarning(vtkPolyData* meshWithoutTriangles);
 
-/** @throws Error if the limit is no length */
-void CheckMaximumEdgeLength(double length);
+/** @throws Error if it is no NumberOfThreads of a filter */
+void CheckThreads(int threads);
 
 /** Adds a count to the field data, as an array of one value. */
 void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count);

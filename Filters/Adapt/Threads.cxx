@@ -1,29 +1,34 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The threads of the kernel are those of vtkSMPTools.
+// The threads of the kernel are those of vtkSMPTools, as the user has set it up: neither its backend nor
+// its number of threads is changed, not even for a while, as other pipelines may be at work.
 #include "Kernel/Base/Base.h"
 
 #include "vtkSMPTools.h"
 
-#include <string>
+#include <algorithm>
+#include <atomic>
 
 namespace elevation
 {
 
+int AvailableThreads()
+{
+  return std::max(1, vtkSMPTools::GetEstimatedNumberOfThreads());
+}
+
 void CallOnThreads(Index count, int threads, const std::function<void(Index)>& call)
 {
-  // Where VTK's default backend is sequential, as in ParaView, its STDThread backend is used.
-  const char* current = vtkSMPTools::GetBackend();
-  const std::string backend =
-    current && std::string(current) != "Sequential" ? current : "STDThread";
-  vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads, backend, false }, [&]() {
-    vtkSMPTools::For(0, count, 1, [&](vtkIdType begin, vtkIdType end) {
-      for (vtkIdType i = begin; i < end; ++i)
+  std::atomic<Index> next{ 0 };
+  vtkSMPTools::For(0, std::min<Index>(count, threads), 1, [&](vtkIdType begin, vtkIdType end) {
+    for (vtkIdType worker = begin; worker < end; ++worker)
+    {
+      for (Index i = next++; i < count; i = next++)
       {
-        call(static_cast<Index>(i));
+        call(i);
       }
-    });
+    }
   });
 }
 

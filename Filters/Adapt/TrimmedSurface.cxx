@@ -24,16 +24,18 @@
 namespace elevation
 {
 
-Message WrongOption(const TrimOptions& options)
+void CheckOptions(const TrimOptions& options)
 {
+  CheckThreads(options.NumberOfThreads);
   if (!(options.GapTolerance >= 0.0))
   {
-    return MakeMessage<sentences::InvalidGapTolerance>(std::to_string(options.GapTolerance));
+    throw MakeError<sentences::InvalidGapTolerance>(std::to_string(options.GapTolerance));
   }
   const double cell = std::fabs(options.Grid.Area());
-  return options.Grid.IsSet() && !(cell > 0.0 && cell < std::numeric_limits<double>::infinity())
-    ? MakeMessage<sentences::InvalidGridSteps>()
-    : Message();
+  if (options.Grid.IsSet() && !(cell > 0.0 && cell < std::numeric_limits<double>::infinity()))
+  {
+    throw MakeError<sentences::InvalidGridSteps>();
+  }
 }
 
 BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress, const std::string& name)

@@ -21,8 +21,8 @@
 namespace elevation
 {
 
-/** What is wrong with options of an outline, if anything. */
-Message WrongOption(const TrimOptions& options);
+/** @throws Error naming a property that cannot be used */
+void CheckOptions(const TrimOptions& options);
 
 /**
  * Lines and polygons, and the points that they use.

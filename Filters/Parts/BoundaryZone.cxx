@@ -22,24 +22,27 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace elevation
 {
 
+template <>
+struct FieldsOf<TrimmedZone>
+{
+  template <typename Zone>
+  static auto In(Zone& zone)
+  {
+    return std::tie(zone.Parents[0], zone.Corners[0], zone.Parents[1], zone.Corners[1],
+      zone.IsInserted, zone.IsOwned, zone.OfOthers, zone.OnBoundary, zone.FarOnBoundary);
+  }
+};
+
 Bytes TrimmedZone::Pack() const
 {
   Bytes bytes;
-  for (const int side : { 0, 1 })
-  {
-    AppendList(bytes, this->Parents[side]);
-    AppendList(bytes, this->Corners[side]);
-  }
-  AppendList(bytes, this->IsInserted);
-  AppendList(bytes, this->IsOwned);
-  AppendList(bytes, this->OfOthers);
-  AppendList(bytes, this->OnBoundary);
-  AppendList(bytes, this->FarOnBoundary);
+  AnyValue::Append(bytes, *this);
   if (!this->IsInserted.empty())
   {
     const Bytes points = PackData(this->NewPoints);
@@ -51,20 +54,10 @@ Bytes TrimmedZone::Pack() const
 TrimmedZone::TrimmedZone(const Bytes& bytes)
 {
   const char* from = bytes.data();
-  for (const int side : { 0, 1 })
-  {
-    TakeList(from, this->Parents[side]);
-    TakeList(from, this->Corners[side]);
-  }
-  TakeList(from, this->IsInserted);
-  TakeList(from, this->IsOwned);
-  TakeList(from, this->OfOthers);
-  TakeList(from, this->OnBoundary);
-  TakeList(from, this->FarOnBoundary);
+  AnyValue::Take(from, *this);
   if (!this->IsInserted.empty())
   {
-    this->NewPoints =
-      UnpackData(from, bytes.size() - static_cast<std::size_t>(from - bytes.data()));
+    this->NewPoints = UnpackData(from, static_cast<std::size_t>(bytes.end() - from));
   }
 }
 

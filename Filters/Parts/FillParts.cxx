@@ -92,6 +92,7 @@ void FillParts::FindHoles(int partOfRims)
       known.Points = one.Input->GetNumberOfPoints();
       known.OwnPoints = one.CountOfOwn();
       known.LargestId = one.LargestId();
+      known.NextHole = NextHole(one.Input);
       for (std::size_t t = 0; t < one.RegionOf.size(); ++t)
       {
         if (one.RegionOf[t] != None)
@@ -129,6 +130,11 @@ void FillParts::FindHoles(int partOfRims)
     }
     this->FindReaches();
   });
+  for (const KnownPart& known : this->Known)
+  {
+    Index& first = this->Whole.OfAll.FirstNumber;
+    first = std::max(first, known.NextHole);
+  }
 }
 
 /**
@@ -539,7 +545,7 @@ bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolat
   int type = VTK_VOID;
   bool hasIds = true;
   const auto isFit = [&](vtkPolyData* part) {
-    CheckMaximumEdgeLength(longest);
+    CheckOptions(options, longest);
     if (part->GetNumberOfPoints() > 0)
     {
       type = part->GetPoints()->GetDataType();

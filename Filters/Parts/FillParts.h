@@ -93,6 +93,7 @@ private:
     double Triangles = 0.0;
     vtkIdType Points = 0, OwnPoints = 0; ///< with those that other parts count, and without
     vtkIdType LargestId = -1;
+    Index NextHole = 0;
     double LargestHeight = 0.0; ///< of a long triangle
   };
   /** Holes of one part, increasing, that are filled together. */

@@ -223,6 +223,7 @@ FillResult FilledPart::PlacedPatches(const SharedHoles& all, vtkPolyData* input)
     to.TriangleOffsets.push_back(isMine ? from.TriangleOffsets[next] : to.TriangleOffsets.back());
   }
   to.Reports = all.OfAll.Reports;
+  to.FirstNumber = all.OfAll.FirstNumber;
   for (const Index region : this->RegionOf)
   {
     to.Found.RegionOf.push_back(region == None ? None : all.NumberOf(this->Number, region));

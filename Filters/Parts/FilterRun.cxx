@@ -4,6 +4,7 @@
 
 #include "Adapt/Adapt.h"
 #include "Gathering.h"
+#include "PointKeys.h"
 #include "Ranks.h"
 #include "SpreadBlocks.h"
 
@@ -14,12 +15,15 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkStringArray.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <sstream>
 
 namespace elevation
@@ -57,6 +61,49 @@ void EmptyOutputs(const Place& place)
   }
 }
 
+/** Whether it is another rank's. */
+bool IsCopy(vtkPolyData* surface, vtkIdType point)
+{
+  vtkUnsignedCharArray* const marks = GhostsOf(surface->GetPointData());
+  return marks && (marks->GetValue(point) & vtkDataSetAttributes::DUPLICATEPOINT);
+}
+
+/**
+ * Removes the points that no cell has. A rank keeps its own that cells of another have, so that each
+ * point still belongs to one. All ranks call it, those without an output with nullptr.
+ */
+void KeepUsed(vtkPolyData* surface, const Ranks& ranks, const Progress& progress)
+{
+  std::vector<char> areUsed;
+  std::vector<PointKey> keys; // of points of others that are used here
+  const bool hasPoints = surface && surface->GetNumberOfPoints() > 0;
+  const bool byIds = !IsOnAny(ranks, hasPoints && !surface->GetPointData()->GetGlobalIds());
+  const auto forEach = [&](bool areCopies, const auto& visit) {
+    for (std::size_t i = 0; i < areUsed.size(); ++i)
+    {
+      const vtkIdType point = static_cast<vtkIdType>(i);
+      if (bool(areUsed[i]) == areCopies && IsCopy(surface, point) == areCopies)
+      {
+        visit(areUsed[i], PointKeys(surface, byIds).Of(point));
+      }
+    }
+  };
+  ranks.Agree([&] {
+    areUsed = hasPoints ? FlagUsed(surface) : std::vector<char>();
+    forEach(true, [&keys](char, const PointKey& key) { keys.push_back(key); });
+  });
+  keys = ranks.Collect(keys);
+  ranks.Agree([&] {
+    std::sort(keys.begin(), keys.end());
+    forEach(false, [&keys](char& isUsed, const PointKey& key) {
+      isUsed = std::binary_search(keys.begin(), keys.end(), key);
+    });
+    if (hasPoints)
+    {
+      KeepFlagged(areUsed, progress, surface);
+    }
+  });
+}
 } // namespace
 
 FilterRun::FilterRun(vtkAlgorithm* filter, vtkMultiProcessController* controller,
@@ -91,10 +138,6 @@ int FilterRun::Run(const std::function<void(Block&)>& body)
       [&] { places = ListPlaces(vtkDataObject::GetData(this->Inputs[0]), this->Outputs); });
     const vtkSmartPointer<vtkPolyData> second = this->ShareSecond(ranks);
     this->RunPlaces(places, ranks, second, body);
-    if (this->IsFirst && places.empty() && this->Occupied.empty() && ranks.Own() == 0)
-    {
-      this->Warnings.push_back(MakeMessage<sentences::EmptyBlocks>());
-    }
   }
   catch (const std::exception& error)
   {
@@ -103,7 +146,7 @@ int FilterRun::Run(const std::function<void(Block&)>& body)
     this->Warnings.clear();
   }
   this->Report(ranks);
-  return 1;
+  return IsOnAny(ranks, !this->Errors.empty()) ? 0 : 1;
 }
 
 /** Whether the run before was aborted, too, and has said so. */
@@ -167,6 +210,7 @@ double FilterRun::GatherSpreadBlocks(
     try
     {
       Message why;
+      this->NumberPoints(own, ranks);
       if (!this->RunSpread(own, ranks, second, ofBlock, why))
       {
         std::vector<Message> warnings;
@@ -203,6 +247,48 @@ void FilterRun::AddMessages(const std::vector<Place*>& places, const std::vector
   }
 }
 
+/** Gives the parts of a block original ids. */
+void FilterRun::NumberPoints(const std::vector<Place*>& places, const Ranks& ranks) const
+{
+  if (this->CleanedOutputs == 0)
+  {
+    return;
+  }
+  std::vector<vtkIdType> counts(1, 0);
+  for (vtkPointSet* part : PartsOf(places))
+  {
+    counts[0] += part->GetNumberOfPoints();
+  }
+  counts = ranks.Collect(counts);
+  vtkIdType first = std::accumulate(counts.begin(), counts.begin() + ranks.Own(), vtkIdType(0));
+  ranks.Agree([&] {
+    for (Place* place : places)
+    {
+      if (HasPoints(*place))
+      {
+        auto* const points = vtkPointSet::SafeDownCast(place->Input);
+        place->Own = WithOriginalIds(points, first);
+        first += points->GetNumberOfPoints();
+        place->Input = place->Own;
+      }
+    }
+  });
+}
+
+/** Leaves points that cells have in the surfaces of a block; of several ranks, all call it. */
+void FilterRun::RemoveUnused(Block& block, const Ranks& ranks) const
+{
+  for (std::size_t port = 0; port < static_cast<std::size_t>(this->CleanedOutputs); ++port)
+  {
+    vtkPolyData* const surface = block.Outputs.empty() ? nullptr : block.Outputs[port];
+    if (surface && this->ListsUnused)
+    {
+      NameUnusedByOriginalIds(surface);
+    }
+    KeepUsed(surface, ranks, SubProgress(block.Progress, 1.0, 1.0));
+  }
+}
+
 bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
   vtkPolyData* second, const Progress& progress, Message& whyGathered)
 {
@@ -226,6 +312,7 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
     whyGathered = block.WhyGathered;
     return false;
   }
+  this->RemoveUnused(block, ranks);
   this->AddMessages(places, block.Warnings, this->Warnings);
   Empty(places);
   if (home)
@@ -262,6 +349,7 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
     {
       break;
     }
+    std::for_each(place.Outputs.begin(), place.Outputs.end(), MarkAsReported);
     // A rank without points has the rest of the outputs, and leaves the messages to the others.
     const bool isReported = this->ShouldReport(place, ranks);
     const double next = done + workOf(place);
@@ -312,8 +400,14 @@ Message FilterRun::RunPlace(
       throw Error(std::string("It is a ") + place.Input->GetClassName() + ", but a " + required +
         " is needed.");
     }
-    block.Input = vtkPointSet::SafeDownCast(place.Input);
+    vtkSmartPointer<vtkPointSet> input = vtkPointSet::SafeDownCast(place.Input);
+    if (this->CleanedOutputs > 0)
+    {
+      input = WithOriginalIds(input, 0);
+    }
+    block.Input = input;
     body(block);
+    this->RemoveUnused(block, Ranks());
     return message;
   }
   catch (const Aborted&)

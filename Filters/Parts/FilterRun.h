@@ -62,8 +62,12 @@ public:
     vtkInformationVector** inputs, vtkInformationVector* outputs, vtkStringArray* messages);
 
   std::string Second; ///< what messages call input 1
-  /** Whether to report a composite without any data set; the filter before has reported others. */
-  bool IsFirst = false;
+  /**
+   * Of how many first outputs points that no cell has are removed. Then points have original ids
+   * (UsedPoints.h): on several ranks global ids or places in the input, rank after rank.
+   */
+  int CleanedOutputs = 0;
+  bool ListsUnused = false; ///< whether the filter lists unused points in field data
   /** Results of the filter: set to 0, and added up (the largest taken) over blocks and ranks. */
   std::vector<vtkIdType*> Sums;
   std::vector<double*> Maxima;
@@ -80,8 +84,7 @@ public:
 
   /**
    * @param[in] body  adds its results to Sums and Maxima last, when it cannot fail any more
-   * @return what RequestData returns: always 1, because on 0 the executive adds an error of its own
-   *         that tells the user nothing.
+   * @return what RequestData returns: on all ranks 0 after an error in any block
    */
   int Run(const std::function<void(Block&)>& body);
 
@@ -92,6 +95,8 @@ private:
   /** Works on the blocks that are spread over ranks. @return the progress that has been made */
   double GatherSpreadBlocks(
     std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress);
+  void NumberPoints(const std::vector<Place*>& places, const Ranks& ranks) const;
+  void RemoveUnused(Block& block, const Ranks& ranks) const;
   bool RunSpread(const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second,
     const Progress& progress, Message& whyGathered);
   void AddMessages(const std::vector<Place*>& places, const std::vector<Message>& messages,

@@ -19,9 +19,20 @@
 #include <cmath>
 #include <cstring>
 #include <new>
+#include <tuple>
 
 namespace elevation
 {
+
+template <>
+struct FieldsOf<ArrayKind>
+{
+  template <typename Kind>
+  static auto In(Kind& kind)
+  {
+    return std::tie(kind.Name, kind.Type, kind.Components, kind.Attribute, kind.ComponentNames);
+  }
+};
 
 namespace
 {
@@ -57,47 +68,17 @@ vtkSmartPointer<vtkAbstractArray> MakeArray(const ArrayKind& kind, vtkIdType cou
   return array;
 }
 
-/** The fields of an array's kind; names have no zeros in them. */
-void PutKind(vtkDataSetAttributes* data, int i, std::string& text)
+ArrayKind KindOf(vtkDataSetAttributes* data, int i)
 {
   vtkAbstractArray* const array = data->GetAbstractArray(i);
-  const auto put = [&text](const std::string& field) {
-    text += field;
-    text.push_back('\0');
-  };
-  put(array->GetName() ? array->GetName() : "");
-  put(std::to_string(CanGo(array) ? array->GetDataType() : VTK_VOID));
-  put(std::to_string(array->GetNumberOfComponents()));
-  put(std::to_string(data->IsArrayAnAttribute(i)));
-  const int names = array->HasAComponentName() ? array->GetNumberOfComponents() : 0;
-  put(std::to_string(names));
-  for (int c = 0; c < names; ++c)
+  const auto inWords = [](const char* name) { return std::string(name ? name : ""); };
+  ArrayKind kind{ inWords(array->GetName()), CanGo(array) ? array->GetDataType() : VTK_VOID,
+    array->GetNumberOfComponents(), data->IsArrayAnAttribute(i), {} };
+  for (int c = 0; c < kind.Components && array->HasAComponentName(); ++c)
   {
-    put(array->GetComponentName(c) ? array->GetComponentName(c) : "");
+    kind.ComponentNames.push_back(inWords(array->GetComponentName(c)));
   }
-}
-
-std::vector<ArrayKind> GetKinds(const std::string& text)
-{
-  std::vector<ArrayKind> kinds;
-  std::size_t at = 0;
-  const auto get = [&]() {
-    const std::string field = text.c_str() + at;
-    at += field.size() + 1;
-    return field;
-  };
-  while (at < text.size())
-  {
-    ArrayKind kind;
-    kind.Name = get();
-    kind.Type = std::stoi(get());
-    kind.Components = std::stoi(get());
-    kind.Attribute = std::stoi(get());
-    kind.ComponentNames.resize(std::stoi(get()));
-    std::generate(kind.ComponentNames.begin(), kind.ComponentNames.end(), get);
-    kinds.push_back(kind);
-  }
-  return kinds;
+  return kind;
 }
 
 bool IsSame(const ArrayKind& kind, const ArrayKind& other)
@@ -110,21 +91,16 @@ bool IsSame(const ArrayKind& kind, const ArrayKind& other)
 std::vector<ArrayKind> CommonArrays(
   const Ranks& ranks, vtkDataSetAttributes* own, std::set<std::string>& leftOut)
 {
-  std::vector<std::string> texts;
-  if (own)
+  std::vector<std::vector<ArrayKind>> ofRanks(own ? 1 : 0);
+  for (int i = 0; own && i < own->GetNumberOfArrays(); ++i)
   {
-    texts.emplace_back();
-    for (int i = 0; i < own->GetNumberOfArrays(); ++i)
-    {
-      PutKind(own, i, texts.front());
-    }
+    ofRanks.front().push_back(KindOf(own, i));
   }
-  std::vector<std::vector<ArrayKind>> ofRanks;
+  ofRanks = ranks.Collect(ofRanks);
   std::vector<ArrayKind> all; // each name once
-  for (const std::string& text : ranks.Collect(texts))
+  for (const std::vector<ArrayKind>& kinds : ofRanks)
   {
-    ofRanks.push_back(GetKinds(text));
-    for (const ArrayKind& kind : ofRanks.back())
+    for (const ArrayKind& kind : kinds)
     {
       const auto isSameName = [&](const ArrayKind& other) { return other.Name == kind.Name; };
       if (std::none_of(all.begin(), all.end(), isSameName))
@@ -273,10 +249,7 @@ void PackArray(const ArrayKind& kind, vtkAbstractArray* array, const std::vector
         AppendTo(bytes, &bit, 1);
         continue;
       }
-      const std::string& text = texts->GetValue(place * kind.Components + c);
-      const vtkIdType length = static_cast<vtkIdType>(text.size());
-      AppendTo(bytes, &length, 1);
-      AppendTo(bytes, text.data(), text.size());
+      AppendList(bytes, texts->GetValue(place * kind.Components + c));
     }
   }
 }
@@ -300,10 +273,9 @@ void UnpackArray(const ArrayKind& kind, vtkIdType first, vtkIdType count, const 
       vtkArrayDownCast<vtkBitArray>(array)->SetValue(i, bit);
       continue;
     }
-    vtkIdType length = 0;
-    TakeFrom(from, &length, 1);
-    texts->SetValue(i, std::string(from, static_cast<std::size_t>(length)));
-    from += length;
+    std::string text;
+    TakeList(from, text);
+    texts->SetValue(i, text);
   }
 }
 } // namespace

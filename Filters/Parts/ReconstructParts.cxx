@@ -252,7 +252,7 @@ void ReconstructParts::Prepare()
 void ReconstructParts::Check() const
 {
   const DelaunayOptions& options = this->Set.Delaunay;
-  CheckLimits(options);
+  CheckOptions(options);
   if (options.GivenLattice.IsSet() && options.UseLattice == LatticeMode::Automatic &&
     !this->Constraints)
   {
@@ -266,13 +266,17 @@ void ReconstructParts::Check() const
   {
     throw MakeError<sentences::ConstraintsNotInPieces>();
   }
+  if (this->Set.RemoveUnusedPoints)
+  {
+    throw MakeError<sentences::UnusedPointsInPieces>();
+  }
   if (this->IsTrimmed() && this->Set.Trim.Test != OutwardTest::Exact)
   {
     throw MakeError<sentences::InwardNormalNotInPieces>();
   }
   if (this->Set.FillHoles)
   {
-    CheckMaximumEdgeLength(this->Set.LongestEdge);
+    CheckOptions(this->Set.Fill, this->Set.LongestEdge);
   }
 }
 
@@ -303,15 +307,7 @@ void ReconstructParts::Triangulate(const Progress& progress)
     options.Monitor = progress;
     this->Work->Triangulate(
       this->NumberOfParts / this->Everybody->Count(), this->Constraints, options, warnings);
-    const TriangulateParts::Totals& all = this->Work->All();
-    if (all.Settled == 0)
-    {
-      warnings.push_back(MakeMessage<sentences::NoTriangle>(all.Points));
-    }
-    else if (all.Effect.AreMostMissing())
-    {
-      warnings.push_back(AdviceOnLimit(options.MaximumEdgeLength, all.Effect));
-    }
+    this->Work->WarnOfMissing(warnings);
     warnings = OnFirst(warnings, *this->Everybody);
   });
   this->ReportWarnings(warnings);

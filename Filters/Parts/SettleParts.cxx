@@ -12,28 +12,19 @@
 namespace elevation
 {
 
+/** A seam on its way to the part that joins it with its own. */
+template <>
+struct FieldsOf<Piece>
+{
+  template <typename Seam>
+  static auto In(Seam& seam)
+  {
+    return std::tie(seam.Coordinates, seam.Ids, seam.Edges);
+  }
+};
+
 namespace
 {
-/** A seam on its way to the part that joins it with its own. */
-Bytes PackPiece(const Piece& piece)
-{
-  Bytes bytes;
-  AppendList(bytes, piece.Coordinates);
-  AppendList(bytes, piece.Ids);
-  AppendList(bytes, piece.Edges);
-  return bytes;
-}
-
-Piece UnpackPiece(const Bytes& bytes)
-{
-  const char* from = bytes.data();
-  Piece piece;
-  TakeList(from, piece.Coordinates);
-  TakeList(from, piece.Ids);
-  TakeList(from, piece.Edges);
-  return piece;
-}
-
 /**
  * A node of the tree of cells (Cuts.h): cells [Begin, End), which have the numbers of their parts. What
  * is done for a node is done by its first part, which has the seam of its lower half already.
@@ -281,7 +272,9 @@ bool Settling::JoinSeams(const SharedLattice* lattice)
       const Node node = Node::Of(part, level, count);
       if (isJoined(node) && part == node.Middle())
       {
-        this->Crew.Send(node.Begin, FromSeams, PackPiece(this->Seams[part]));
+        Bytes bytes;
+        AnyValue::Append(bytes, this->Seams[part]);
+        this->Crew.Send(node.Begin, FromSeams, std::move(bytes));
         this->Seams.erase(part);
       }
     });
@@ -296,7 +289,10 @@ bool Settling::JoinSeams(const SharedLattice* lattice)
         const Node node = Node::Of(part, level, count);
         if (isJoined(node) && part == node.Begin)
         {
-          const Piece other = UnpackPiece(this->Crew.At(part, FromSeams).Take().at(0));
+          const Bytes bytes = std::move(this->Crew.At(part, FromSeams).Take().at(0));
+          const char* from = bytes.data();
+          Piece other;
+          AnyValue::Take(from, other);
           this->WatchLattice([&]() { this->SettleNode(node, other, lattice, progress); });
         }
       });

@@ -100,6 +100,10 @@ void GatherBlock(const std::vector<Place*>& places, int home, PartKind kind, con
   const vtkSmartPointer<vtkPolyData> whole =
     Gather(PartsOf(places), kind, home, ranks, progress, warnings);
   Place* const first = FirstWithPoints(places);
+  if (whole)
+  {
+    CopyMark(first->Input, whole);
+  }
   Empty(places);
   if (whole)
   {

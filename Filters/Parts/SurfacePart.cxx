@@ -129,30 +129,21 @@ void MergeAtOwners(Engine& engine, int box, const SurfacePart& part, std::vector
 {
   const std::size_t ownCount = part.Own.Count();
   engine.ForEach(Progress(), [&](int, const Progress&) {
-    std::vector<Bytes> packed(engine.CountOfParts());
+    ValuesForParts<ValueForOwner> ofOthers;
     for (std::size_t i = 0; i < part.OtherNumbers.size(); ++i)
     {
       const int owner = part.OwnerOf(part.OtherNumbers[i]);
-      const ValueForOwner value{ part.OtherNumbers[i] - part.Bases[owner], values[ownCount + i] };
-      AppendTo(packed[owner], &value, 1);
+      ofOthers[owner].push_back({ part.OtherNumbers[i] - part.Bases[owner], values[ownCount + i] });
     }
-    for (std::size_t owner = 0; owner < packed.size(); ++owner)
-    {
-      engine.Send(static_cast<int>(owner), box, std::move(packed[owner]));
-    }
+    SendTo(engine, box, ofOthers);
   });
   engine.Deliver();
   engine.ForEach(Progress(), [&](int own, const Progress&) {
-    for (const Bytes& bytes : engine.At(own, box).Take())
+    for (const ValueForOwner& value : ValuesIn<ValueForOwner>(engine.At(own, box)))
     {
-      const char* from = bytes.data();
-      while (from != bytes.data() + bytes.size())
-      {
-        ValueForOwner value;
-        TakeFrom(from, &value, 1);
-        values[value.Place] = std::min(values[value.Place], value.Value);
-      }
+      values[value.Place] = std::min(values[value.Place], value.Value);
     }
+    engine.At(own, box).Clear();
   });
   values.resize(ownCount);
 }

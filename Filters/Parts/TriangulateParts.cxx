@@ -70,6 +70,7 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
   LinesOfParts lines;
   if (constraints)
   {
+    WarnOfLattice(this->Options, warnings);
     lines = AddLines(
       *this->Store, constraints, *this->Plane, this->Options, this->Fraction(0.14, 0.15), warnings);
     this->Options.UseLattice = LatticeMode::Off;
@@ -235,6 +236,18 @@ void TriangulateParts::LimitEdges(const Progress& progress)
   if (!this->Crew->IsInFiles() && effect.AreMostMissing())
   {
     MeasureAll(*this->Crew, Covered, progress, this->Store->Part, effect);
+  }
+}
+
+void TriangulateParts::WarnOfMissing(std::vector<Message>& warnings) const
+{
+  if (this->Total.Settled == 0)
+  {
+    WarnOfNoTriangle(this->Total.Points, warnings);
+  }
+  else if (this->Total.Effect.AreMostMissing())
+  {
+    warnings.push_back(AdviceOnLimit(this->Options.MaximumEdgeLength, this->Total.Effect));
   }
 }
 

@@ -90,6 +90,8 @@ public:
     Lattice Steps; ///< if found
   };
   const Totals& All() const { return this->Total; }
+  /** Warns of points that have made no triangle, or of a limit that leaves few. */
+  void WarnOfMissing(std::vector<Message>& warnings) const;
 
   /** Of this rank. */
   struct Effort

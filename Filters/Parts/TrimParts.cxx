@@ -56,11 +56,7 @@ bool TrimParts::Trim()
 
 void TrimParts::TrimAll()
 {
-  const Message wrong = WrongOption(this->Options);
-  if (!wrong.IsEmpty())
-  {
-    throw CodedError(wrong);
-  }
+  CheckOptions(this->Options);
   if (this->Options.Test != OutwardTest::Exact)
   {
     throw MakeError<sentences::InwardNormalNotInPieces>();

@@ -36,7 +36,10 @@ vtkReconstructPieces::vtkReconstructPieces()
     made.FillHoles = this->FillHoles;
     made.InterpolatePointData = this->Fill->GetInterpolatePointData() != 0;
     made.DrapeConstraints = this->Delaunay->GetDrapeConstraints() != 0;
-    made.LongestEdge = this->Fill->GetMaximumEdgeLength();
+    made.RemoveUnusedPoints = this->Delaunay->GetRemoveUnusedPoints() ||
+      (this->TrimOutward && this->Trim->GetRemoveUnusedPoints()) ||
+      (this->FillHoles && this->Fill->GetRemoveUnusedPoints());
+    made.LongestEdge = this->Fill->GetOpenEdgeLength();
     made.HasConstraints = this->Delaunay;
     made.HasBoundary = this->Trim;
     return made;

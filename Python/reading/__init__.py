@@ -29,8 +29,9 @@ MEANS_SOMETHING = {name: one.readers for name, one in DESCRIBED.items() if one.r
 MAY_HAVE_Y_UP = ("a PLY file", "an STL file", "an OBJ file")
 NAMES = {
     "text": "text files", "vectors": "vector files", "las": "LAS files", "gocad": "GOCAD files",
+    "iesx": "IESX files", "landxml": "LandXML files",
 }
-NAMES_IN_COLUMNS = ("text.read_text", "gocad")  # modules of formats without layers of their own
+NAMES_IN_COLUMNS = ("text.read_text", "gocad", "iesx")  # modules of formats without layers of their own
 
 
 def check_options(path, **options):
@@ -65,7 +66,12 @@ def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
             known = did_you_mean(name, ReadOptions.__dataclass_fields__)
             raise TypeError(f"read() has no option {name}{known}")
     options = ReadOptions(**options)
-    return finished(path, read_whole(path, options), options)
+    cloud = finished(path, read_whole(path, options), options)
+    if options.project:
+        from ..projecting import project
+
+        project(os.fspath(path), cloud)
+    return cloud
 
 
 def read_whole(path, options):
@@ -88,7 +94,7 @@ def frame_of(path):
 
             frame, crs = read_frame(local)
         else:
-            cloud = read_any(local, ReadOptions(points_only=True))
+            cloud = read_by_format(local, ReadOptions(points_only=True))
             frame, crs = cloud.frame, cloud.crs
         if frame is None:
             raise FileError(f"{local}: is no raster with even steps, so there are no pixels like its own")

@@ -8,7 +8,7 @@ import os
 import re
 
 from ..messages import FileError
-from ..paths import suffix_of
+from ..paths import is_geodatabase, suffix_of
 
 HEAD = 4096
 
@@ -118,6 +118,22 @@ def is_table_with_geometry(head, path):
     return GEOMETRY.match(head) is not None
 
 
+def is_npz(head, path):
+    return re.match(rb"PK\x03\x04.{26}[^\0]{1,99}?\.npy", head, re.DOTALL) is not None
+
+
+def is_adcirc(head, path):
+    """Text of a title, two counts, and nodes 1, 2, ... of four numbers."""
+    lines = [line.split() for line in re.split(rb"\r?\n", head)[1:4]]
+    try:
+        elements, nodes = map(int, lines[0][:2])
+        ids = [int(line[0]) for line in lines[1:]]
+        places = [[float(word) for word in line[1:4]] for line in lines[1:]]
+    except (ValueError, IndexError):
+        return False
+    return elements > 0 and nodes > 2 and ids == [1, 2] and all(len(place) == 3 for place in places)
+
+
 def is_saga_header(head, path):
     return re.match(rb"NAME\s*=[^\n]*\nDESCRIPTION\s*=.*\nDATAFORMAT", head, re.DOTALL) is not None
 
@@ -143,6 +159,10 @@ GEOMETRY = re.compile(
 )
 
 EARTHVISION = rb"(#[^\n]*\n)*#\s*(Type:\s*scattered data|Field:\s*\d)"
+# Comments may stand before.
+IESX = rb"(\s*[#!][^\n]*\n)*PROFILE [^\n]*TYPE +\d"
+LANDXML = rb"(\xef\xbb\xbf)?\s*(<\?xml.*?\?>\s*)?(<!--.*?-->\s*)*<LandXML\b"
+PCD = rb"(#[^\n]*\n)*VERSION [.\d]+\s*\nFIELDS"
 PETREL = rb"(#[^\n]*\n)*\s*VERSION \d+\s+BEGIN HEADER\s"
 # Lines begin with > or ->, or end with 999 999 999.
 SEGMENTS = rb"(#(?! ?@VGMT)[^\n]*\n)*(-?>|FFASCI|([^\n]*\n)*?\s*999(\.0*)?(\s+999(\.0*)?){2}\s*\n)"
@@ -157,10 +177,15 @@ FORMATS = (
     Format("an OBJ file", ".obj", begins(OBJ), "vtk_files", "vtk_files"),
     Format("a GOCAD file", ".ts .vs .pl", begins(rb"GOCAD\s"), "gocad", "gocad"),
     Format(
-        "a numpy array", ".npy", begins(rb"\x93NUMPY"), "horizons.read_array",
-        slices="horizons.ArraySlices",
+        "a numpy array", ".npy", begins(rb"\x93NUMPY"), "arrays.read_array", slices="arrays.ArraySlices",
     ),
-    Format("an IRAP grid", ".irap .gri", begins(rb"\s*-996\s"), "horizons.read_irap_grid"),
+    Format("arrays of numpy", ".npz", is_npz, "arrays.read_array"),
+    Format("an IRAP grid", ".irap .gri", begins(rb"\s*-996\s"), "irap.read_grid"),
+    Format("a binary IRAP grid", ".irap .gri", begins(rb"\0\0\0\x20\xff\xff\xfc\x1c"), "irap.read_binary_grid"),
+    Format("an IESX horizon", "", begins(IESX), "iesx", "iesx"),
+    Format("a LandXML file", ".landxml", begins(LANDXML), "landxml", "landxml"),
+    Format("a PCD file", ".pcd", begins(PCD), "pcd"),
+    Format("an ADCIRC mesh", ".14", is_adcirc, "adcirc"),
     Format("a CPS-3 grid", ".cps .cps3", begins(rb"\s*FSASCI\b"), "horizons.read_cps3_grid"),
     Format("EarthVision data", ".ev", begins(EARTHVISION), "horizons.read_earthvision"),
     Format("Petrel points", "", begins(PETREL), "horizons.read_petrel_points"),
@@ -171,14 +196,14 @@ FORMATS = (
     Format("a text table", TEXT, is_table, "text.read_text", slices="text.TextSlices"),
     Format(
         "a vector file",
-        ".gpkg .shp .geojson .json .dxf .gml .kml .kmz .fgb .gpx .tab .mif .dgn .dwg",
+        ".gpkg .shp .geojson .json .dxf .gml .kml .kmz .fgb .gpx .tab .mif .dgn .dwg .gdb",
         is_of_gdal("vectors"),
         "vectors",
         "vectors",
     ),
     Format(
         "a raster",
-        ".tif .tiff .dem .asc .grd .nc .vrt .img .hgt .flt .bil .dat .zmap",
+        ".tif .tiff .dem .asc .grd .nc .bag .vrt .img .hgt .flt .bil .dat .zmap",
         is_of_gdal("raster"),
         "rasters",
     ),
@@ -186,16 +211,21 @@ FORMATS = (
 )
 
 
-ARCHIVE = rb"PK\x03\x04(?!(?s:.{26}[^\0]{0,99}\.kml))"  # one that is no .kmz
 # What people try that holds no points, or none that are read: (what it begins with, what to do).
 FOREIGN = tuple(
     (re.compile(pattern, re.IGNORECASE), words)
     for pattern, words in (
-        (ARCHIVE, "is an archive: unpack it, or save a table as .csv"),
+        (rb"PK\x03\x04(?s:.{26}(mimetype|\[Content_Types\]|xl/|docProps/|_rels/|word/))",
+         "is a spreadsheet or document of Office (.xlsx, .ods): save the table as .csv"),
+        (rb"\xd0\xcf\x11\xe0", "is a spreadsheet or document of old Office (.xls): save the table as .csv"),
+        (rb"7z\xbc\xaf|Rar!", "is an archive of 7-Zip or RAR: unpack it"),
+        (rb"MATLAB 5\.0|.{512}\x89HDF[^\n]*MATLAB", "is a MATLAB file: save x, y and z by writematrix() as .csv"),
+        (rb"PAR1", "is a Parquet table: save it as .csv, in pandas by to_csv()"),
+        (rb"\x80[\x02-\x05]", "is a pickle of Python: save the array by numpy.save()"),
+        (rb"MESH2D\b", "is a mesh of SMS (.2dm): save it as .vtu or .ply, in QGIS as points"),
         (rb"%PDF", "is a PDF document"),
         (rb"\s*<(!doctype )?html", "is a web page"),
         (rb"ASTM-E57", "is an E57 file, which is not read: convert it to .las or .ply"),
-        (rb"# \.PCD|(#[^\n]*\n)*VERSION [.\d]+\s*\nFIELDS", "is a PCD file: convert it to .ply"),
         (rb"\s*~V", "is a well log, not a LAS file of points"),
         (rb"C?OFF\s", "is an OFF file, which is not read: convert it to .ply"),
         (rb"glTF", "is a glTF file, which is not read: convert it to .ply or .obj"),
@@ -205,6 +235,8 @@ FOREIGN = tuple(
 
 def recognise(path):
     """(Format, notes) of a file. Raises FileError for what is of no known kind."""
+    if is_geodatabase(path):
+        return next(kind for kind in FORMATS if ".gdb" in kind.suffixes), []
     with open(path, "rb") as stream:
         head = stream.read(HEAD)
     if head[:2] in (b"\xff\xfe", b"\xfe\xff"):

@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Formats of horizons that neither GDAL nor VTK reads: IRAP classic, CPS-3, EarthVision, Petrel's
-points with attributes, lines in segments as GMT has them, and arrays of numpy."""
+"""Formats of horizons that neither GDAL nor VTK reads: CPS-3, EarthVision, Petrel's points with
+attributes, and lines in segments as GMT has them."""
 
 import re
 import warnings
 
 import numpy
 
-from ..clouds import Cloud, add_array, make_lines, make_points, slices
+from ..clouds import Cloud, add_array, make_lines, make_points
 from .columns import meaning
 from ..messages import FileError, Reason, counted
 from ..progress import no_progress, told_lines
@@ -16,7 +16,6 @@ from .rasters import points_of_raster
 
 AT_ONCE = 1 << 22  # bytes
 BLANK = re.compile(rb"\s")
-MOST_COLUMNS = 12  # of an array of numpy; one with more is a grid
 SEPARATORS = (b">", b"->")
 END_OF_LINE = re.compile(rb"\s*999(\.0*)?(\s+999(\.0*)?){2}\s*")
 
@@ -64,28 +63,6 @@ def grid_cloud(path, x, y, z, null, note):
     cloud = points_of_raster(path, x, y, z)
     cloud.is_horizon = True
     cloud.notes.append(f"{note}, {z.shape[1]} x {z.shape[0]} nodes")
-    return cloud
-
-
-def read_irap_grid(path, options):
-    """IRAP (RMS) classic grid: rows from south to north, which may be turned about a point."""
-    values = numbers(read_bytes(path), options.progress)
-    if len(values) < 19:
-        raise FileError(f"{path}: is cut off within the header of an IRAP classic grid")
-    rows, dx, dy, x_min, x_max, y_min, _, columns, turned, x0, y0 = values[1:12]
-    if not (rows >= 1 and columns >= 1 and dx > 0 and dy > 0 and rows * columns < 1e12):
-        raise FileError(f"{path}: is no IRAP classic grid: {columns:g} x {rows:g} nodes")
-    check_count(path, len(values) - 19, int(rows) * int(columns))
-    x, y = numpy.meshgrid(x_min + dx * numpy.arange(columns), y_min + dy * numpy.arange(rows))
-    note = "IRAP classic grid"
-    if turned:
-        angle = numpy.radians(turned)
-        c, s, x, y = numpy.cos(angle), numpy.sin(angle), x - x0, y - y0
-        x, y = x0 + c * x - s * y, y0 + s * x + c * y
-        note += f", turned by {turned:g} degrees"
-    cloud = grid_cloud(path, x, y, values[19:].reshape(x.shape), 9999900.0, note)
-    if not turned and abs(x[0, -1] - x_max) > 0.01 * dx:
-        cloud.notes.append(f"its last x is {x[0, -1]:.9g} by its steps, {x_max:.9g} by its header")
     return cloud
 
 
@@ -240,68 +217,3 @@ def read_lines(path, singular, progress):
         if flat.any():
             part[:, 2] = numpy.nan
     return make_lines(parts, names)
-
-
-def columns_of_array(path):
-    """{name: column} of an array of numpy in a file, which is not read yet, and notes."""
-    try:
-        rows = numpy.load(path, mmap_mode="r", allow_pickle=False)
-    except (ValueError, OSError, EOFError, SyntaxError) as error:
-        raise FileError(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
-    notes, shape = [], " x ".join(map(str, rows.shape)) or "one"
-    if rows.dtype.names:
-        names = [name for name in rows.dtype.names if rows.dtype[name].kind in "fiu"]
-        columns = {name: rows[name].ravel() for name in names}
-    elif rows.ndim == 2 and 3 <= rows.shape[1] <= MOST_COLUMNS and rows.dtype.kind in "fiu":
-        names = ["x", "y", "z"] + [f"column {i}" for i in range(4, rows.shape[1] + 1)]
-        columns = {name: rows[:, i] for i, name in enumerate(names)}
-        if len(columns) > 3:
-            notes = [f"the array is {shape}: its first three columns are taken as x, y, z"]
-    else:
-        raise FileError(
-            f"{path}: holds {shape} of {rows.dtype}; n x 3 are needed, rows of x, y and z (at most "
-            f"{MOST_COLUMNS} columns)"
-        )
-    if not {"x", "y", "z"} <= set(columns):
-        raise FileError(f"{path}: has no fields x, y and z, but {', '.join(rows.dtype.names)}")
-    if not len(columns["x"]):
-        raise FileError(f"{path}: holds no points")
-    return columns, notes
-
-
-def read_array(path, options):
-    """An array of numpy: rows of x, y, z and more, or fields of these names."""
-    columns, notes = columns_of_array(path)
-    xyz = numpy.column_stack([columns.pop(axis).astype("f8") for axis in "xyz"])
-    cloud = Cloud(make_points(xyz, copy=False), notes)
-    for name, values in columns.items():
-        add_array(cloud.points, name, values.astype(values.dtype.newbyteorder("=")))
-    return cloud
-
-
-class ArraySlices:
-    """A part of an array of numpy: iterate to get (x y z, the other columns), slice by slice."""
-
-    def __init__(self, path, options, part):
-        self.path, self.progress = path, options.progress
-        columns, self.notes = columns_of_array(path)
-        self.part = part.of(len(columns["x"]))
-        self.others = [name for name in columns if name not in "xyz"]
-
-    def __iter__(self):
-        begin, end = self.part.start, self.part.stop
-        for part in slices(end, first=begin):
-            # Opened anew, as what has been read through a mapped file counts as memory in use.
-            columns = columns_of_array(self.path)[0]
-            points = numpy.column_stack([columns[axis][part].astype("f8") for axis in "xyz"])
-            yield points, {name: columns[name][part] for name in self.others}
-            self.progress((part.stop - begin) / (end - begin))
-
-    def facts(self):
-        return {}
-
-    def finish(self, _, cloud):
-        """Adds to a Cloud what is told once all points are read."""
-        cloud.notes += self.notes
-        if self.others:
-            cloud.notes.append(f"left out: {', '.join(self.others)}")

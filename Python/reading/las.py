@@ -124,8 +124,8 @@ def records(path, header, part):
         import laspy
     except ImportError:
         raise FileError(
-            f"{path}: is compressed (LAZ): install the Python packages laspy and lazrs to read it, "
-            "or unpack it to .las"
+            f"{path}: is compressed (LAZ), which laspy and lazrs read, that Debian 12 does not have: python3 -m pip "
+            "install --break-system-packages laspy lazrs; or unpack it to .las by laszip, las2las or pdal translate"
         ) from None
     try:
         with laspy.open(path) as reader:

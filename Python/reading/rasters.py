@@ -15,6 +15,7 @@ from ..messages import FileError, Reason
 from ..names import option
 from ..paths import suffix_of
 from ..progress import share, told_lines
+from ..projecting import looks_like_degrees, note_on_degrees
 
 # Text of decimals would else become single precision, plain axes x and y be overlooked.
 OPEN_OPTIONS = {
@@ -59,12 +60,17 @@ def open_raster(path, options):
     try:
         flags = gdal.OF_RASTER | gdal.OF_VERBOSE_ERROR
         settings = OPEN_OPTIONS.get(kind, [])
-        data = gdal.OpenEx(path, flags, [kind], settings)
+        data, notes = gdal.OpenEx(path, flags, [kind], settings), []
+        if data.GetMetadataItem("HAS_SUPERGRIDS") == "TRUE":  # by default GDAL gives its overview alone
+            told = data.GetMetadata()
+            least, most = (float(told.get(f"{end}_RESOLUTION_X", "nan")) for end in ("MIN", "MAX"))
+            notes = [f"the resolution varies from {least:g} to {most:g}: the nodes of all refined cells are read"]
+            data = gdal.OpenEx(path, flags, [kind], settings + ["MODE=RESAMPLED_GRID"])
         variables = {name.rsplit(":", 1)[-1].strip('"/'): name for name, _ in data.GetSubDatasets()}
         if data.RasterCount and not (options.layer and variables):
             if options.layer:
                 raise FileError(f"{path}: has no layers, so {option('layer')} {options.layer} means nothing")
-            return data, []
+            return data, notes
         name = choose_layer(path, options.layer, list(variables), "variables")
         notes = [f"elevation: variable {name} (of {', '.join(variables)})"]
         data = gdal.OpenEx(variables[name], flags, [], settings)
@@ -193,9 +199,6 @@ def notes_of_raster(path, data, band, options):
         notes.append(f"the pixels are colours ({name}), taken as elevation all the same")
     if band.GetUnitType():
         notes.append(f"elevation in {band.GetUnitType()}, as the file says")
-    reference = data.GetSpatialRef()
-    if reference and reference.IsGeographic():
-        notes.append("x,y are angles: project them first to give triangles their true shape")
     if kind == "ZMap" and made_by_gdal(path):
         notes.append(
             "x and y of the header are taken for the outermost nodes; gdal_translate writes the "
@@ -236,11 +239,17 @@ def read_points(path, options):
         grid = grid_of([pixels_of(mask, numpy.column_stack(place(0)), column)])
     if count == 0:
         raise FileError(f"{path}: all {len(points):,} pixels are without data")
-    cloud = Cloud(make_points(points[:count], copy=False), notes)
+    lost = len(points) - count
+    points = points[:count]
+    is_certain = reference.IsGeographic() if reference else tells_degrees(data)
+    step = min(map(abs, grid.steps[::3])) if grid else 0.0
+    if not options.project and (is_certain or not reference and looks_like_degrees(points, step)):
+        notes.append(note_on_degrees(is_certain))
+    cloud = Cloud(make_points(points, copy=False), notes)
     cloud.z_name = name_of_z(band)
     cloud.is_horizon = data.GetDriver().ShortName == "ZMap"
-    if count < len(points):
-        cloud.left_out[Reason("pixel", "without data")] = len(points) - count
+    if lost:
+        cloud.left_out[Reason("pixel", "without data")] = lost
     cloud.crs = reference.ExportToWkt() if reference else None
     cloud.grid, cloud.frame = grid, frame
     return cloud
@@ -254,6 +263,12 @@ def frame_of(path):
         _, frame = placement(path, data, choose_band(path, data, options, []), [])
         reference = data.GetSpatialRef()
         return frame, reference.ExportToWkt() if reference else None
+
+
+def tells_degrees(data):
+    """Whether the axes of netCDF have degrees as their unit."""
+    units = [words for name, words in data.GetMetadata().items() if name.endswith("#units")]
+    return sum(words.lower().startswith("degree") for words in units) > 1
 
 
 def name_of_z(band):

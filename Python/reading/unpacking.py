@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Standard input and packed files as files that any reader can open."""
+"""Standard input, packed files and archives as files that any reader can open."""
 
 import bz2
 import contextlib
@@ -8,15 +8,24 @@ import gzip
 import lzma
 import os
 import sys
+import re
 import tempfile
+import zipfile
 import zlib
 
 from ..messages import FileError
-from ..paths import check_readable
+from ..paths import check_readable, suffix_of
 from ..progress import no_progress
 
 PACKED = ((b"\x1f\x8b", gzip.open), (b"BZh", bz2.open), (b"\xfd7zXZ\0", lzma.open))
 STANDARD_INPUT = "standard input"
+# ZIP files that are one file to their readers, and tables of spreadsheets, which recognise() names.
+WHOLE = re.compile(r"\.(npy|kml)$|^(xl/|word/|ppt/|mimetype$|\[Content_Types\])")
+# What lies beside a file that is read, and belongs to it or to nobody.
+BESIDE = (
+    ".dbf .shx .prj .qpj .cpg .sbn .sbx .qix .qmd .xml .tfw .wld .aux .ovr .hdr .stx .txt .pdf .md .html .htm .jpg .png "
+    ".sdat .gfs .fix .idx .atx .gdbtable .gdbtablx .gdbindexes .spx .freelist"
+).split()
 UNPACKING = 0.3  # of the whole work
 
 
@@ -29,7 +38,42 @@ def opener_of(path):
 
 def is_plain(path):
     """Whether a file can be looked at as it is."""
-    return os.path.isfile(path) and os.access(path, os.R_OK) and opener_of(path) is None
+    return os.path.isfile(path) and os.access(path, os.R_OK) and opener_of(path) is None and not is_archive(path)
+
+
+def is_archive(path):
+    """Whether a ZIP file holds files that are read, and is not read itself."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return not any(WHOLE.search(name) for name in archive.namelist())
+    except (OSError, zipfile.BadZipFile, ValueError):
+        with open(path, "rb") as stream:
+            return stream.read(4) == b"PK\3\4" and not WHOLE.search(path)
+
+
+def unzipped(path, folder, progress):
+    """The path of the one file in an archive that can be read; what lies beside it is unpacked too."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            members = [one for one in archive.infolist() if not one.is_dir() and "__MACOSX" not in one.filename]
+            sizes, done = sum(one.file_size for one in members) or 1, 0
+            for one in members:
+                archive.extract(one, folder)
+                done += one.file_size
+                progress(UNPACKING * done / sizes)
+    except (zipfile.BadZipFile, EOFError, zlib.error, lzma.LZMAError, NotImplementedError, RuntimeError) as error:
+        raise FileError(f"{path}: is cut off or damaged: {error}") from None
+    except OSError as error:
+        raise FileError(f"{path}: cannot be unpacked: {error.strerror or error}") from None
+    names = [one.filename for one in members]
+    folders = {found.group(1) for found in (re.match(r"(.*?\.gdb)/", name) for name in names) if found}
+    names = [name for name in names if not re.match(r".*?\.gdb/", name)]
+    read = sorted(folders) + [name for name in names if suffix_of(name) not in BESIDE]
+    read = read or [name for name in names if suffix_of(name) == ".txt"]
+    if len(read) != 1:
+        shown = ", ".join(read[:20]) or ", ".join(names[:20]) or "nothing"
+        raise FileError(f"{path}: is an archive that holds {shown}: unpack it, and name the one to read")
+    return os.path.join(folder, read[0])
 
 
 def copy(source, target, shown, report):
@@ -70,13 +114,17 @@ def unpacked(path, progress=no_progress):
             copy(sys.stdin.buffer, local, shown, lambda: progress(0.0))
         else:
             check_readable(path)
-        opener = os.path.getsize(local) and opener_of(local)
+        opener = os.path.isfile(local) and os.path.getsize(local) and opener_of(local)
         if opener:
             folder = stack.enter_context(tempfile.TemporaryDirectory())
             packed, name = local, os.path.basename(os.path.splitext(local)[0])
             local, begun, size = os.path.join(folder, name), UNPACKING, os.path.getsize(packed)
             with open(packed, "rb") as raw, opener(raw) as source:
                 copy(source, local, shown, lambda: progress(UNPACKING * raw.tell() / size))
+        elif os.path.isfile(local) and os.path.getsize(local) and is_archive(local):
+            folder = stack.enter_context(tempfile.TemporaryDirectory())
+            with named(local, shown):
+                local, begun = unzipped(local, folder, progress), UNPACKING
         with named(local, shown):
             check_readable(local)
             yield local, begun

@@ -3,6 +3,7 @@
 """Points, lines and polygons of vector files. OGR reads them, whatever their format."""
 
 import collections
+import os
 
 import numpy
 
@@ -13,6 +14,7 @@ from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError, Reason
 from ..names import option
 from ..progress import share, told_items
+from ..projecting import note_on_degrees
 from ..selecting import words_of
 
 OPEN_OPTIONS = {
@@ -25,12 +27,15 @@ OPEN_OPTIONS = {
 GIVEN_BY_TOOLS = ("grid_code", "gridcode", "rastervalu", "contour")
 
 
+def head_of(path):
+    with open(path, "rb") as stream:
+        return stream.read(HEAD)
+
+
 def open_file(path):
     """The dataset of a file, open for reading."""
     gdal = gdal_module()
-    with open(path, "rb") as stream:
-        is_table = is_table_with_geometry(stream.read(HEAD), path)
-    kind = "CSV" if is_table else kind_of(path, "vectors")
+    kind = "CSV" if os.path.isfile(path) and is_table_with_geometry(head_of(path), path) else kind_of(path, "vectors")
     if kind is None:
         raise FileError(f"{path}: GDAL knows no vector format that this could be")
     settings = OPEN_OPTIONS.get(kind, [])
@@ -198,7 +203,7 @@ def are_angles(layer):
     return (numpy.abs(layer.coordinates()[:, :2]) <= (540.0, 90.0)).all()
 
 
-def read_layer(path, wanted, columns, progress):
+def read_layer(path, wanted, columns, progress, project=True):
     """(Layer with its elevations, notes, crs)."""
     with quiet():
         data = open_file(path)
@@ -212,8 +217,8 @@ def read_layer(path, wanted, columns, progress):
             # GDAL takes GeoJSON that names no system for degrees.
             notes.append(f"x,y are no angles, so it is not in {reference.GetName()}; see {option('crs')}")
             reference = None
-        if reference and reference.IsGeographic():
-            notes.append("x,y are angles: project them first to give triangles their true shape")
+        if reference and reference.IsGeographic() and not project:
+            notes.append(note_on_degrees(True))
         crs = reference.ExportToWkt() if reference else None
     progress(0.85)
     notes += layer.set_heights(columns)
@@ -228,7 +233,7 @@ def read_points(path, options):
     Takes about 20 seconds for a million features.
     """
     layer, notes, crs = read_layer(
-        path, options.layer, options.columns, options.progress
+        path, options.layer, options.columns, options.progress, options.project
     )
     parts = [points[:-1] if kind == "ring" else points for kind, points in layer.parts]
     coordinates = numpy.concatenate(parts)

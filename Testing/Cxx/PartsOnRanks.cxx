@@ -379,7 +379,7 @@ FilledSurface FilledAtOnce(
   vtkNew<vtkFillElevationHoles> fill;
   fill->SetController(nullptr);
   fill->SetInputConnection(whole->GetOutputPort());
-  fill->SetMaximumEdgeLength(longest);
+  fill->SetOpenEdgeLength(longest);
   fill->SetMaximumHoleSize(options.MaximumHoleSize);
   fill->SetMaximumNumberOfInsertedPoints(options.MaximumInsertedPoints);
   fill->Update();

@@ -9,6 +9,8 @@
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkCompositeDataSet.h"
+#include "vtkErrorCode.h"
+#include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkFillElevationHoles.h"
 #include "vtkGridDelaunay2D.h"
@@ -17,6 +19,7 @@
 #include "vtkInformation.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
+#include "vtkOutputWindow.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
 #include "vtkPointData.h"
@@ -272,19 +275,96 @@ void TestChainTellsOnce()
   tooShort->SetName("TooShort");
   tooShort->InsertNextValue(1);
   wrong->GetPointData()->AddArray(tooShort);
-  vtkNew<vtkMultiBlockDataSet> nothing;
+  vtkNew<vtkMultiBlockDataSet> nothing, empty;
   nothing->SetNumberOfBlocks(2);
+  empty->SetBlock(1, vtkNew<vtkPolyData>());
   const auto check = [](const std::vector<std::string>& messages, const std::string& part) {
     Check(messages.size() == 1 && messages.front().find(part) != std::string::npos,
       "one message with '" + part + "'; they were " + std::to_string(messages.size()) + ": " +
         (messages.empty() ? "" : messages.front()));
   };
   check(MessagesOfChain(two), "the 2 input points");
-  check(MessagesOfChain(vtkNew<vtkPolyData>()), "the 0 input points");
   check(MessagesOfChain(wrong), "TooShort");
   check(MessagesOfChain(MakeCloud(0.0, 0), 0.01), "MaximumEdgeLength");
-  check(MessagesOfChain(nothing), "All blocks of the input are empty");
-  Check(MessagesOfChain(MakeCloud(0.0, 0)).empty(), "a cloud passes in silence");
+  for (vtkDataObject* input : std::initializer_list<vtkDataObject*>{
+         MakeCloud(0.0, 0), vtkNew<vtkPolyData>(), nothing, empty })
+  {
+    Check(MessagesOfChain(input).empty(), "a cloud, and an empty input, pass in silence");
+  }
+}
+
+void TestArraysFakeNoReport()
+{
+  const auto cloud = MakeCloud(0.0, 0);
+  vtkNew<vtkIdTypeArray> fake;
+  fake->SetName("UnusedPointIds");
+  cloud->GetFieldData()->AddArray(fake);
+  vtkNew<vtkTest::ErrorObserver> observer;
+  vtkNew<vtkTrimOutwardTriangles> trim;
+  vtkNew<vtkFillElevationHoles> fill;
+  trim->SetInputData(cloud);
+  fill->SetInputData(cloud);
+  for (vtkAlgorithm* filter : std::initializer_list<vtkAlgorithm*>{ trim, fill })
+  {
+    filter->AddObserver(vtkCommand::WarningEvent, observer);
+    filter->Update();
+    Check(observer->GetWarningMessage().find("The input has no triangles") != std::string::npos,
+      "an array of the user's hides no warning");
+    observer->Clear();
+  }
+}
+
+void TestErrorsFailTheRequest()
+{
+  const auto good = MakeCloud(0.0, 0);
+  const auto wrong = MakeCloud(0.0, 0);
+  vtkNew<vtkIdTypeArray> tooShort;
+  tooShort->SetName("TooShort");
+  tooShort->InsertNextValue(1);
+  wrong->GetPointData()->AddArray(tooShort);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, good);
+  blocks->SetBlock(1, wrong);
+  vtkNew<vtkGridDelaunay2D> triangulated;
+  triangulated->SetInputData(good);
+  triangulated->Update();
+  vtkNew<vtkMultiBlockDataSet> meshes;
+  meshes->SetBlock(0, triangulated->GetOutput());
+  meshes->SetBlock(1, RingAround(8.0, 9.0, 9, [](double) { return 3.0; }));
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  vtkNew<vtkTrimOutwardTriangles> trim;
+  vtkNew<vtkFillElevationHoles> fill;
+  const struct
+  {
+    vtkAlgorithm* Filter;
+    vtkDataObject *Good, *Wrong, *Mixed;
+  } cases[] = { { delaunay, good, wrong, blocks },
+    { trim, triangulated->GetOutput(), meshes->GetBlock(1), meshes },
+    { fill, triangulated->GetOutput(), meshes->GetBlock(1), meshes } };
+  vtkNew<vtkTest::ErrorObserver> ofFilter, ofWindow;
+  vtkOutputWindow::GetInstance()->AddObserver(vtkCommand::ErrorEvent, ofWindow);
+  for (const auto& tried : cases)
+  {
+    tried.Filter->AddObserver(vtkCommand::ErrorEvent, ofFilter);
+    const auto update = [&](vtkDataObject* input) {
+      tried.Filter->SetInputDataObject(input);
+      return tried.Filter->GetExecutive()->Update() != 0;
+    };
+    const std::string name = tried.Filter->GetClassName();
+    for (vtkDataObject* input : { tried.Wrong, tried.Mixed })
+    {
+      ofFilter->Clear();
+      Check(!update(input) && tried.Filter->GetErrorCode() != vtkErrorCode::NoError &&
+          ofFilter->GetError() && !ofWindow->GetError(),
+        name + ": an error fails the request, and is told once");
+      Check(update(tried.Good) && tried.Filter->GetErrorCode() == vtkErrorCode::NoError,
+        name + ": a good update takes the error away");
+    }
+    tried.Filter->RemoveAllInputs();
+    tried.Filter->GetExecutive()->Update();
+    Check(ofWindow->GetError(), name + ": other errors of the executive are told");
+    ofWindow->Clear();
+  }
 }
 
 void TestProgressAndAbort()
@@ -329,6 +409,8 @@ int TestBlocks(int, char*[])
   TestSecondInput();
   TestMessages();
   TestChainTellsOnce();
+  TestArraysFakeNoReport();
+  TestErrorsFailTheRequest();
   TestProgressAndAbort();
   return failures > 0;
 }

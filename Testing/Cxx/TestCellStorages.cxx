@@ -142,7 +142,7 @@ std::vector<vtkSmartPointer<vtkPolyData>> OutputsOf(
   trim->SetBoundaryData(ring);
   vtkNew<vtkFillElevationHoles> fill;
   fill->SetInputData(mesh);
-  fill->SetMaximumEdgeLength(3.0); // opens the hole
+  fill->SetOpenEdgeLength(3.0); // opens the hole
   std::vector<vtkSmartPointer<vtkPolyData>> outputs;
   for (vtkPolyDataAlgorithm* filter :
     std::initializer_list<vtkPolyDataAlgorithm*>{ delaunay, trim, fill })

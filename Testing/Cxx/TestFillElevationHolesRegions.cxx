@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// MaximumEdgeLength of vtkFillElevationHoles: regions of long triangles that patches replace, by
+// OpenEdgeLength of vtkFillElevationHoles: regions of long triangles that patches replace, by
 // numbers: which cells stay, with their data, what is told of the regions, limits and errors.
 #include "Check.h"
 #include "MeshRules.h"
@@ -108,7 +108,7 @@ void CheckReplaced()
   const auto input = MakeInput();
   vtkNew<vtkFillElevationHoles> fill;
   fill->SetInputData(input);
-  fill->SetMaximumEdgeLength(2.0);
+  fill->SetOpenEdgeLength(2.0);
   fill->Update();
   vtkPolyData* const output = fill->GetOutput();
   vtkPolyData* const report = fill->GetOutput(1);
@@ -162,7 +162,7 @@ void CheckLimits()
   const auto input = MakeInput();
   vtkNew<vtkFillElevationHoles> fill;
   fill->SetInputData(input);
-  fill->SetMaximumEdgeLength(2.0);
+  fill->SetOpenEdgeLength(2.0);
   fill->SetMaximumHoleEdges(10);
   fill->Update();
   Check(fill->GetNumberOfHoles() == 2 && fill->GetNumberOfFilledHoles() == 1, "one is too large");
@@ -173,13 +173,13 @@ void CheckLimits()
   Check(NumberOfFindings(fill->GetOutput(), RulesOfConvexSurface()) == 0, "what is not filled keeps its triangles");
 
   fill->SetMaximumHoleEdges(0);
-  fill->SetMaximumEdgeLength(0.0);
+  fill->SetOpenEdgeLength(0.0);
   fill->Update();
   Check(fill->GetNumberOfHoles() == 1, "0 is off");
-  fill->SetMaximumEdgeLength(std::numeric_limits<double>::infinity());
+  fill->SetOpenEdgeLength(std::numeric_limits<double>::infinity());
   fill->Update();
   Check(fill->GetNumberOfHoles() == 1, "nothing is longer than infinity");
-  fill->SetMaximumEdgeLength(1e-300);
+  fill->SetOpenEdgeLength(1e-300);
   fill->Update();
   Check(fill->GetNumberOfHoles() == 2 && fill->GetNumberOfFilledHoles() >= 1, "all is one region");
 }
@@ -211,7 +211,7 @@ void CheckWithoutRoom()
 
   vtkNew<vtkFillElevationHoles> fill;
   fill->SetInputData(input);
-  fill->SetMaximumEdgeLength(2.0);
+  fill->SetOpenEdgeLength(2.0);
   fill->Update();
   Check(fill->GetNumberOfHoles() == 2 && fill->GetNumberOfFilledHoles() == 2 &&
       CountIn(fill->GetOutput(), "NumberOfHoles") == 2 &&
@@ -259,12 +259,12 @@ void CheckErrors()
   fill->AddObserver(vtkCommand::ErrorEvent, observer);
   for (const double length : { -1.0, vtkMath::Nan(), -std::numeric_limits<double>::infinity() })
   {
-    fill->SetMaximumEdgeLength(length);
+    fill->SetOpenEdgeLength(length);
     fill->Modified();
     fill->Update();
     Check(observer->GetError() &&
-        observer->GetErrorMessage().find("MaximumEdgeLength is ") != std::string::npos,
-      "an error names MaximumEdgeLength");
+        observer->GetErrorMessage().find("OpenEdgeLength is ") != std::string::npos,
+      "an error names OpenEdgeLength");
     Check(fill->GetOutput()->GetNumberOfCells() == 0 && fill->GetNumberOfHoles() == 0, "no output");
     observer->Clear();
   }

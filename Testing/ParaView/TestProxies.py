@@ -34,7 +34,7 @@ OTHER_VALUES = {
         "NumberOfThreads": 2,
     },
     "FillElevationHoles": {
-        "MaximumEdgeLength": 1.5,
+        "OpenEdgeLength": 1.5,
         "MaximumHoleSize": 12.5,
         "MaximumHoleEdges": 40,
         "FillCutOuts": 1,
@@ -65,7 +65,7 @@ def members(header):
     parameters |= set(re.findall(r"void Set(\w+)\([^)]+\)", header))
     # The second inputs, and the processes.
     others = {"BoundaryConnection", "BoundaryData", "SourceConnection", "SourceData", "Controller"}
-    parameters -= others
+    parameters -= others | set(re.findall(r"Deprecated.*\*/\s*void Set(\w+)", header))
     results = set(re.findall(r"vtkGet\w*Macro\((\w+)|bool Get(\w+)\(\)", header))
     results = {one or other for one, other in results} - parameters - others
     return parameters, results

@@ -141,9 +141,9 @@ for ids in (True, False):
                      expected[0].GetFieldData().GetArray("NumberOfInsertedPoints").GetValue(0)),
                     "counts of trim, " + claim)
         long = 3.0  # of the triangles over the gap
-        fill = simple.FillElevationHoles(Input=given(mine), MaximumEdgeLength=long, Interpolation="Membrane")
+        fill = simple.FillElevationHoles(Input=given(mine), OpenEdgeLength=long, Interpolation="Membrane")
         messages, outputs = update(fill)
-        expected = alone(simple.FillElevationHoles(Input=given(BARE), MaximumEdgeLength=long,
+        expected = alone(simple.FillElevationHoles(Input=given(BARE), OpenEdgeLength=long,
                                                    Interpolation="Membrane"))
         check_told(messages, "marked copies of triangles" if len(ghosts) else "", "fill, " + claim)
         for port in range(2):

@@ -36,7 +36,7 @@ whole = simple.ReconstructElevationSurface(Input=cloud, OpenEdgeLength=2.5, Maxi
                                            Interpolation="Membrane")
 delaunay = simple.GridDelaunay2D(Input=cloud, MaximumEdgeLength=40)
 trim = simple.TrimOutwardTriangles(Input=delaunay, GapTolerance=6)
-fill = simple.FillElevationHoles(Input=trim, MaximumEdgeLength=2.5, MaximumHoleSize=60,
+fill = simple.FillElevationHoles(Input=trim, OpenEdgeLength=2.5, MaximumHoleSize=60,
                                  Interpolation="Membrane")
 surface, filled = fetch(whole), fetch(fill)
 check(same(surface, filled), "the surface is that of the three filters, cell by cell")

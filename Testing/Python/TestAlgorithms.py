@@ -398,7 +398,7 @@ class Composites(unittest.TestCase):
                     algorithm.SetInputDataObject(0, data)
                     told = errors_of(algorithm, event)
                     self.assertEqual(len(told), 1, told)
-                    names.append(re.findall(r"((?:Block|Partition) [^:\n]*): (?!.*\b0 input points)", told[0]))
+                    names.append(re.findall(r"((?:Block|Partition) [^:\n]*): ", told[0]))
                 self.assertEqual(*names)
                 self.assertEqual(len(names[0]), 1 + (what in ("nested", "pieces", "collection")))
                 surfaces = chain.GetOutputDataObject(0)

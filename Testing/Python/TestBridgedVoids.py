@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""MaximumEdgeLength of vtkFillElevationHoles on a terrain model with small voids that the
+"""OpenEdgeLength of vtkFillElevationHoles on a terrain model with small voids that the
 triangulation bridges: the lost nodes come back, with about half the error of the flat bridges."""
 import os
 import sys
@@ -76,7 +76,7 @@ class TestBridgedVoids(unittest.TestCase):
     def fill(self, length):
         fill = vtkFillElevationHoles()
         fill.SetInputData(self.bridged)
-        fill.SetMaximumEdgeLength(length)
+        fill.SetOpenEdgeLength(length)
         fill.Update()
         return fill
 

@@ -100,11 +100,11 @@ class Surface(unittest.TestCase):
         result = reconstruct(cloud(), maximum_elevation_error=ERROR)
         self.assertEqual(result.report["holes"]["filled"], holes)
         lines = [(x, y, numpy.sin(x)) for y in range(0, 101, 20) for x in range(101)]
-        self.assertGreater(reconstruct(lines).fill.GetMaximumEdgeLength(), 0.0)
+        self.assertGreater(reconstruct(lines).fill.GetOpenEdgeLength(), 0.0)
         result = reconstruct(lines, maximum_elevation_error=ERROR)
-        self.assertEqual(result.fill.GetMaximumEdgeLength(), 0.0)
+        self.assertEqual(result.fill.GetOpenEdgeLength(), 0.0)
         given = reconstruct(cloud(), maximum_elevation_error=ERROR, open_edge_length=30)
-        self.assertEqual(given.fill.GetMaximumEdgeLength(), 30.0)
+        self.assertEqual(given.fill.GetOpenEdgeLength(), 30.0)
 
     def test_faults_stay_edges(self):
         points = cloud()

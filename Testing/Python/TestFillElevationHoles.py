@@ -39,6 +39,10 @@ def sheet(size, is_empty, elevation):
     return data
 
 
+def holes_of(data):
+    return vtk_to_numpy(data.GetCellData().GetArray("HoleId"))
+
+
 class TestFillElevationHoles(unittest.TestCase):
     def setUp(self):
         # A hole of 4 x 3 at the lower left, one of 2 x 2 at the upper right.
@@ -46,9 +50,31 @@ class TestFillElevationHoles(unittest.TestCase):
             10, lambda i, j: (1 <= i < 5 and 2 <= j < 5) or (7 <= i < 9 and 6 <= j < 8),
             lambda x, y: 0.1 * x * y)
 
+    def test_what_is_filled_in_two_steps_says_so_of_both(self):
+        one = vtkFillElevationHoles()
+        one.SetInputData(self.surface)
+        one.SetMaximumHoleSize(3.0)
+        two = vtkFillElevationHoles()
+        two.SetInputConnection(one.GetOutputPort())
+        two.SetMaximumEdgeLength(1.45)  # replaces no triangle
+        two.Update()
+        before, output = one.GetOutput(), two.GetOutput()
+        (small,) = set(holes_of(before)) - {-1}
+        of_cells = holes_of(output)
+        count = before.GetNumberOfCells()
+        numpy.testing.assert_array_equal(of_cells[:count], holes_of(before))
+        self.assertEqual(set(of_cells[count:]), {small + 1})
+        numpy.testing.assert_array_equal(holes_of(two.GetOutput(1)), [small + 1])
+        for name, none in (("FilledPoint", 0), ("FilledError", 0.0)):
+            marks, earlier = (
+                vtk_to_numpy(data.GetPointData().GetArray(name)) for data in (output, before))
+            self.assertTrue((earlier != none).any())
+            numpy.testing.assert_array_equal(marks[: len(earlier)], earlier)
+            self.assertTrue((marks[len(earlier) :] != none).all())
+
     def test_defaults(self):
         fill = vtkFillElevationHoles()
-        self.assertEqual(fill.GetMaximumEdgeLength(), 0.0)
+        self.assertEqual(fill.GetOpenEdgeLength(), 0.0)
         self.assertEqual(fill.GetMaximumHoleSize(), 0.0)
         self.assertEqual(fill.GetMaximumHoleEdges(), 0)
         self.assertEqual(fill.GetMaximumNumberOfInsertedPoints(), 100_000_000)
@@ -65,7 +91,7 @@ class TestFillElevationHoles(unittest.TestCase):
         text = str(vtkFillElevationHoles())
         for name in ("MaximumHoleSize", "MaximumHoleEdges", "MaximumNumberOfInsertedPoints",
                      "MaximumNumberOfExpectedPoints", "Spacing", "Interpolation", "InterpolatePointData",
-                     "NumberOfThreads", "Controller", "NumberOfHoles", "NumberOfFilledHoles", "MaximumEdgeLength"):
+                     "NumberOfThreads", "Controller", "NumberOfHoles", "NumberOfFilledHoles", "OpenEdgeLength"):
             self.assertIn(name + ":", text)
 
     def test_the_number_of_threads_does_not_change_a_byte(self):

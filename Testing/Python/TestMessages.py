@@ -112,10 +112,48 @@ class Data(unittest.TestCase):
             self.assertEqual((len(errors), warnings), (1, []), code)
             self.check(errors[0], code, **values)
 
+    def test_what_a_property_cannot_be_is_an_error(self):
+        surface = triangulated(grid(3))
+        surface.Update()
+        wrong = (-1.0, numpy.nan)
+        for make, properties in (
+            (vtkGridDelaunay2D, {"MaximumEdgeLength": wrong, "MaximumElevationError": (*wrong, numpy.inf),
+                                 "LatticeTolerance": (*wrong, 0.3), "NumberOfThreads": (-1, 1025)}),
+            (vtkTrimOutwardTriangles, {"GapTolerance": wrong, "NumberOfThreads": (-1, 1025)}),
+            (vtkFillElevationHoles, {"OpenEdgeLength": wrong, "MaximumHoleSize": wrong, "MaximumHoleEdges": (-1,),
+                                     "Spacing": (*wrong, numpy.inf), "MaximumNumberOfInsertedPoints": (-7,),
+                                     "MaximumNumberOfExpectedPoints": (-7,), "NumberOfThreads": (-1, 1025)}),
+        ):
+            for name, values in properties.items():
+                for value in values:
+                    with self.subTest(make.__name__, name=name, value=value):
+                        algorithm = make()
+                        algorithm.SetInputData(surface.GetOutput())
+                        getattr(algorithm, f"Set{name}")(value)
+                        (error,), warnings = run(algorithm)
+                        self.assertRegex(error, f"^{name} is {value:g}.*must be")
+                        self.assertTrue(error.code.startswith("Invalid"))
+                        self.assertEqual((warnings, algorithm.GetOutput().GetNumberOfPoints()), ([], 0))
+
+    def test_a_lattice_with_constraints_is_told(self):
+        lattice, lines = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0), make_lines([numpy.array([[0.5, 0.5, 0], [3.5, 2.5, 0]])])
+        self.assertEqual(run(triangulated(grid(5), Lattice=lattice)), ([], []))
+        errors, (warning,) = run(triangulated(grid(5), lines, Lattice=lattice))
+        self.assertEqual((errors, warning.code), ([], "LatticeNotUsed"))
+        for properties in ({"DrapeConstraints": True}, {"LatticeMode": 1}):  # where it is used, or off
+            self.assertEqual(run(triangulated(grid(5), lines, Lattice=lattice, **properties)), ([], []))
+
+    def test_the_old_name_of_open_edge_length_works_and_warns(self):
+        fill = vtkFillElevationHoles()
+        with Messages(fill) as messages:
+            fill.SetMaximumEdgeLength(2.5)
+        self.assertEqual([one.code for one in messages.warnings], ["EdgeLengthRenamed"])
+        self.assertEqual((fill.GetOpenEdgeLength(), fill.GetMaximumEdgeLength()), (2.5, 2.5))
+
     def test_a_hole_has_the_code_of_its_reason(self):
         delaunay, fill = triangulated(ring_of_two_sizes()), vtkFillElevationHoles()
         fill.SetInputConnection(delaunay.GetOutputPort())
-        fill.SetMaximumEdgeLength(2.0)
+        fill.SetOpenEdgeLength(2.0)
         fill.SetMaximumNumberOfInsertedPoints(1)
         (warning,) = run(fill)[1]
         self.check(warning, "RegionNotFilled", hole="0", reason="MoreThanInsertedPoints",
@@ -132,9 +170,8 @@ class Data(unittest.TestCase):
         blocks.SetBlock(2, make_points(numpy.zeros((1, 3))))
         errors, warnings = run(triangulated(blocks))
         self.assertEqual(errors, [])
-        self.assertEqual([one.code for one in warnings], ["NoTriangle", "NoTriangle"])
-        self.assertEqual([one.block for one in warnings], ["Block 1", "Block 2"])
-        self.assertEqual([one.values["points"] for one in warnings], ["0", "1"])
+        self.assertEqual([(one.code, one.block, one.values["points"]) for one in warnings],
+                         [("NoTriangle", "Block 2", "1")])  # an empty block passes in silence
 
     def test_pieces_have_data_of_each_step(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -204,7 +241,6 @@ class Names(unittest.TestCase):
         for place, step, name in (
             (PYTHON, "delaunay", "MaximumEdgeLength"),
             (PROGRAM, "delaunay", "--maximum-edge-length"),
-            (PROGRAM, "fill", "--open-edge-length"),
             (PROGRAM, "trim", "MaximumEdgeLength"),
             (PANEL, "delaunay", "Maximum Edge Length"),
         ):

@@ -50,7 +50,7 @@ NUMBERS = {
 }
 LENGTHS = {
     "Delaunay.MaximumEdgeLength": (0.5, 2.0, 8.0), "Delaunay.LatticeTolerance": (0.02,),
-    "Fill.MaximumEdgeLength": (1.5, 3.0, 8.0), "Fill.MaximumHoleSize": (4.0, 30.0), "Fill.Spacing": (0.6, 1.0, 5.0),
+    "Fill.OpenEdgeLength": (1.5, 3.0, 8.0), "Fill.MaximumHoleSize": (4.0, 30.0), "Fill.Spacing": (0.6, 1.0, 5.0),
 }
 
 

@@ -818,11 +818,11 @@ class Filled(WithFilter):
         source = self.source(points)
         source.SetFillHoles(True)
         source.GetFill().FillCutOutsOn()
-        source.GetFill().SetMaximumEdgeLength(-1.0)
+        source.GetFill().SetOpenEdgeLength(-1.0)
         errors = self.errors_of(source, lambda: source.UpdatePiece(0, 3, 0))
         self.assertEqual(len(errors), 1)
-        self.assertIn("MaximumEdgeLength is -1", errors[0])
-        source.GetFill().SetMaximumEdgeLength(0.0)
+        self.assertIn("OpenEdgeLength is -1", errors[0])
+        source.GetFill().SetOpenEdgeLength(0.0)
         self.assertEqual(self.errors_of(source, lambda: source.UpdatePiece(0, 3, 0)), [])
         source.SetFillHoles(False)
         errors = self.errors_of(source, lambda: source.UpdatePiece(0, 3, 0))
@@ -1142,7 +1142,7 @@ class Command(Program):
         points = clouds()["random"]
         places = points[:, :2] - (400600.0, 400500.0)
         name = self.npy("a.npy", points[numpy.abs(numpy.hypot(*places.T) - 160.0) > 30.0])
-        for options in (("--open-edge-length", "70"), ("--open-edge-length", "70", "--maximum-hole-size", "100")):
+        for options in (("--open-edge-length", "45"), ("--open-edge-length", "45", "--maximum-hole-size", "100")):
             options += ("--maximum-expected-points", "9000", "--no-trim", "--report")
             found = []
             for way in (("--no-picture",), ("--pieces", "4")):
@@ -1168,14 +1168,17 @@ class Command(Program):
             )
 
     def test_messages_on_a_boundary_are_those_of_one_run(self):
-        name = self.npy("a.npy", clouds()["random"])
+        points = clouds()["random"]
+        name = self.npy("a.npy", points)
+        chosen = points[numpy.isfinite(points).all(axis=1)][[700, 800, 900, 700], :2].tolist()
+        self.file("chosen.txt", "".join(f"{x!r} {y!r}\n" for x, y in chosen))
         corners = "400100 400100\n400900 400150\n400700 400800\n400100 400100\n"
-        self.file("twice.txt", f"{corners}\n400200 400250\n400300 400300\n400300 400200\n400200 400250\n\n{corners}")
+        self.file("twice.txt", f"{corners}\n400500 400250\n400600 400300\n400600 400200\n400500 400250\n\n{corners}")
         self.file("thin.txt", "400100.001 400100\n400100.002 400900\n400100.003 400100\n400100.001 400100\n")
         for options, words in (
             (("--boundary", "twice.txt"), r"note +trimming: Rings .* \(1 more, the first of them the part from line "
              r"11 to 14\) count once"),
-            (("--boundary", "twice.txt", "--no-recover-boundary"), r"twice.txt: trimming: The boundary's edge from "
+            (("--boundary", "chosen.txt", "--no-recover-boundary"), r"chosen.txt: trimming: The boundary's edge from "
              r"point \d+ .* is not an edge of the mesh"),
             (("--boundary", "thin.txt"), "boundary thin.txt, 1 ring"),
         ):

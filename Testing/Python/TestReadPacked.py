@@ -11,11 +11,16 @@ import sys
 import tempfile
 import types
 import unittest
+import zipfile
 from unittest import mock
 
-from in_folder import InFolder
+import numpy
+from in_folder import InFolder, coordinates
+from osgeo import ogr
 from vtkelevationsurface import reading, writing
 from vtkelevationsurface.clouds import make_points
+from vtkelevationsurface.gdal_common import reference_of
+from vtkelevationsurface.messages import FileError
 
 ROWS = [(1.0, 2.0, 3.5), (4.25, 5.0, 6.0), (-7.0, 8.0, 9.0)]
 TEXT = "".join(f"{x} {y} {z}\n" for x, y, z in ROWS).encode()
@@ -81,6 +86,67 @@ class Packed(InFolder):
         self.assertEqual(reading.read_faults(line).GetNumberOfPoints(), 2)
 
 
+def zipped(**files):
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return stream.getvalue()
+
+
+class Archives(InFolder):
+    ROWS = [(x, y, 10.0 * x + y) for x in range(4) for y in range(4)]
+    TEXT = "".join(f"{x} {y} {z}\n" for x, y, z in ROWS)
+
+    def vector(self, name, driver):
+        """Points of ROWS in all files that a driver writes: {name in the archive: content}."""
+        data = ogr.GetDriverByName(driver).CreateDataSource(self.path(name))
+        layer = data.CreateLayer("points", reference_of("EPSG:25832"), ogr.wkbPoint25D)
+        for row in self.ROWS:
+            feature = ogr.Feature(layer.GetLayerDefn())
+            feature.SetGeometry(ogr.CreateGeometryFromWkt("POINT Z (%g %g %g)" % row))
+            layer.CreateFeature(feature)
+        layer = data = None
+        files = {}
+        for folder, _, names in os.walk(self.folder):
+            for one in (one for one in names if "points." in os.path.join(folder, one)):
+                path = os.path.join(folder, one)
+                with open(path, "rb") as stream:
+                    files[os.path.relpath(path, self.folder)] = stream.read()
+        return files
+
+    def test_a_zipped_file_is_read_with_what_lies_beside_it(self):
+        self.assert_rows(self.read(zipped(**{"a/b.xyz": self.TEXT, "readme.txt": "hello"}), "a.zip"), self.ROWS)
+        self.assert_rows(self.read(zipped(**{"b.txt": self.TEXT}), "a.zip"), self.ROWS)
+        shape = self.vector("points.shp", "ESRI Shapefile")
+        self.assertIn("points.prj", shape)
+        cloud = self.read(zipped(**shape), "a.zip")
+        self.assert_rows(cloud, self.ROWS)
+        self.assertIn("25832", cloud.crs)
+        self.assertEqual(reading.read_faults(self.file("f.zip", zipped(**{"f.xyz": "0 0 1\n9 0 1\n"}))).GetNumberOfPoints(), 2)
+
+    def test_a_zipped_hgt_knows_its_place(self):
+        z = numpy.arange(1201 * 1201, dtype=">i2").reshape(1201, 1201) % 3000
+        cloud = self.read(zipped(**{"N45E006.hgt": z.astype(">i2").tobytes()}), "N45E006.SRTMGL3.hgt.zip")
+        numpy.testing.assert_allclose(coordinates(cloud)[0], (6, 46, z[0, 0]), atol=1e-9)
+
+    def test_a_file_geodatabase_is_read_as_a_folder_and_zipped(self):
+        files = self.vector("points.gdb", "OpenFileGDB")
+        cloud = reading.read(self.path("points.gdb"))
+        self.assert_rows(cloud, self.ROWS)
+        self.assert_rows(self.read(zipped(**files), "points.gdb.zip"), self.ROWS)
+        with self.assertRaisesRegex(FileError, "is a folder, not a file"):
+            reading.read(self.folder)
+
+    def test_what_cannot_be_decided_is_asked_and_damage_is_told(self):
+        self.assert_refused("holds a.xyz, b.xyz: unpack it", zipped(**{"a.xyz": self.TEXT, "b.xyz": self.TEXT}), "a.zip")
+        self.assert_refused("holds nothing", zipped(), "a.zip")
+        self.assert_refused("holds a.jpg", zipped(**{"a.jpg": "a"}), "a.zip")
+        whole = zipped(**{"a.xyz": self.TEXT})
+        self.assert_refused("cut off or damaged", whole[:60], "a.zip")
+        self.assert_refused("cut off or damaged", whole[:40] + bytes(20) + whole[60:], "a.zip")
+
+
 class Foreign(InFolder):
     def test_what_holds_no_points_is_named(self):
         for words, name, content in (
@@ -88,10 +154,16 @@ class Foreign(InFolder):
             ("is of no kind that can be read: .vtp", "none", bytes(range(256)) * 20),
             ("is a web page", "a.xyz", "<!DOCTYPE html><html>404 1 2 3</html>"),
             ("is a PDF document", "a.csv", b"%PDF-1.4\n1 0 obj\n<< /Length 44 100 200 >>\n"),
-            ("is an archive: unpack it", "a.xlsx", b"PK\3\4" + bytes(200)),
+            ("cut off or damaged", "a.zip", b"PK\3\4" + bytes(200)),
+            ("save the table as .csv", "a.xlsx", zipped(**{"[Content_Types].xml": "<a/>", "xl/workbook.xml": "<a/>"})),
+            ("save the table as .csv", "a.ods", zipped(mimetype="application/vnd.oasis", content="<a/>")),
+            ("save the table as .csv", "a.xls", b"\xd0\xcf\x11\xe0" + bytes(600)),
+            ("is an archive of 7-Zip", "a.7z", b"7z\xbc\xaf\x27\x1c" + bytes(60)),
+            ("is a MATLAB file", "a.mat", b"MATLAB 5.0 MAT-file" + bytes(200)),
+            ("is a Parquet table", "a.parquet", b"PAR1" + bytes(60)),
+            ("is a mesh of SMS", "a.2dm", "MESH2D\nND 1 0 0 1\n"),
             ("is a well log", "a.las", "~Version\nVERS. 2.0:\n~A\n100 45 3\n101 46 4\n102 47 5\n"),
             ("is an OFF file", "a.off", "OFF\n3 1 0\n0 0 1\n1 0 1\n0 1 1\n3 0 1 2\n"),
-            ("is a PCD file", "a.pcd", "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\n1 2 3\n4 5 6\n"),
             ("is an E57 file", "a.e57", b"ASTM-E57" + bytes(100)),
             ("is a glTF file", "a.glb", b"glTF" + bytes(100)),
             ("holds a Collection", "a.pvd", '<VTKFile type="Collection"><Collection/></VTKFile>'),

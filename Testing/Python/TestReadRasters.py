@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Rasters of every kind: nodes where the files say, no-data, scale, bands, damage."""
 
+import base64
 import os
 import struct
 import sys
 import unittest
+import zlib
 from unittest import mock
 
 import numpy
@@ -111,7 +113,36 @@ def write_dem(path, profiles, dx=30.0, dy=30.0, dz=1.0, datum=0.0):
     return path
 
 
+# A BAG of 2 x 2 cells of 10 m, refined to 2 x 2 nodes in the south-west and 4 x 4 elsewhere. GDAL writes none.
+BAG = (
+    "eNrtWE1sG0UUnrVjGkIoiWq1UKF2MRwCQt5dp0WVlcRuSUhySGvaquJQySz2OFnJ3jW76yRuDxRQIPyIgLhAT5XCAXGoOFYIKaS9VKiVessVzu"
+    "XAJVzL7Ly3G+/GPxu3hUrJSKNv582b77198+Zn97Op8bee7TvcR5zS20t6yABpLA+wZF/0t93+dxEFxGXEHyOuXOB9z6N8EPmDeufPTkw42g8C"
+    "xbXzRwywl+yV3VimJk7mHHwH224+3Y749U6dnMybhmGTQF5mu7QrkKgvfwcwf4f2QTtHwuXvMibu1N5U7ur8/Tmwb2YPP167506fGXd2YHffFK"
+    "P+dTGF7bnY3hy1K+65FYxXP5Exnv0sxr3klDorXqCmpRk6lx9ggY41xFtJvpGUeTsGMsGdD9hhBAEEv/cQH0YZt4B8DsawHYlEBDgXYXxUuPe0"
+    "f6Rbvnui4wt5GvP22XuD7fXdfF7c115vyH040F7vhLu/xzusY0T5hSczjiOZxUpZnIcMHE0oSTmRGRuZrWjpmen8DLXVomqrItPRrTSTjibmbL"
+    "ualqSFhYWkZhl2IaUoScOclVKyfFxiGglPudhRuegpF4xOygVji7nsUzaqVJ/VrKRObcZZloaTqYTzCsW0VVVtTS2fpVWTWlS3WcvQp/WSAd0z"
+    "4/lJapi0YGsljRZBqNcq71HzTGlcq1DdCYrF5AUjPa3bdJaaY6kRqbE5IrUcxOTqomZ5spzJPDVtjVqeea8PJEW3eVqt0O1KjvR8vUrfNIp0zD"
+    "QWwHZLDehuwumJzmmXaIi3C+ozEYunUa7Z4DkbMENVq2ZSsWZURhMVarP+xJgiAxt2IlvjUGl7HKSOcXuMQS0wzyr6Lo1rwTB1auYMTbe5pJzm"
+    "z/BYMAyzqOmqzbSPy055HUAWHVSwyV0LqIMEuaTtlqSma1HqsIClwB41RsiVNbah/cbuSKxecWrGX9nph5WQa1moIq/O0edWV8b6M06Nt+l7pU"
+    "0fbrCZvo2XfwVc5bhyc5Mj+pu5Pvkhx4srH62B3sccbxxZ4lgqfcIxfv1Tjrc2lzm+P/o5x6NLX3C8e+dLjpfjX3F89eIKx43Vrzku3f+G4/Dw"
+    "t2tgX1x38J8hwL/eBvzzEuDGKuDdO4C3NgFvHHlpHfwG/KEKePV7wJWbgEv3AS/HE+vgL2CpBMjORLQvo30Z7ctoX0b7MtqX0b6C9hW0r6B9Be"
+    "0raF9B+ym0n0L7KbS/V5y74VP8Xih690q4AQlwTSTu53IrjLIbmKM5KB51VwE51EsOfYD9re+dV/e7X8iNpR9vTM79Ns60ZzRdq9Qq4kSZzvPV"
+    "L15QyzXa0p7gMTk7QBM+tgV2ybdGmt7D/6t4/dQ0XuxG+z/nz37u70Cs23jc5l8wB9m93PllqOlFGuaNBrZ2XeKdo1aeD+3pbmw9zP/CxrFbJy"
+    "7Y7e/0Tdhkzhs46s1mNwyHtZCHExXcIPGH4qj7/pfthKN9/v6C+VsNrPcTmDd9/Iu4oun5xhxojLd/PbYYry6GGj/sjc+ifNCzH8yndjyRVjzM"
+    "j53w9ITzp/6I/KmH92fK44mjP8G8b5cPW/MlZkPw1R+aj71nd/5dC8NX3ymfQJ7xnRfu/+C/8T9eTmicie0lSpb50IMR2JuKtGrPhfn/1MQ/Pj"
+    "Zf0wumTcLsk804Wq/v157D9xaa/3nxlwpe2902dc9jbDMv2beJyr4QIOTzqsmmIe8Nw7ZJS5pOWVrblj/+uUd2vvnPM5f/WGC+j21bd31efjfO"
+    "Wee8ya435XHW7454WvuzlQGheDKt/OmG51+TaWIo"
+)
+
+
 class Formats(InFolder):
+    def test_all_nodes_of_a_bag_with_varying_resolution_are_read(self):
+        cloud = self.read(zlib.decompress(base64.b64decode(BAG)), "a.bag")
+        xyz = coordinates(cloud)
+        self.assertEqual(len(xyz), 4 + 3 * 16)
+        self.assertTrue(any("varies from 2.5 to 5" in note for note in cloud.notes), cloud.notes)
+        self.assertEqual(round(float(xyz[:, 2].min()), 2), -11.15)
+
     def test_every_format_that_gdal_writes_gives_the_same_points(self):
         for name, driver, kind in (
             ("a.tif", "GTiff", gdal.GDT_Float64),

@@ -179,7 +179,7 @@ class Properties(unittest.TestCase):
             "recover_boundary": (False, "trim", "GetRecoverBoundary", 0),
             "boundary_edges": ("own elevations", "trim", "GetBoundaryEdges", 2),
             "fill_cut_outs": (True, "fill", "GetFillCutOuts", 1),
-            "open_edge_length": (40, "fill", "GetMaximumEdgeLength", 40.0),
+            "open_edge_length": (40, "fill", "GetOpenEdgeLength", 40.0),
             "maximum_hole_size": (5, "fill", "GetMaximumHoleSize", 5.0),
             "maximum_hole_edges": (7, "fill", "GetMaximumHoleEdges", 7),
             "maximum_expected_points": (900, "fill", "GetMaximumNumberOfExpectedPoints", 900),

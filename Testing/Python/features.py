@@ -49,6 +49,7 @@ points that are not finite        |                            | not finite     
 two points                        |                            | two points                   | s  s  s  s  s  s  s
 no points                         |                            | no points                    | s  s  s  s  s  s  s
 points of another kind of data set|                            | points + unstructured        | s  s  s  s  s  s  s
+unused points removed             | RemoveUnusedPoints=True    | not finite + global ids      | s  s  s  s  r  r  r
 point data: float                 |                            | points + float array         | s  s  s  s  s  s  s
 point data: double                |                            | points + double array        | s  s  s  s  s  s  s
 point data: integers of all sizes |                            | points + integers            | s  s  s  s  s  s  s
@@ -78,6 +79,7 @@ boundary found along tracks       |                            | tracks         
 boundary found by inward normals  | OutwardTest=1              | gaps                         | s  s  g  g  r  r  r
 gap tolerance                     | GapTolerance=2.5           | gaps                         | s  s  s  s  s  s  s
 steps of a grid                   | GridSteps=(2.0, 1.5, -0.9, 1.2) | lattice                      | s  s  s  s  s  s  s
+unused points removed             | RemoveUnusedPoints=True    | coast + global ids           | s  s  s  s  r  r  r
 points of floats                  |                            | coast + float                | s  s  s  s  s  s  s
 point data: float, double         |                            | coast + float array + double array | s  s  s  s  s  s  s
 point data: integers, strings     |                            | coast + integers + strings   | s  s  s  s  s  s  s
@@ -99,7 +101,7 @@ interpolation: thin plate         | Interpolation=2            | coast and lakes
 interpolation: adaptive           | Interpolation=3            | coast and lakes              | s  s  s  s  s  s  s
 interpolation: cubic spline       | Interpolation=4            | coast and lakes              | s  s  s  s  s  s  s
 on the nodes of a lattice         |                            | lattice and lakes            | s  s  s  s  s  s  s
-long triangles opened             | MaximumEdgeLength=2.5      | coast and lakes              | s  s  s  s  s  s  s
+long triangles opened             | OpenEdgeLength=2.5         | coast and lakes              | s  s  s  s  s  s  s
 largest hole                      | MaximumHoleSize=4.0        | coast and lakes              | s  s  s  s  s  s  s
 most edges of a hole              | MaximumHoleEdges=13        | coast and lakes              | s  s  s  s  s  s  s
 what the boundary cut out, open   |                            | coast and lakes              | s  s  s  s  s  s  s
@@ -109,6 +111,7 @@ most points expected              | MaximumNumberOfExpectedPoints=20 | coast and
 spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  s
 point data not interpolated       | InterpolatePointData=False | coast and lakes              | s  s  s  s  s  s  s
 holes of an edge limit            | Delaunay.MaximumEdgeLength=2.2 | points                       | s  s  s  s  s  s  s
+unused points removed, by all filters | RemoveUnusedPoints=True, Trim.RemoveUnusedPoints=True, Delaunay.RemoveUnusedPoints=True | coast and lakes + global ids | s  s  s  d2 r  r  r
 points of floats                  |                            | coast and lakes + float      | s  s  s  s  s  s  s
 point data: float, double         |                            | coast and lakes + float array + double array | s  s  s  s  s  s  s
 point data: integers, strings     |                            | coast and lakes + integers + strings | s  s  s  s  s  s  s

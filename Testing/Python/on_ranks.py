@@ -124,6 +124,7 @@ def check_refused(algorithm, data, part, claim, **properties):
     rows = refused.GetMessages()
     check((rows.GetNumberOfTuples() > 0) == (RANK == 0) and (RANK > 0 or rows.GetValue(0) == "error"),
           "%s: the error is data too, on the first rank" % claim)
+    check(refused.GetErrorCode() != 0, "%s: the filter has failed on all ranks" % claim)
     for port in range(refused.GetNumberOfOutputPorts()):
         check(refused.GetOutput(port).GetNumberOfPoints() == 0, "%s: no point" % claim)
 

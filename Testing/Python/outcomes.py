@@ -84,7 +84,9 @@ def part_made(data, ids=None, without=()):
     # Outlines have field data of the surface, whose points these are.
     if count and not data.GetNumberOfLines() and all(unused) and unused[0].GetNumberOfTuples():
         which, reasons = (vtk_to_numpy(array) for array in unused)
-        made["unused"] = numpy.column_stack((rows[which], reasons))
+        # Without them, numbers are those of the input.
+        which = which[:, None] if "OriginalPointIds" in columns else rows[which]
+        made["unused"] = numpy.column_stack((which, reasons))
     found = fields.GetArray("Lattice")
     made["lattice"] = [found.GetTuple(0)] if found else []
     made["report"] = report_of(data)

@@ -51,7 +51,7 @@ def chain(path, repeats):
         "outward": report["trim"]["outward_triangles"],
         "rings": report["trim"]["boundary_rings"],
         "holes": {name: report["holes"][name] for name in ("found", "filled", "inserted_points")},
-        "opened": result.fill.GetMaximumEdgeLength(),
+        "opened": result.fill.GetOpenEdgeLength(),
         "distance": report["distance"],
     }
 

@@ -16,30 +16,33 @@
 #include <exception>
 #include <functional>
 #include <mutex>
-#include <thread>
 #include <vector>
 
 namespace elevation
 {
 
-/** The number of threads requested; 0 requests one a core. */
+/**
+ * How many threads there are. The kernel only declares this and CallOnThreads(): the module defines
+ * them with vtkSMPTools, in Adapt/Threads.cxx.
+ */
+int AvailableThreads();
+
+/** The number of threads requested; 0 requests all. */
 inline int ResolveNumberOfThreads(int requested)
 {
-  return requested > 0 ? requested
-                       : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return requested > 0 ? requested : AvailableThreads();
 }
 
-/** The same, but at most one a core: a thread that waits for a core would delay the next report. */
+/** The same, but at most all: a thread that waits for another would delay the next report. */
 inline int ThreadsAtOnce(int requested)
 {
-  // Asking the system takes longer than a triangulation of few points.
-  return requested == 1 ? 1
-                        : std::min(ResolveNumberOfThreads(requested), ResolveNumberOfThreads(0));
+  // Asking takes longer than a triangulation of few points.
+  return requested == 1 ? 1 : std::min(ResolveNumberOfThreads(requested), AvailableThreads());
 }
 
 /**
  * Calls call(0) to call(count - 1), each once, on up to @a threads threads, and returns when all have
- * returned. The kernel only declares it: the module defines it with vtkSMPTools, in Adapt/Threads.cxx.
+ * returned.
  * @param[in] call  throws nothing
  */
 void CallOnThreads(Index count, int threads, const std::function<void(Index)>& call);
@@ -61,7 +64,6 @@ void ForEachPiece(Index count, int threads, Work&& work)
     return;
   }
   std::vector<std::exception_ptr> failures(count);
-  // More threads than cores gain nothing.
   CallOnThreads(count, ThreadsAtOnce(threads), [&](Index i) {
     try
     {

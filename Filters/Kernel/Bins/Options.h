@@ -68,7 +68,7 @@ struct DelaunayOptions
   Lattice GivenLattice;
   /** How far a point may lie from its node along each step, in steps; at most 0.25. */
   double LatticeTolerance = 0.01;
-  /** Threads to use; 0: one per core. The result is the same, byte for byte. */
+  /** Threads to use; 0: all there are. The result is the same, byte for byte. */
   int NumberOfThreads = 1;
   /** For tests: points per strip (Growth.h); 0: automatic. */
   Index PointsPerStrip = 0;

@@ -80,7 +80,7 @@ struct FillOptions
   double MemoryOfHole = 0.0; ///< in bytes; more expected for one hole are an Error; 0: no limit
   /** Whether new points are lattice nodes where the surface's points are. */
   LatticeMode UseLattice = LatticeMode::Automatic;
-  /** Threads to use; 0: one per core. The result is the same, byte for byte. */
+  /** Threads to use; 0: all there are. The result is the same, byte for byte. */
   int NumberOfThreads = 1;
   Progress Monitor;
 };
@@ -128,6 +128,7 @@ struct FillResult
   std::vector<double> StandardErrors;
   std::vector<std::vector<double>> Attributes; ///< as in the options, one value per new point
   std::vector<HoleReport> Reports;
+  Index FirstNumber = 0; ///< of a hole; for those who name them: earlier ones have been filled before
 
   Index NumberOfPoints() const { return this->PointOffsets.back(); }
   Index NumberOfTriangles() const { return this->TriangleOffsets.back(); }

@@ -24,15 +24,14 @@ namespace sentences
 // clang-format on
 
 /** @name Of any filter @{ */
-ELEVATION_SENTENCE(EmptyBlocks, "All blocks of the input are empty, so the output is empty.");
 ELEVATION_SENTENCE(NotEnoughMemory, "There is not enough memory for this input.");
 ELEVATION_SENTENCE(Stopped,
   "Stopped, so the output is empty. SetAbortExecute(0) and Modified() let the next update make it.");
 ELEVATION_SENTENCE(ArraysLeftOut,
   "Not all ranks (processes) have the {kind} {noun} {arrays} in the same type, so {they} left "
   "out.");
-ELEVATION_SENTENCE(InvalidEdgeLength,
-  "{property:MaximumEdgeLength} is {value}; it must be 0 (off) or a length in x,y.");
+ELEVATION_SENTENCE(
+  InvalidThreads, "{property:NumberOfThreads} is {value}; it must be 0 (those of VTK) to {most}.");
 /** @} */
 
 /** @name Of a filter on several ranks; each rank reports it for itself, while it waits @{ */
@@ -101,6 +100,13 @@ ELEVATION_SENTENCE(FewTriangles,
 ELEVATION_SENTENCE(FewTrianglesAdvice,
   "{what} Between neighbours, the shortest edge is {shortest} long, the median {median}. A "
   "{property:MaximumEdgeLength} of {better} keeps a triangle at 95 % of the points.");
+ELEVATION_SENTENCE(InvalidEdgeLength,
+  "{property:MaximumEdgeLength} is {value}; it must be 0 (off) or a length in x,y.");
+ELEVATION_SENTENCE(InvalidLatticeTolerance,
+  "{property:LatticeTolerance} is {value}; it must be 0 to {most}, a part of a step.");
+ELEVATION_SENTENCE(LatticeNotUsed,
+  "{property:Lattice} is not used, as there are constraints: with these, the coordinates are "
+  "triangulated as they are.");
 ELEVATION_SENTENCE(InvalidElevationError,
   "{property:MaximumElevationError} is {value}; it must be 0 (off) or a distance in z.");
 ELEVATION_SENTENCE(TwoLimits,
@@ -145,6 +151,25 @@ ELEVATION_SENTENCE(BoundaryElsewhere,
 ELEVATION_SENTENCE(NothingToFill,
   "The input has no triangles, so there is nothing to fill. Points alone are triangulated first, "
   "by vtkGridDelaunay2D.");
+ELEVATION_SENTENCE(InvalidOpenEdgeLength,
+  "{property:OpenEdgeLength} is {value}; it must be 0 (off) or a length in x,y.");
+ELEVATION_SENTENCE(InvalidHoleSize,
+  "{property:MaximumHoleSize} is {value}; it must be 0 (no limit) or a length in x,y.");
+ELEVATION_SENTENCE(InvalidHoleEdges,
+  "{property:MaximumHoleEdges} is {value}; it must be 0 (no limit) or a number of edges.");
+ELEVATION_SENTENCE(InvalidSpacing,
+  "{property:Spacing} is {value}; it must be 0 (that of the points around) or a distance in x,y.");
+ELEVATION_SENTENCE(InvalidInsertedPoints,
+  "{property:MaximumNumberOfInsertedPoints} is {value}; it must be 0 (no limit) or a number of "
+  "points.");
+ELEVATION_SENTENCE(InvalidExpectedPoints,
+  "{property:MaximumNumberOfExpectedPoints} is {value}; it must be 0 (by the number of points of "
+  "the "
+  "input) or a number of points.");
+ELEVATION_SENTENCE(EdgeLengthRenamed,
+  "MaximumEdgeLength of vtkFillElevationHoles is called OpenEdgeLength now: it opens triangles "
+  "with "
+  "longer edges, where that of vtkGridDelaunay2D leaves them out.");
 ELEVATION_SENTENCE(HoleNotFilled, "Hole {hole} ({edges} edges) was not filled. {reason}");
 /** Of a region of long triangles. */
 ELEVATION_SENTENCE(
@@ -199,6 +224,8 @@ ELEVATION_SENTENCE(
   ErrorNotInPieces, "{property:MaximumElevationError} is for points in memory, not for pieces.");
 ELEVATION_SENTENCE(ConstraintsNotInPieces,
   "Constraints with {property:DrapeConstraints} are for points in memory, not for pieces.");
+ELEVATION_SENTENCE(UnusedPointsInPieces,
+  "{property:RemoveUnusedPoints} is for a surface in memory; pieces keep all points.");
 ELEVATION_SENTENCE(InwardNormalNotInPieces,
   "{property:OutwardTest} InwardNormal is for a surface in memory, not for pieces.");
 ELEVATION_SENTENCE(BoundaryNotInPieces,

@@ -29,7 +29,7 @@ struct ExtractOptions
   double GapTolerance = 0.0;
   /** The steps of a grid, some of whose nodes are missing; not set: none. The origin is not used. */
   Lattice Grid;
-  /** Threads to use; 0: one per core. The result is the same. */
+  /** Threads to use; 0: all there are. The result is the same. */
   int NumberOfThreads = 1;
   Progress Monitor;
 };

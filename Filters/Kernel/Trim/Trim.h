@@ -64,7 +64,7 @@ struct TrimOptions
   bool ReturnParents = true;
   /** How messages number points of the mesh, if not by their ids. */
   std::function<std::int64_t(Index id)> NumberOf;
-  /** Threads to use; 0: one per core. The result is the same. */
+  /** Threads to use; 0: all there are. The result is the same. */
   int NumberOfThreads = 1;
   Progress Monitor;
 };

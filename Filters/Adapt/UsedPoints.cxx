@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "UsedPoints.h"
+
+#include "MeshConversion.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+namespace elevation
+{
+
+namespace
+{
+constexpr const char* NameOfOriginalIds = "OriginalPointIds";
+
+vtkAbstractArray* OriginalIdsOf(vtkPointSet* data)
+{
+  vtkAbstractArray* const ids = data->GetPointData()->GetAbstractArray(NameOfOriginalIds);
+  return ids && IsOriginalIds(ids) ? ids : nullptr;
+}
+
+/** Visits the cells of an array: visit(size, ids). */
+template <typename Visit>
+void ForEachCell(vtkCellArray* cells, const Visit& visit)
+{
+  auto each = vtk::TakeSmartPointer(cells->NewIterator());
+  for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell())
+  {
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    each->GetCurrentCell(size, ids);
+    visit(size, ids);
+  }
+}
+
+/** Cells with other numbers of their points. */
+vtkSmartPointer<vtkCellArray> Renumbered(vtkCellArray* cells, const std::vector<Index>& placeOf)
+{
+  auto renumbered = vtkSmartPointer<vtkCellArray>::New();
+  ForEachCell(cells, [&](vtkIdType size, const vtkIdType* ids) {
+    renumbered->InsertNextCell(static_cast<int>(size));
+    std::for_each(ids, ids + size, [&](vtkIdType id) { renumbered->InsertCellPoint(placeOf[id]); });
+  });
+  return renumbered;
+}
+} // namespace
+
+bool IsOriginalIds(vtkAbstractArray* array)
+{
+  return array->GetName() && !std::strcmp(array->GetName(), NameOfOriginalIds) &&
+    vtkIdTypeArray::SafeDownCast(array) && array->GetNumberOfComponents() == 1;
+}
+
+vtkSmartPointer<vtkPointSet> WithOriginalIds(vtkPointSet* input, vtkIdType first)
+{
+  if (input->GetNumberOfPoints() == 0 || OriginalIdsOf(input))
+  {
+    return input;
+  }
+  auto numbered = vtk::TakeSmartPointer(input->NewInstance());
+  numbered->ShallowCopy(input);
+  vtkNew<vtkIdTypeArray> ids;
+  if (vtkDataArray* const globalIds = input->GetPointData()->GetGlobalIds())
+  {
+    ids->DeepCopy(globalIds);
+  }
+  else
+  {
+    SetTuples(input->GetNumberOfPoints(), ids);
+    std::iota(ids->GetPointer(0), ids->GetPointer(0) + ids->GetNumberOfTuples(), first);
+  }
+  ids->SetName(NameOfOriginalIds);
+  numbered->GetPointData()->AddArray(ids);
+  return numbered;
+}
+
+std::vector<char> FlagUsed(vtkPolyData* surface)
+{
+  std::vector<char> areUsed(static_cast<std::size_t>(surface->GetNumberOfPoints()), 0);
+  const TrianglesOfDataSet triangles = ViewTriangles(surface);
+  std::for_each(triangles.View.Corners, triangles.View.Corners + 3 * triangles.View.Count,
+    [&](Index corner) { areUsed[corner] = 1; });
+  for (vtkCellArray* const cells : { surface->GetVerts(), surface->GetLines() })
+  {
+    ForEachCell(cells, [&](vtkIdType size, const vtkIdType* ids) {
+      std::for_each(ids, ids + size, [&](vtkIdType id) { areUsed[id] = 1; });
+    });
+  }
+  return areUsed;
+}
+
+void NameUnusedByOriginalIds(vtkPolyData* surface)
+{
+  auto* const unused =
+    vtkIdTypeArray::SafeDownCast(surface->GetFieldData()->GetArray("UnusedPointIds"));
+  auto* const ids = vtkIdTypeArray::SafeDownCast(OriginalIdsOf(surface));
+  for (vtkIdType i = 0; unused && ids && i < unused->GetNumberOfValues(); ++i)
+  {
+    unused->SetValue(i, ids->GetValue(unused->GetValue(i)));
+  }
+}
+
+void KeepFlagged(
+  const std::vector<char>& areKept, const Progress& progress, vtkPolyData* surface)
+{
+  std::vector<Index> kept;
+  std::vector<Index> placeOf(areKept.size(), None);
+  for (std::size_t i = 0; i < areKept.size(); ++i)
+  {
+    if (areKept[i])
+    {
+      placeOf[i] = static_cast<Index>(kept.size());
+      kept.push_back(static_cast<Index>(i));
+    }
+  }
+  if (kept.size() == areKept.size())
+  {
+    return;
+  }
+  const vtkSmartPointer<vtkPolyData> points = ChosenPoints(surface, kept, progress);
+  const TrianglesOfDataSet triangles = ViewTriangles(surface);
+  Buffer<Index> corners;
+  corners.Resize(3 * static_cast<std::size_t>(triangles.View.Count));
+  std::transform(triangles.View.Corners, triangles.View.Corners + corners.size(), corners.begin(),
+    [&](Index corner) { return placeOf[corner]; });
+  surface->SetVerts(Renumbered(surface->GetVerts(), placeOf));
+  surface->SetLines(Renumbered(surface->GetLines(), placeOf));
+  surface->SetPolys(ToCellArray(std::move(corners)));
+  surface->SetPoints(points->GetPoints());
+  surface->GetPointData()->ShallowCopy(points->GetPointData());
+}
+
+} // namespace elevation

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * A surface with the points that its cells use alone, and where these are from. Private to the module.
+ */
+#ifndef UsedPoints_h
+#define UsedPoints_h
+
+#include "Kernel/Base/Base.h"
+#include "VTKClasses.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <vector>
+
+namespace elevation
+{
+
+/** Whether it is the array OriginalPointIds: which points of the first input those of a surface are. */
+bool IsOriginalIds(vtkAbstractArray* array);
+
+/**
+ * An input whose points have original ids: the input itself, if it has them from a filter before; else
+ * they are its global ids, or else its places.
+ * @param[in] first  place of the first point
+ */
+vtkSmartPointer<vtkPointSet> WithOriginalIds(vtkPointSet* input, vtkIdType first);
+
+/** One flag a point: whether a cell has it. */
+std::vector<char> FlagUsed(vtkPolyData* surface);
+
+/** Lets the list of unused points in the field data, which is a surface's own, name original ids. */
+void NameUnusedByOriginalIds(vtkPolyData* surface);
+
+/** Leaves only the points with a flag, in their order; cells have no others. */
+void KeepFlagged(
+  const std::vector<char>& areKept, const Progress& progress, vtkPolyData* surface);
+
+} // namespace elevation
+
+#endif

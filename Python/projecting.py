@@ -1,0 +1,97 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Degrees made metres: x and y of points, by PROJ."""
+
+import numpy
+
+from .clouds import PixelGrid, coordinates_of, make_points
+from .gdal_common import flat, name_of, one_line, quiet, reference_of
+from .messages import FileError
+from .names import option
+
+LONGITUDES, LATITUDES = 360.0, 90.0
+OF_UTM = 84.0  # degrees north, and 80 south; polar stereographic beyond
+WIDE = 9.0  # degrees from the middle: lengths are 1 % too long there at the equator
+
+
+def looks_like_degrees(points, step):
+    """Whether x and y of (n, 3) points of a raster can only be degrees: z has much the wider range."""
+    (west, south, low), (east, north, high) = points.min(axis=0), points.max(axis=0)
+    wide = max(east - west, north - south)
+    is_angle = max(abs(west), abs(east)) <= LONGITUDES and max(abs(south), abs(north)) <= LATITUDES
+    return bool(is_angle and 0.0 < step < 1.0 and wide < 0.1 * (high - low))
+
+
+def note_on_degrees(is_certain):
+    words = "are angles" if is_certain else "look like degrees"
+    return f"x,y {words}: {option('project')} makes metres of them, which gives triangles their true shape"
+
+
+def zone_of(longitude, latitude):
+    """AUTHORITY:CODE of the UTM zone at a place, or of the polar system."""
+    if not -80.0 <= latitude <= OF_UTM:
+        return "EPSG:32661" if latitude > 0 else "EPSG:32761"
+    zone = int((longitude + 180.0) % 360.0 // 6.0) + 1
+    return f"EPSG:{326 if latitude >= 0 else 327}{zone:02d}"
+
+
+def project(path, cloud):
+    """Makes x and y of a Cloud metres of the UTM zone in their middle. Returns the crs that they had, with WGS
+    84 where none is known. Raises FileError for what is no angles."""
+    try:
+        source = reference_of(cloud.crs or "EPSG:4326")
+    except ImportError:
+        raise FileError(f"{path}: {option('project')} needs GDAL; install python3-gdal") from None
+    except ValueError as error:
+        raise FileError(f"{path}: {error}") from None
+    if not source.IsGeographic():
+        raise FileError(f"{path}: is in {name_of(cloud.crs)}, so x,y are no angles: leave out {option('project')}")
+    xyz = coordinates_of(cloud.points).astype("f8")
+    finite = numpy.isfinite(xyz[:, :2]).all(axis=1)
+    xy = xyz[finite, :2]
+    if not len(xy):
+        return cloud.crs
+    if (abs(xy) > (LONGITUDES, LATITUDES)).any():
+        bad = xy[(abs(xy) > (LONGITUDES, LATITUDES)).any(axis=1)][0]
+        raise FileError(f"{path}: {bad[0]:.10g}, {bad[1]:.10g} is no longitude and latitude, as {option('project')} needs")
+    around = numpy.where(xy[:, 0] < 0, xy[:, 0] + 360.0, xy[:, 0])
+    if numpy.ptp(around) < numpy.ptp(xy[:, 0]):  # on both sides of the antimeridian
+        xy[:, 0] = around
+    low, high = xy.min(axis=0), xy.max(axis=0)
+    middle = 0.5 * (low + high)
+    zone = zone_of(*middle)
+    try:
+        from osgeo import osr
+
+        with quiet():
+            change = osr.CoordinateTransformation(flat(source), reference_of(zone))
+
+            def places(points):
+                found = numpy.array(change.TransformPoints(numpy.asarray(points).tolist()))[:, :2]
+                if not numpy.isfinite(found).all():
+                    raise RuntimeError("some points have no place there")
+                return found
+
+            xyz[finite, :2] = places(xy)
+            if cloud.grid:
+                steps = numpy.reshape(cloud.grid.steps, (2, 2))
+                at = [middle, low, high, (low[0], high[1]), (high[0], low[1])]
+                moved = [places(at + step) - places(at) for step in steps]
+                cells = numpy.hypot(*(abs(moved[0]) + abs(moved[1])).T)
+                cloud.grid = PixelGrid(None, tuple(float(v) for step in moved for v in step[0]))
+                cloud.largest_cell = float(cells.max())
+    except RuntimeError as error:
+        raise FileError(f"{path}: cannot be projected to {name_of(zone)}: {one_line(error)}") from None
+    moved = cloud.points.NewInstance()
+    moved.ShallowCopy(cloud.points)
+    moved.SetPoints(make_points(xyz).GetPoints())
+    before = cloud.crs or "EPSG:4326"
+    known = "" if cloud.crs else ", which is assumed as nothing is told"
+    cloud.points, cloud.crs, cloud.frame = moved, zone, None
+    cloud.notes.append(f"x,y are projected from {name_of(before)}{known} to {name_of(zone)}")
+    if high[0] - low[0] > 2.0 * WIDE:
+        cloud.notes.append(
+            f"the points reach over {high[0] - low[0]:.0f} degrees of longitude: lengths are more than 1 % too long "
+            "at the sides"
+        )
+    return before
