@@ -159,7 +159,7 @@ def hole_lines(holes, line):
         line("", f"{count:,} of them were bridged by triangles")
         line(
             "",
-            f"an edge is a bridge above {holes['open_edge_length']:.4g} "
+            f"gaps wider than {holes['open_edge_length']:.4g} are filled "
             f"({holes['open_edge_length_is']}); see {option('open_edge_length')}",
         )
     if holes["cut_out"]:

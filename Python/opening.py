@@ -98,5 +98,6 @@ def length_of(area, shortest, longest, lattice):
     is_between = longest > LEAST_RATIO_OF_LINES * shortest
     if area[is_between].sum() > 0.5 * area.sum():
         along = float(numpy.median(shortest))
-        return SPACINGS_ALONG * along, f"{SPACINGS_ALONG:g} spacings of {along:.4g} along lines"
+        why = f"survey lines found: {SPACINGS_ALONG:g} spacings of {along:.4g} along lines"
+        return SPACINGS_ALONG * along, why
     return 0.0, None

@@ -15,7 +15,8 @@ import numpy
 
 from .column_names import Meaning, in_brackets, is_seismic, meaning, plain
 from .known import (
-    CLEAR, CLEAR_OF_POOR, COLOURS, CROSSLINES, FINNISH, GOOD, INLINES, PARTS_OF_TIME, TIMES, WEIGHTS
+    CLEAR, CLEAR_OF_POOR, COLOURS, CROSSLINES, FINNISH, GOOD, INLINES, MOST_STEP_OF_LINES,
+    PARTS_OF_TIME, TIMES, WEIGHTS
 )
 from .nulls import usual_nulls
 from ..messages import FileError
@@ -345,21 +346,18 @@ class Search:
         """{indices: score} of the readings of columns, in a row or with numbers of lines before z."""
         count, readings = self.needed, {}
         for k in range(len(columns) - count + 1):
-            reading = tuple(columns[k : k + count])
-            readings[reading] = self.score(reading) + WEIGHTS["stands first"] * (k == 0)
-            if k < 2 and self.is_grid(*reading[:2]) and not self.may_count(*reading[:2]):
-                readings[reading] += WEIGHTS["x and y are a grid"]
-        x, y, *others = columns
-        if count == 3 and self.counts_along(others[0]) and not (
-            self.counts_along(x) or self.counts_along(y)
-        ):
-            for z in others[1:]:
-                if not self.counts_along(z):
-                    first = tuple(columns[:3])
-                    behind = WEIGHTS["stands first"] + WEIGHTS["z behind lines"]
-                    readings[first] += WEIGHTS["z rises along lines"]
-                    readings[x, y, z] = self.score((x, y, z)) + behind
-                    break
+            x, y, *z = columns[k : k + count]
+            place = WEIGHTS["a column is left out"] * (k - 1) if k else WEIGHTS["stands first"]
+            if k == 1 and self.is_grid(x, y) and not self.is_grid(*columns[:2]):
+                place += WEIGHTS["x and y are a grid"]
+            readings[x, y, *z] = self.score((x, y, *z)) + place
+            others = columns[k + count :]
+            if z and others and self.counts_along(z[0]) and not self.may_count(x, y):
+                readings[x, y, *z] += WEIGHTS["z rises along lines"]
+                for other in others:
+                    behind = WEIGHTS["z behind lines"] + place
+                    behind += WEIGHTS["a column is left out"] * self.counts_along(other)
+                    readings[x, y, other] = self.score((x, y, other)) + behind
         return readings
 
     def score(self, reading):
@@ -374,6 +372,7 @@ class Search:
             "x is a line": self.is_line(x, y),
             "x rises": self.always_rises(x),
             "x and y count": self.may_count(x, y),
+            "x and y are of UTM": self.is_utm(x, y) or self.is_utm(y, x),
         }
         if z:
             heights = abs(self.finite(z[0]))
@@ -435,7 +434,9 @@ class Search:
             if not all(self.is_whole(k) and numpy.ptp(self.finite(k)) > 0 for k in (i, j)):
                 continue
             rest = [k for k in columns if k not in (i, j)]
-            for pair in zip(rest, rest[1:]):
+            for pair in zip(columns, columns[1:]):
+                if not set(pair) <= set(rest):
+                    continue
                 larger = self.size(pair) > self.size([i, j])
                 others = [k for k in rest if k > pair[1]][:1]
                 follow = self.follow_from([i, j], list(pair)) or self.are_rounded(pair, [i, j])
@@ -469,8 +470,8 @@ class Search:
     def are_rounded(self, given, wanted):
         """Whether whole numbers are the nearest to those that follow from others, as lines near points."""
         found = self.fit(list(given), wanted)
-        wide = all(numpy.ptp(self.finite(i)) >= 5 for i in wanted)
-        return bool(found and wide and len(found[0]) >= 10 and abs(found[0]).max() < 0.75)
+        wide = all(numpy.ptp(self.finite(i)) >= 10 for i in wanted)
+        return bool(found and wide and len(found[0]) >= 10 and abs(found[0]).max() < 0.6)
 
     def is_grid(self, x, y):
         """Whether each value of x stands once with each of y, here and there with a gap."""
@@ -481,12 +482,12 @@ class Search:
         return len(numpy.unique(rows, axis=0)) == len(rows)
 
     def may_count(self, x, y):
-        """Whether columns may be line and trace: small, whole, in steps of one."""
+        """Whether columns may be line and trace: small, whole, in small steps."""
         if not all(self.is_whole(i) and abs(self.finite(i)).max() < 1e5 for i in (x, y)):
             return False
         steps = [abs(self.steps(i)) for i in (x, y)]
         usual = [numpy.median(s[s > 0]) if (s > 0).any() else 0.0 for s in steps]
-        return usual == [1.0, 1.0]
+        return 1.0 <= min(usual) and max(usual) <= MOST_STEP_OF_LINES
 
     def counts_along(self, i):
         """Whether whole numbers go one way, in even steps, but where a line begins."""

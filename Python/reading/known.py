@@ -177,6 +177,7 @@ NULLS = (
 # ---- readings of columns ------------------------------------------------------------------------
 
 INLINES, CROSSLINES = _words("inline il iline"), _words("crossline xline xl")
+MOST_STEP_OF_LINES = 4  # between their numbers
 FINNISH = {"p": "y", "i": "x"}  # pohjoinen, itä
 # What speaks for a reading of columns as x, y and z by their values, and against it. Some differences of
 # sums are those of cases: "stands first" outweighs a fault of all but the weightiest.
@@ -189,13 +190,15 @@ WEIGHTS = {
     "stands first": 10,
     "x rises": -7,  # in all rows, as a time does
     "x is a line": -10,
-    "x and y count": -7,  # as line and trace do
+    "a column is left out": -4,  # before x, behind the first, for no reason
+    "x and y are of UTM": 16,
+    "x and y count": -11,  # as line and trace do
     "x and y are a grid": 7,
     "z rises along lines": -10,  # whole numbers, as those of lines are
     "z behind lines": -8,
 }
 # A reading is certain if the next is this much worse; more, where the reading itself is no good one.
-GOOD, CLEAR, CLEAR_OF_POOR = 30, 4, 6
+GOOD, CLEAR, CLEAR_OF_POOR = 33, 4, 6
 # The parts of a time: least, most, and how many seconds they are.
 PARTS_OF_TIME = {
     "year": (1900, 2100, 366 * 86400.0), "month": (1, 12, 31 * 86400.0), "day": (1, 31, 86400.0),
