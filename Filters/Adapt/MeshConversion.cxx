@@ -230,6 +230,7 @@ vtkSmartPointer<vtkPolyData> WithoutHiddenCells(vtkPolyData* input)
   {
     return input;
   }
+  shown->GetCellData()->CopyAllOn(); // also global and pedigree ids
   shown->RemoveDeletedCells();
   return shown;
 }

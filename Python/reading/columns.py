@@ -422,7 +422,7 @@ class Search:
                 even &= bool((values >= low).all() and (values <= high).all())
                 even &= part == "second" or self.is_whole(i)
                 moment = moment + factor * values
-            goes_on = even and (numpy.diff(moment) >= 0).mean() >= 0.99
+            goes_on = even and self.consecutive > 1 and (numpy.diff(moment) >= 0).mean() >= 0.99
             small = "year" not in parts and self.finite(found[-1]).max(initial=0) < 30
             if goes_on and len(moment) > 2 and numpy.ptp(moment) > 0 and not small:
                 return found

@@ -125,8 +125,12 @@ vtkSmartPointer<vtkPolyData> MakeInput()
   ofCells->SetPedigreeIds(MakeNames(cells, "CellOrigin", 1));
   ofCells->SetVectors(MakeNumbered<vtkFloatArray>(cells, "Flow", 3));
   ofCells->SetScalars(MakeNumbered<vtkUnsignedCharArray>(cells, "CellColors", 4));
-  ofCells->AddArray(
-    MakeNumbered<vtkUnsignedCharArray>(cells, vtkDataSetAttributes::GhostArrayName(), 1));
+  auto ghosts = MakeNumbered<vtkUnsignedCharArray>(cells, vtkDataSetAttributes::GhostArrayName(), 1);
+  for (vtkIdType i = 0; i < cells; ++i)
+  {
+    ghosts->SetValue(i, ghosts->GetValue(i) & ~vtkDataSetAttributes::HIDDENCELL);
+  }
+  ofCells->AddArray(ghosts);
   return input;
 }
 
@@ -269,6 +273,28 @@ void TestIds()
     Check(output->GetCellData()->GetArray("Small")->GetComponent(i, 0) == 255.0, "also of a byte");
   }
 }
+
+/** Hidden cells are left out with their values, ids among them. */
+void TestHiddenCells()
+{
+  auto input = MakeInput();
+  const vtkIdType cells = input->GetNumberOfCells();
+  auto* const ghosts = vtkUnsignedCharArray::SafeDownCast(
+    input->GetCellData()->GetArray(vtkDataSetAttributes::GhostArrayName()));
+  ghosts->SetValue(0, vtkDataSetAttributes::HIDDENCELL);
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetInputData(input);
+  fill->Update();
+  auto* const ids = vtkIdTypeArray::SafeDownCast(fill->GetOutput()->GetCellData()->GetGlobalIds());
+  auto* const names =
+    vtkStringArray::SafeDownCast(fill->GetOutput()->GetCellData()->GetPedigreeIds());
+  Check(ids && names && fill->GetNumberOfFilledHoles() >= 1, "a surface with a hidden cell is filled");
+  for (vtkIdType cell = 0; ids && names && cell + 1 < cells; ++cell)
+  {
+    Check(ids->GetValue(cell) == 3 * (cell + 1) + 1, "global ids of the cells that are left");
+    Check(names->GetValue(cell) == "n" + std::to_string(cell + 1), "and their pedigree ids");
+  }
+}
 } // namespace
 
 int TestFillElevationHolesAttributes(int, char*[])
@@ -280,6 +306,7 @@ int TestFillElevationHolesAttributes(int, char*[])
   Check(fill->GetNumberOfFilledHoles() == 1, "the hole is filled");
   TestPoints(input, fill->GetOutput());
   TestCells(input, fill->GetOutput());
+  TestHiddenCells();
   TestIds();
   // The rims of the second output have the arrays of points.
   vtkPolyData* rims = fill->GetOutput(1);

@@ -157,7 +157,7 @@ class Program(unittest.TestCase):
     def test_options_of_the_whole_surface_are_refused_in_pieces(self):
         for way in (["--pieces", "3"], ["--memory", "2G"]):
             for name, one in OPTIONS.items():
-                if one.step == "pieces":
+                if one.step == "pieces" or name == "remove_unused_points":  # given here to keep them, as pieces do
                     continue
                 with self.subTest(way=way, name=name):
                     given = [word for other in one.words.get("needs", "").split(":")[:1] if other
@@ -166,6 +166,9 @@ class Program(unittest.TestCase):
                     needed = DESCRIBED[one.words.get("needs", name).split(":")[0]]
                     is_refused = bool(re.search("needs (the whole|all) .*in memory", said))
                     self.assertEqual(is_refused, not (one.in_pieces and needed.in_pieces), said)
+
+    def test_unused_points_are_not_removed_in_pieces(self):
+        self.assertIn("pieces keep all points", refusal_of("--pieces", "3", "--remove-unused-points"))
 
     def test_properties_that_need_or_exclude_another_are_refused(self):
         for name, one in OPTIONS.items():

@@ -4,6 +4,7 @@
 
 import importlib.util
 import os
+import sys
 import unittest
 
 from in_folder import coordinates
@@ -58,4 +59,4 @@ class Files(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(argv=sys.argv[:1])
