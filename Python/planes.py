@@ -68,9 +68,10 @@ def best_plane(points, ranks=None):
     xyz = sample_of(points, ranks)
     if len(xyz) < 3:
         raise ElevationSurfaceError(f"{argument('plane')}: there are fewer than three finite points")
-    middle = xyz.mean(axis=0)
-    squares, directions = numpy.linalg.eigh(numpy.cov((xyz - middle).T))
-    return Plane(middle, directions[:, 0]), numpy.sqrt(numpy.maximum(squares, 0.0))
+    unit = numpy.abs(xyz).max() or 1.0  # squares of large ones would be infinite
+    middle = (xyz / unit).mean(axis=0)
+    squares, directions = numpy.linalg.eigh(numpy.cov((xyz / unit - middle).T))
+    return Plane(unit * middle, directions[:, 0]), unit * numpy.sqrt(numpy.maximum(squares, 0.0))
 
 
 def wall_note(points, ranks=None):

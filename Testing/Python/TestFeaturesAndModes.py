@@ -22,7 +22,9 @@ FEW = 60  # triangles, of which each rank might not have some
 # How what differs begins, by the remarks of the page.
 REMARKS = {1: "messages", 2: "output 0: points differ", 3: "output 0: points ("}
 # Properties that change no result, which are there to compare, or to be quicker.
-WITHOUT_EFFECT = {("Delaunay", "SearchStrategy")}
+# Where all three filters remove unused points, none of them does it alone.
+WITHOUT_EFFECT = {("Delaunay", "SearchStrategy"), *(
+    ("Fill", of + "RemoveUnusedPoints") for of in ("Delaunay.", "Trim.", ""))}
 EFFECTIVE = set()  # (filter, property) of which a row has shown that it changes something
 FAILURES = []
 
@@ -144,6 +146,8 @@ def check_properties(rows):
         named |= {"SourceData", "SourceConnection"} if any(case.lines for case in cases) else set()
         named |= {"BoundaryData", "BoundaryConnection"} if any(case.rings for case in cases) else set()
         has = outcomes.own_names(make(), "Set")
+        if name == "Fill":
+            has.discard("MaximumEdgeLength")  # the old name of OpenEdgeLength
         values = {word.split("To", 1)[0] for word in has if "To" in word}
         plain = {word for word in has if "To" not in word or word.split("To", 1)[0] not in has}
         check(plain <= named, "%s: no row names %s" % (name, ", ".join(sorted(plain - named))))

@@ -161,7 +161,7 @@ class Formats(InFolder):
                     self.read(wrong, name)
                 except reading.FileError as error:
                     first, *rows = str(error).split("\n")
-                    self.assertTrue(not rows or "choose --columns" in first, str(error))
+                    self.assertTrue(not rows or "--columns" in first, str(error))
 
 
 if __name__ == "__main__":
