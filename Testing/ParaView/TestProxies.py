@@ -23,6 +23,7 @@ OTHER_VALUES = {
         "LatticeMode": "Off",
         "Lattice": [0.0, 0.0, 25.0, 0.0, 0.0, 25.0],
         "LatticeTolerance": 0.05,
+        "RemoveUnusedPoints": 1,
         "NumberOfThreads": 2,
     },
     "TrimOutwardTriangles": {
@@ -31,6 +32,7 @@ OTHER_VALUES = {
         "GridSteps": [5.0, 0.0, 0.0, 5.0],
         "RecoverBoundary": 0,
         "BoundaryEdges": "Straight",
+        "RemoveUnusedPoints": 1,
         "NumberOfThreads": 2,
     },
     "FillElevationHoles": {
@@ -43,6 +45,7 @@ OTHER_VALUES = {
         "Spacing": 0.25,
         "Interpolation": "Thin Plate",
         "InterpolatePointData": 0,
+        "RemoveUnusedPoints": 1,
         "NumberOfThreads": 2,
     },
 }
