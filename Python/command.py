@@ -230,6 +230,7 @@ class Run:
                     options.title,
                     picture_subtitle(result),
                     result.holes,
+                    result.cloud.plane,
                     view=options.view,
                     exaggeration=options.exaggeration,
                     show_errors=options.colours == "error",

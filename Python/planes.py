@@ -36,6 +36,10 @@ class Plane:
         """Data with the plane at z of its middle."""
         return moved(data, (coordinates_of(data) - self.middle) @ self.axes.T + self.middle)
 
+    def from_above(self, data):
+        """Data with x and y along the plane, y upwards, and z off it: as pictures show them."""
+        return moved(data, (coordinates_of(data) - self.middle) @ self.axes.T)
+
     def back(self, data):
         """What levelled() has turned, in its old place."""
         return moved(data, (coordinates_of(data) - self.middle) @ self.axes + self.middle)

@@ -293,6 +293,7 @@ class Reconstruction:
             title,
             picture_subtitle(self),
             self.holes,
+            self.cloud.plane,
             view=view,
             exaggeration=exaggeration,
             show_errors=colours == "error",

@@ -306,12 +306,13 @@ def patches_to_outline(surface):
     return None if flags is None or 2 * numpy.count_nonzero(flags) > len(flags) else flags
 
 
-def draw(surface, path, title, subtitle, holes=None, **options):
+def draw(surface, path, title, subtitle, holes=None, plane=None, **options):
     """Renders the surface into a PNG file; starts a virtual display where there is no screen.
 
     surface   vtkPolyData with triangles; with a cell array HoleId, patches are outlined, unless most
               triangles are patches
     holes     None, or the second output of vtkFillElevationHoles
+    plane     None, or the Plane that the surface is drawn over; colours tell how far off it lies
     view      None, or (bearing, height) of the eye in degrees; height 90 looks straight down
     exaggeration  None, or the factor for z
     progress      None, or a function that is called with the fraction done
@@ -320,11 +321,14 @@ def draw(surface, path, title, subtitle, holes=None, **options):
     100,000 triangles where a software renderer draws; of more than 500,000, only as many are drawn as
     the picture can show.
     """
+    if plane:
+        surface, holes = plane.from_above(surface), plane.from_above(holes) if holes else None
+        subtitle += "   \u00b7   drawn over its best plane"
     with screen_for(path):
         reason = why_not_drawn(surface)
         if reason:
             raise PictureError(path, reason)
-        return render(surface, path, title, subtitle, holes, **options)
+        return render(surface, path, title, subtitle, holes, plane is not None, **options)
 
 
 def render(
@@ -333,6 +337,7 @@ def render(
     title,
     subtitle,
     holes,
+    is_in_plane,
     *,
     view=None,
     exaggeration=None,
@@ -426,14 +431,15 @@ def render(
     if is_cut:
         scales.append("outliers cut: colours of 99 % of the points")
     add_frame(renderer, width, tall, title, subtitle, legend, scales)
-    title = "standard error" if show_errors else "elevation"
+    title = "standard error" if show_errors else "off the plane" if is_in_plane else "elevation"
     add_scalar_bar(renderer, colours, title, width, tall)
     pixels = tall / (2.0 * scale)
     if stretch != 1.0:
         # The scale bar then holds along the strip.
         b = math.radians(bearing)
         pixels *= max(abs(across[0] * math.sin(b) + across[1] * math.cos(b)), 0.05)
-    add_map_signs(renderer, width, pixels, bearing, height, frame.widen)
+    add_map_signs(
+        renderer, width, pixels, bearing, height, frame.widen, "up" if is_in_plane else "N")
 
     save(window, path)
     return {"bearing": bearing, "height": height, "exaggeration": exaggeration}

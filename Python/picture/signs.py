@@ -191,8 +191,8 @@ def add_scalar_bar(renderer, colours, title, width, tall):
     renderer.AddViewProp(bar)
 
 
-def add_map_signs(renderer, width, pixels, bearing, height, widen):
-    """A scale bar that holds across the picture, and an arrow to the north (+y)."""
+def add_map_signs(renderer, width, pixels, bearing, height, widen, name):
+    """A scale bar that holds across the picture, and an arrow towards +y with its name."""
     length = nice_number(0.13 * WIDTH / pixels, (1.0, 2.0, 5.0))
     right = width - RIGHT - 60
     left = right - length * pixels
@@ -214,4 +214,4 @@ def add_map_signs(renderer, width, pixels, bearing, height, widen):
     barbs = [tip - 15 * north + 9 * east, tip, tip - 15 * north - 9 * east]
     add_strokes(renderer, [[tail, tip], barbs])
     label = tip + 18 * north / max(float(numpy.linalg.norm(north)), 1e-6)
-    add_text(renderer, "N", label[0], label[1] - 9, 22, "centre", bold=True)
+    add_text(renderer, name, label[0], label[1] - 9, 22, "centre", bold=True)

@@ -11,7 +11,7 @@ import numpy
 
 import meshes
 from vtkelevationsurface import ElevationSurfaceError, read, reconstruct
-from vtkelevationsurface.clouds import make_points
+from vtkelevationsurface.clouds import coordinates_of, make_points
 from vtkelevationsurface.command import main
 from vtkelevationsurface.planes import wall_note
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -100,6 +100,13 @@ class BestPlane(unittest.TestCase):
         self.assertAlmostEqual(area(result.surface) / inside, 1.0, delta=0.02)
         with self.assertRaisesRegex(ElevationSurfaceError, "plane.*boundary"):
             reconstruct(tilted(level, 90), boundary=ring[:, :2], plane="best")
+
+    def test_pictures_show_how_far_off_the_plane_it_lies(self):
+        level = relief(300)
+        result = reconstruct(tilted(level, 90), plane="best")
+        seen = coordinates_of(result.cloud.plane.from_above(result.surface))
+        self.assertAlmostEqual(numpy.ptp(seen[:, 2]) / numpy.ptp(level[:, 2]), 1.0, delta=0.05)
+        self.assertAlmostEqual(numpy.ptp(seen[:, 1]) / numpy.ptp(level[:, 1]), 1.0, delta=0.05)
 
     def test_what_needs_x_and_y_is_refused(self):
         result = reconstruct(tilted(relief(300), 90), plane="best")
