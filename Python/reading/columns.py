@@ -85,7 +85,7 @@ class Search:
         self.has_times = False
         self.ids = set()  # columns that are so by their values
         self.can_be_chosen, self.advice = advice is None, advice or advice_on_columns()
-        self.first_rows = rows[:SHOWN]
+        self.first_rows, self.rows = rows[:SHOWN], rows
         table = [[number(w) for w in row[:width]] + [math.nan] * (width - len(row)) for row in rows]
         text = numpy.array([[value is None for value in row] for row in table], dtype=bool)
         self.read = numpy.array(
@@ -272,6 +272,8 @@ class Search:
         if len(usable) < self.needed:
             are = "is" if len(usable) == 1 else "are"
             self.ask([], f"{self.needed} columns of numbers are needed, and there {are} {len(usable)}")
+        if not self.names and len(usable) == self.width > 12:
+            self.ask([], f"{self.width} columns of numbers without names may be a grid of elevations; write it as .asc or .npy")
         left, reasons = self.without_others(usable)
         self.decide(self.scored(left))
         chosen = self.indices
@@ -351,7 +353,7 @@ class Search:
             if k == 1 and self.is_grid(x, y) and not self.is_grid(*columns[:2]):
                 place += WEIGHTS["x and y are a grid"]
             readings[x, y, *z] = self.score((x, y, *z)) + place
-            others = columns[k + count :]
+            others = [i for i in columns[k + count :] if numpy.ptp(self.finite(i)) > 0]
             if z and others and self.counts_along(z[0]) and not self.may_count(x, y):
                 readings[x, y, *z] += WEIGHTS["z rises along lines"]
                 for other in others:
@@ -428,10 +430,14 @@ class Search:
                 return found
         return []
 
+    def may_be_place(self, i):
+        """Whether a column may be a line, trace, latitude or longitude beside x and y."""
+        return self.is_whole(i) or self.decimals[i] >= 4 and abs(self.finite(i)).max(initial=0) <= 360
+
     def place_in_grid(self, columns):
-        """The two columns of whole numbers from which two others follow, as line and trace do."""
+        """The two columns from which two others follow, as from line and trace or in degrees."""
         for i, j in zip(columns, columns[1:]):
-            if not all(self.is_whole(k) and numpy.ptp(self.finite(k)) > 0 for k in (i, j)):
+            if not all(self.may_be_place(k) and numpy.ptp(self.finite(k)) > 0 for k in (i, j)):
                 continue
             rest = [k for k in columns if k not in (i, j)]
             for pair in zip(columns, columns[1:]):
@@ -439,7 +445,8 @@ class Search:
                     continue
                 larger = self.size(pair) > self.size([i, j])
                 others = [k for k in rest if k > pair[1]][:1]
-                follow = self.follow_from([i, j], list(pair)) or self.are_rounded(pair, [i, j])
+                whole = self.is_whole(i) and self.is_whole(j)
+                follow = self.follow_from([i, j], list(pair)) or whole and self.are_rounded(pair, [i, j])
                 if larger and others and follow:
                     if not self.follow_from([i, j], [pair[0], *others]):  # as in a plane
                         return [i, j]
@@ -490,13 +497,15 @@ class Search:
         return 1.0 <= min(usual) and max(usual) <= MOST_STEP_OF_LINES
 
     def counts_along(self, i):
-        """Whether whole numbers go one way, in even steps, but where a line begins."""
+        """Whether numbers go one way, in even steps within their rounding, but where a line begins."""
         steps = self.steps(i)
         steps = steps[steps != 0]
-        if not self.is_whole(i) or len(self.finite(i)) < 10 or not len(steps):
+        if len(self.finite(i)) < 10 or not len(steps):
             return False
         one_way = max((steps > 0).mean(), (steps < 0).mean()) >= 0.8
-        return bool(one_way and (abs(steps) == numpy.median(abs(steps))).mean() >= 0.6)
+        rounding = 1.01 * 10.0 ** -self.decimals[i] if self.decimals[i] else 0.0
+        are_even = abs(abs(steps) - numpy.median(abs(steps))) <= rounding
+        return bool(one_way and are_even.mean() >= 0.6)
 
     def always_rises(self, i):
         values = self.finite(i)
@@ -538,7 +547,9 @@ class Search:
         if not small or min(self.decimals[x], self.decimals[y]) < 4:
             return False
         wide = max(numpy.ptp(self.finite(x)), numpy.ptp(self.finite(y)))
-        return self.has_times or ys.max() > 90 and wide < 0.1 * numpy.ptp(self.finite(z))
+        dated = any(
+            re.search(r"\d{4}-\d\d-\d\d|\d:\d\d", word) for row in self.first_rows for word in row)
+        return self.has_times or dated or ys.max() > 90 and wide < 0.1 * numpy.ptp(self.finite(z))
 
     def is_utm(self, x, y):
         """Whether columns are easting and northing of UTM by their sizes, in metres."""
@@ -551,6 +562,13 @@ class Search:
 
     def look_at_values(self):
         x, y = self.indices[:2]
+        for i in (x + 1, y + 1):  # behind a latitude or longitude without its sign
+            letters = {row[i].strip().upper() for row in self.rows if i < len(row)} - {""}
+            if letters and letters <= set("NSEW") and letters & set("SW"):
+                raise FileError(
+                    f"{self.path}: column {i + 1} has {' and '.join(sorted(letters))} for the signs of the "
+                    "numbers before it; export signed decimals"
+                )
         xs, ys = self.finite(x), self.finite(y)
         if not len(xs) or not len(ys):
             return

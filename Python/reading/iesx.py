@@ -12,10 +12,10 @@ from ..progress import told_lines
 from ..selecting import words_of
 
 NUMBER = rb"\s*([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?|[-+]?\d+\.)"
-INTEGER = rb"\s+(-?\d+)\b"
+INTEGER = rb"\s+(-?\d+)(?![\d.])"
 # x, y, segment, a code and z by profile's type, 1 for a horizon; a fault boundary, 3, has no code. Numbers may
 # touch where their columns are those of IESX.
-IN_COLUMNS = re.compile(rb"(.{16})(.{16})(.{3})(.{3})" + NUMBER)
+IN_COLUMNS = re.compile(rb"(.{16})(.{16})(..\d)(..\d)" + NUMBER)
 ROWS = {
     "1": (IN_COLUMNS, re.compile(NUMBER + NUMBER + INTEGER + INTEGER + NUMBER)),
     "3": (re.compile(NUMBER + NUMBER + INTEGER + NUMBER),),

@@ -136,6 +136,8 @@ NO_TABLES = (
     (r"dsaa\b", SURFER_GRID),
     (r"fsasci\b", "a CPS-3 grid"),
     (r"gocad\b", "a GOCAD file"),
+    (r"h\d{4}[a-z].*\n(.*\n)*?[a-z]", "a file of UKOOA P1/90"),
+    (r"[^,\n]*,\s*\d{1,2}-[a-z]{3}-\d{2}.*\n\s*0,\s*0\.0+,", "a Surpac string file, with y before x"),
     (r"\*?11\d{4}[+-]", "a Leica GSI file"),
     (r"\d+\n\d+\n(\S+ +\S+ +\S+ *\n){4}(\S+ +\S+ +\S+ +\S+ *\n){4}", "a Leica PTX scan"),
     (r"<[?!a-z]", "XML or HTML"),

@@ -114,7 +114,10 @@ def check_thousands(path, layout, sample):
     """Refuses blanks between thousands: most lines are such numbers, parted by another sign."""
     number = r"\s*[-+]?\d{1,3}( \d{3})*([.,]\d*)?\s*"
     line = re.compile(rf"(?=.*\d \d{{3}}){number}(?P<sign>[\t;|]){number}((?P=sign){number})*")
-    if not layout.separator and 2 * sum(bool(line.fullmatch(one)) for one in sample) > len(sample):
+    blanks = re.compile(r"(?=.*\b\d{1,3}( \d{3}){2}[.,]\d)\s*([-+]?\d{1,3}( \d{3})*[.,]\d+\s*){3,}")
+    most = sum(bool(line.fullmatch(one)) for one in sample) / max(len(sample), 1) > 0.5
+    most = most or sum(bool(blanks.fullmatch(one)) for one in sample) / max(len(sample), 1) > 0.9
+    if most and not layout.separator:
         raise FileError(
             f"{path}: numbers with {NO_NUMBERS[0][1]} cannot be read; export plain decimals"
         )

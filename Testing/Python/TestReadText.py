@@ -881,7 +881,7 @@ class Parsing(Tables):
         self.assertIn("line 3 has 4 columns where others have 3", " ".join(cloud.notes))
 
     def test_lines_that_lack_a_word_between_blanks_are_an_error(self):
-        rows = [f"{i}.5 {i * i % 7}.25 {i}.125 120.5\n" for i in range(1, 41)]
+        rows = [f"{i}.5 {i * i % 7}.25 {i * i % 11}.125 120.5\n" for i in range(1, 41)]
         for head in ("X Y Z Q\n", ""):
             for short in ("6.5 1.25      120.5\n", "6.5 1.25 3.125\n"):
                 text = head + "".join([*rows, short, *rows, "1 2 3 4 5\n"])
