@@ -249,7 +249,7 @@ public:
    * Whether points without a triangle are removed from the output, and the point array
    * OriginalPointIds (vtkIdTypeArray) is added: the input's global ids, or else the places of points
    * in it (on several ranks, in the points of rank after rank; in a composite, in the block); -1 for
-   * points that constraints add. An array of this name that the input has stays, and goes on: so it
+   * points that constraints add. A vtkIdTypeArray of this name that the input has stays, and goes on: so it
    * names the points of the first filter's input. UnusedPointIds are such ids, too. Off (default):
    * all points of the input are in the output.
    */

@@ -9,6 +9,8 @@
 
 import pyvista
 from pyvista.core.utilities.reader_registry import LocalFileRequiredError
+from vtkmodules.vtkFiltersCore import vtkTriangleFilter
+from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 
 from . import reading, reconstruction, writing
 
@@ -27,11 +29,21 @@ class ElevationSurface:
 
 def read_points(path, **options):
     """The points of a file, as read() reads them, with their arrays."""
+    path = str(path)
     if "://" in path:
         raise LocalFileRequiredError
     return pyvista.wrap(reading.read(path, **options).points)
 
 
 def write_triangles(surface, path):
-    """Writes a mesh of triangles in the format of the suffix."""
-    writing.write_surface(surface, path)
+    """Writes the triangles and polygons of a mesh in the format of the suffix."""
+    faces = vtkGeometryFilter()
+    faces.SetInputData(surface)
+    triangles = vtkTriangleFilter()
+    triangles.PassVertsOff()
+    triangles.PassLinesOff()
+    triangles.SetInputConnection(faces.GetOutputPort())
+    triangles.Update()
+    if not triangles.GetOutput().GetNumberOfPolys():
+        raise ValueError(f"{path}: the mesh has no triangles to write")
+    writing.write_surface(triangles.GetOutput(), path)

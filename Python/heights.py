@@ -24,7 +24,9 @@ import shlex
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
+from .clouds import marked_points
 from .messages import ElevationSurfaceError, counted
 from .names import option
 from .properties import DUPLICATES
@@ -206,6 +208,9 @@ def check_heights(cloud, policy=None):
     if not cloud.points.GetNumberOfPoints():
         return None, None
     xyz = vtk_to_numpy(cloud.points.GetPoints().GetData())
+    hidden = marked_points(cloud.points, vtkDataSetAttributes.HIDDENPOINT)
+    if hidden.any():
+        xyz = numpy.where(hidden[:, None], numpy.nan, xyz)
     several = several_heights(xyz)
     if several is None:
         return None, None

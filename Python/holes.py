@@ -19,12 +19,12 @@ STATUS = {
 def holes_of(result):
     """The part of the report on holes."""
     report = report_of_holes(
-        result.holes, result.bridged, result.fill, result.why_opened, result.ranks
+        result.holes, result.bridged, result.fill, result.why_opened, result.ranks, result.cloud.plane
     )
     return {**report, "open_edge_length": result.open_edge_length}
 
 
-def report_of_holes(outlines, bridged, fill, why_opened=None, ranks=None):
+def report_of_holes(outlines, bridged, fill, why_opened=None, ranks=None, plane=None):
     """The part of the report on holes.
 
     outlines    vtkPolyData, with the report of the filter as cell data
@@ -32,6 +32,7 @@ def report_of_holes(outlines, bridged, fill, why_opened=None, ranks=None):
     fill        the filter
     why_opened  where the length from that of the filter is from
     ranks       the controller of those that have some outlines each, or None
+    plane       the Plane in which sizes are measured, or None: x,y
 
     found, filled  counts of holes, and of voids that triangles bridged and that were filled; a hole
                    that the boundary has cut out is found only if it is filled
@@ -41,7 +42,10 @@ def report_of_holes(outlines, bridged, fill, why_opened=None, ranks=None):
     names = ("HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints",
              "Interpolation")
     columns = [column_of(outlines, name).tolist() for name in names]
-    rows = zip(*columns, bridged.tolist(), *hole_places(outlines))
+    sizes, *places = hole_places(outlines)
+    if plane:
+        sizes = hole_places(plane.levelled(outlines))[0]
+    rows = zip(*columns, bridged.tolist(), sizes, *places)
     rows = together(ranks, lambda: list(rows))
     holes = [
         {
@@ -129,7 +133,8 @@ class BridgedVoids:
 def complex_places(data):
     """x + iy of the points of a data set."""
     x, y = coordinates_of(data)[:, :2].astype("f8").T
-    return x + 1j * y
+    with numpy.errstate(invalid="ignore"):
+        return x + 1j * y
 
 
 def hole_places(lines):

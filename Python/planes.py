@@ -3,8 +3,9 @@
 """Clouds that lie in a plane other than x,y, on a wall say: how they are noticed, and turned."""
 
 import numpy
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
-from .clouds import bare_lines, coordinates_of, make_points
+from .clouds import bare_lines, coordinates_of, heights_of, make_points, marked_points
 from .messages import ElevationSurfaceError
 from .names import argument, option
 from .ranks import all_values
@@ -16,7 +17,7 @@ STEEP = 60.0  # degrees
 THIN = 0.1
 LEAST_WIDTH = 0.2  # of the plane's length
 LEAST_POINTS = 20
-OUTLYING = 3.0  # spans of the middle half beside it: heights of nulls and blunders
+OUTLYING = 3.0  # spans of the middle 96 % of x, y or z beside it: nulls and blunders
 
 
 class Plane:
@@ -55,16 +56,18 @@ def moved(data, coordinates):
 
 
 def sample_of(points, ranks=None):
-    """(n, 3), some finite points of all ranks, without heights of nulls and blunders."""
+    """(n, 3), some finite points of all ranks, without hidden ones, nulls and blunders."""
     xyz = coordinates_of(points)
+    hidden = marked_points(points, vtkDataSetAttributes.HIDDENPOINT)
+    xyz = xyz[~hidden] if hidden.any() else xyz
     xyz = xyz[:: max(1, len(xyz) // MOST_SAMPLES)].astype("f8")
     xyz = xyz[numpy.isfinite(xyz).all(axis=1)]
     xyz = all_values(ranks, xyz.ravel(), "f8").reshape(-1, 3)
     if not len(xyz):
         return xyz
-    low, high = numpy.quantile(xyz[:, 2], (0.25, 0.75))
+    low, high = numpy.quantile(xyz, (0.02, 0.98), axis=0)
     reach = OUTLYING * (high - low)
-    return xyz[(xyz[:, 2] >= low - reach) & (xyz[:, 2] <= high + reach)]
+    return xyz[((xyz >= low - reach) & (xyz <= high + reach)).all(axis=1)]
 
 
 def best_plane(points, ranks=None):
@@ -94,24 +97,25 @@ def wall_note(points, ranks=None):
 
 
 def in_plane(cloud, lines, given, ranks=None):
-    """(Cloud, lines) as they are reconstructed: with plane=best, turned into their best plane."""
+    """(Cloud, lines) as they are reconstructed, with plane=best turned into their best plane; [notes]."""
     if not given.get("plane"):
         note = wall_note(cloud.points, ranks)
-        if note:
-            cloud = cloud.copy()
-            cloud.notes.append(note)
-        return cloud, lines
+        return cloud, lines, [note] if note else []
+    low, high = heights_of(cloud.points, ranks) or (0.0, 0.0)
     for name, data in lines.items():
-        if bare_lines(data).any():
+        is_zero = not coordinates_of(data)[:, 2].any() and (low > 0.0 or high < 0.0)
+        if bare_lines(data).any() or is_zero and not given.get("faults_z"):
             raise ElevationSurfaceError(
                 f"{argument('plane')} best needs lines with z, which the {name} lacks"
                 if name == "boundary" else
                 f"{argument('plane')} best needs lines with z, which the {name} lack", name)
     turned = cloud.copy()
     turned.grid = turned.pixels = None
-    turned.plane = best_plane(cloud.points, ranks)[0]
+    turned.plane, (_, across, along) = best_plane(cloud.points, ranks)
+    if not across > 1e-6 * along:
+        raise ElevationSurfaceError(f"{argument('plane')}: all finite points lie on one line")
     turned.points = turned.plane.levelled(cloud.points)
-    return turned, {name: turned.plane.levelled(data) for name, data in lines.items()}
+    return turned, {name: turned.plane.levelled(data) for name, data in lines.items()}, []
 
 
 def turn_back(result):

@@ -141,7 +141,8 @@ class Reconstruction:
     ranks     the controller of those that have a part of it each, or None. Counts and the report are
               those of all
     surface   vtkPolyData with triangles, without points that these do not use: its point array
-              OriginalPointIds has the numbers of points in the input, -1 of added ones
+              OriginalPointIds has the numbers of points in the input (those of an array of this
+              name, or else global ids, if it has them), -1 of added ones
     complete  the same with all points, those of the input first; surface itself with
               remove_unused_points=False
     boundary  vtkPolyData, the rings that bound the surface; None without trimming
@@ -365,11 +366,11 @@ def reconstruct_cloud(cloud, lines, names, given, *, strict=False, ranks=None, *
     lines, names  as fitted() takes them
     """
     check_spacing(least_reach(cloud.points, ranks), given.get("spacing", 0.0))
-    cloud, lines = in_plane(cloud, lines, given, ranks)
+    cloud, lines, wall = in_plane(cloud, lines, given, ranks)
     lines, notes = fitted(cloud, lines, names, given, strict, ranks)
     boundary, faults = lines.get("boundary"), lines.get("faults")
     result = run_chain(cloud, boundary, faults, given, strict=strict, ranks=ranks, **options)
-    result.notes[:0] = notes
+    result.notes[:0] = wall + notes
     return result
 
 

@@ -112,7 +112,7 @@ def without_unused(ranks, surface, last):
     """
     used, data = used_points(ranks, surface), surface.GetPointData()
     original, ids = data.GetArray(ORIGINAL_IDS), ids_of(ranks, surface)
-    if original is None:
+    if not isinstance(original, vtkIdTypeArray) or original.GetNumberOfComponents() != 1:
         given = data.GetGlobalIds()
         numbers = numpy.where(ids <= last, ids if given is None else vtk_to_numpy(given), -1)
         original = numpy_to_vtkIdTypeArray(numbers, deep=True)

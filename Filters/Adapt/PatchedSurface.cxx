@@ -167,7 +167,7 @@ Index NextHole(vtkPolyData* input)
   Index next = 0;
   for (vtkIdType i = 0; holes && i < holes->GetNumberOfValues(); ++i)
   {
-    const vtkIdType hole = std::min<vtkIdType>(holes->GetValue(i), MaximumNumberOfPoints);
+    const vtkIdType hole = std::clamp<vtkIdType>(holes->GetValue(i), -1, MaximumNumberOfPoints);
     next = std::max(next, static_cast<Index>(hole + 1));
   }
   return next;

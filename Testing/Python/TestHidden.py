@@ -57,6 +57,14 @@ class Points(unittest.TestCase):
         self.assertEqual(delaunay.GetNumberOfNonFinitePoints(), 0)
         self.assertEqual(output.GetPoint(BLANK[0])[2], -9999)
 
+    def test_hidden_ones_above_others_are_no_second_surface(self):
+        marks = numpy.repeat(numpy.array((0, HIDDEN_POINT), "u1"), len(XYZ))
+        above = XYZ + (0.0, 0.0, 50.0)
+        both = meshes.cloud(numpy.vstack((XYZ, above)), arrays=[(meshes.GHOSTS, marks)])
+        result = reconstruct(both, fill=False)
+        self.assertEqual(result.surface.GetNumberOfPolys(), 2 * (SIDE - 1) ** 2)
+        self.assertFalse([note for note in result.report["notes"] if "several heights" in note])
+
     def test_reconstruct_leaves_them_out(self):
         result = reconstruct(marked())
         self.assertGreaterEqual(result.surface.GetBounds()[4], 0.0)

@@ -13,7 +13,7 @@ import meshes
 from vtkelevationsurface import ElevationSurfaceError, read, reconstruct
 from vtkelevationsurface.clouds import coordinates_of, make_points
 from vtkelevationsurface.command import main
-from vtkelevationsurface.planes import wall_note
+from vtkelevationsurface.planes import best_plane, wall_note
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Data")
@@ -75,8 +75,33 @@ class Walls(unittest.TestCase):
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             result = reconstruct(tilted(relief(), 80))
-        self.assertTrue(any("lie on a wall" in note for note in result.report["notes"]))
+        self.assertTrue(any("lie on a wall" in note for note in result.notes))
+        self.assertEqual(sum("lie on a wall" in note for note in result.report["notes"]), 1)
         del caught
+
+    def test_the_plane_is_that_of_most_points(self):
+        wall = tilted(relief(1000), 90)
+        foot = wall[:300] * (1.0, 1.0, 0.0)
+        far = wall + (5e5, 5e6, 0.0)
+        far[7] = 0.0
+        blunder = wall.copy()
+        blunder[7, 0] = 1e4
+        right = area(reconstruct(wall, plane="best", trim=False, fill=False).surface)
+        for name, cloud in (("null", far), ("blunder", blunder), ("foot", numpy.vstack((wall, foot)))):
+            with self.subTest(name=name):
+                plane, _ = best_plane(make_points(cloud))
+                steep = numpy.degrees(numpy.arccos(plane.axes[2][2]))
+                self.assertGreater(steep, 75.0)
+        self.assertGreater(right, 7000.0)
+
+    def test_points_on_a_line_and_lines_without_heights_are_refused(self):
+        line = numpy.arange(9.0)[:, None] * (1.0, 2.0, 3.0) + (5e5, 5e6, 0.0)
+        with self.assertRaisesRegex(ElevationSurfaceError, "one line"):
+            reconstruct(line, plane="best")
+        slope = relief() + (0.0, 0.0, 200.0)
+        ring = numpy.array([(20, 20, 0), (80, 25, 0), (75, 80, 0), (25, 70, 0)], "f8")
+        with self.assertRaisesRegex(ElevationSurfaceError, "plane.*boundary"):
+            reconstruct(slope, boundary=ring, plane="best")
 
 
 class BestPlane(unittest.TestCase):
