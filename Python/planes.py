@@ -17,7 +17,7 @@ STEEP = 60.0  # degrees
 THIN = 0.1
 LEAST_WIDTH = 0.2  # of the plane's length
 LEAST_POINTS = 20
-OUTLYING = 3.0  # spans of the middle 96 % of x, y or z beside it: nulls and blunders
+OUTLYING = 3.0  # spans of the middle 80 % of x, y or z beside it: nulls and blunders
 
 
 class Plane:
@@ -65,7 +65,7 @@ def sample_of(points, ranks=None):
     xyz = all_values(ranks, xyz.ravel(), "f8").reshape(-1, 3)
     if not len(xyz):
         return xyz
-    low, high = numpy.quantile(xyz, (0.02, 0.98), axis=0)
+    low, high = numpy.quantile(xyz, (0.1, 0.9), axis=0)
     reach = OUTLYING * (high - low)
     return xyz[((xyz >= low - reach) & (xyz <= high + reach)).all(axis=1)]
 
