@@ -277,6 +277,7 @@ int vtkGridDelaunay2D::RequestData(
     this, this->Controller, request, inputVector, outputVector, this->Messages);
   call.Second = "constraints";
   call.CleanedOutputs = this->RemoveUnusedPoints ? 1 : 0;
+  call.Precision = this->OutputPointsPrecision;
   call.ListsUnused = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
     &this->NumberOfRedundantPoints, &this->NumberOfConstraintCrossings, &this->NumberOfAddedPoints,
@@ -393,6 +394,7 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LatticeTolerance: " << this->LatticeTolerance << "\n";
   os << indent << "LatticeFound: " << this->GetLatticeFound() << "\n";
   os << indent << "RemoveUnusedPoints: " << (this->RemoveUnusedPoints ? "On" : "Off") << "\n";
+  os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "NumberOfDuplicatePoints: " << this->NumberOfDuplicatePoints << "\n";
