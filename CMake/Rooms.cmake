@@ -107,6 +107,7 @@ set(es_Adapt
   LimitAdvice
   MeshConversion
   PatchedSurface
+  PointsOnWall
   PointsPrecision
   ReportMessages
   Requests

@@ -114,7 +114,7 @@ spacing                           | Spacing=0.5                | coast and lakes
 point data not interpolated       | InterpolatePointData=False | coast and lakes              | s  s  s  s  s  s  s
 holes of an edge limit            | Delaunay.MaximumEdgeLength=2.2 | points                       | s  s  s  s  s  s  s
 points in single precision        | OutputPointsPrecision=0    | coast and lakes              | s  s  s  s  r  r  r
-points of floats, in double       | OutputPointsPrecision=1, Delaunay.OutputPointsPrecision=1| points + float               | s  s  s  s  r  r  r
+points of floats, in double        | OutputPointsPrecision=1, Delaunay.MaximumEdgeLength=2.2 | points + float               | s  s  s  s  r  r  r
 unused points removed, by all filters | RemoveUnusedPoints=True, Trim.RemoveUnusedPoints=True, Delaunay.RemoveUnusedPoints=True | coast and lakes + global ids | s  s  s  d2 r  r  r
 points of floats                  |                            | coast and lakes + float      | s  s  s  s  s  s  s
 point data: float, double         |                            | coast and lakes + float array + double array | s  s  s  s  s  s  s

@@ -95,6 +95,10 @@ ELEVATION_SENTENCE(LinesNotSettled,
 /** @} */
 
 /** @name Of the triangulation @{ */
+ELEVATION_SENTENCE(PointsOnWall,
+  "The points lie on a wall: their best plane is {degrees} degrees steep, and they scatter {off} "
+  "off it and {across} along it. z is taken as the height above x,y all the same. Turn the points "
+  "level first, as plane=\"best\" of reconstruct() in Python, --plane best and Plane do.");
 ELEVATION_SENTENCE(NoTriangle,
   "No triangle was made: the {points} input points are fewer than three distinct finite points, "
   "or all on one line.");
