@@ -28,16 +28,12 @@ class Plane:
         self.middle, self.axes = middle, numpy.array([first, numpy.cross(normal, first), normal])
 
     def levelled(self, data):
-        """Data with the plane at z of its middle."""
-        return moved(data, (coordinates_of(data) - self.middle) @ self.axes.T + self.middle)
-
-    def from_above(self, data):
-        """Data with x and y along the plane, y upwards, and z off it: as pictures show them."""
+        """Data with x and y along the plane, y upwards, and z off it."""
         return moved(data, (coordinates_of(data) - self.middle) @ self.axes.T)
 
     def back(self, data):
         """What levelled() has turned, in its old place."""
-        return moved(data, (coordinates_of(data) - self.middle) @ self.axes + self.middle)
+        return moved(data, coordinates_of(data) @ self.axes + self.middle)
 
 
 def moved(data, coordinates):

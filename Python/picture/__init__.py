@@ -322,7 +322,7 @@ def draw(surface, path, title, subtitle, holes=None, plane=None, **options):
     the picture can show.
     """
     if plane:
-        surface, holes = plane.from_above(surface), plane.from_above(holes) if holes else None
+        surface, holes = plane.levelled(surface), plane.levelled(holes) if holes else None
         subtitle += "   \u00b7   drawn over its best plane"
     with screen_for(path):
         reason = why_not_drawn(surface)

@@ -144,7 +144,7 @@ class BestPlane(unittest.TestCase):
     def test_pictures_show_how_far_off_the_plane_it_lies(self):
         level = relief(300)
         result = reconstruct(tilted(level, 90), plane="best")
-        seen = coordinates_of(result.cloud.plane.from_above(result.surface))
+        seen = coordinates_of(result.cloud.plane.levelled(result.surface))
         self.assertAlmostEqual(numpy.ptp(seen[:, 2]) / numpy.ptp(level[:, 2]), 1.0, delta=0.05)
         self.assertAlmostEqual(numpy.ptp(seen[:, 1]) / numpy.ptp(level[:, 1]), 1.0, delta=0.05)
 
