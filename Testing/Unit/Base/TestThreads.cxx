@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Kernel/Base/Memory.h"
 #include "Kernel/Base/Threads.h"
 
 #include "WorkOf.h"
@@ -8,6 +9,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -214,3 +217,28 @@ TEST(Parallel, GoesOnInRoundsUntilNothingIsLeft)
     }
   }
 }
+
+TEST(Parallel, WithOneThreadIsALoopThatEndsAtTheFirstFailure)
+{
+  std::vector<Index> order;
+  const auto failAtTwo = [&order](Index piece) {
+    order.push_back(piece);
+    if (piece == 2)
+    {
+      throw std::runtime_error("2");
+    }
+  };
+  EXPECT_THROW(ForEachPiece(5, 1, failAtTwo), std::runtime_error);
+  EXPECT_EQ(order, (std::vector<Index>{ 0, 1, 2 }));
+}
+
+#ifdef MADV_HUGEPAGE
+TEST(Memory, OfALargeBlockBeginsAtALargePage)
+{
+  constexpr std::size_t largePage = std::size_t(1) << 21;
+  void* const memory = Allocate(2 * largePage);
+  ASSERT_NE(memory, nullptr);
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory) % largePage, 0u);
+  std::free(memory);
+}
+#endif

@@ -325,3 +325,19 @@ TEST(Trials, OfAPartOfTheSurfaceAreThoseOfTheWholeOrTellThatTheyNeedMore)
   EXPECT_GT(wentBeyond, 2);
   EXPECT_GT(wereAlike, 2);
 }
+
+TEST(Trials, OnALongRimKnowAPlane)
+{
+  // More boundary points than centres of the spline: what it misses there is predicted besides, which
+  // on a plane is nothing.
+  const Mesh mesh = Sheet(140, Disc(70, 70, 55));
+  const Elevation plane = [](const Point2& p) { return 100.0 + 3.0 * p.X - 2.0 * p.Y; };
+  for (const Interpolation method : { Interpolation::ThinPlate, Interpolation::Adaptive })
+  {
+    const Outcome run = Fill(mesh, plane, method);
+    ASSERT_GT(run.Patches.Reports[0].NumberOfEdges, 400);
+    const std::vector<double>& errors = run.Patches.StandardErrors;
+    ASSERT_FALSE(errors.empty());
+    EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 1e-6) << static_cast<int>(method);
+  }
+}

@@ -326,6 +326,21 @@ TEST(ConstrainedDelaunay, CrossingsAreSplitAndTakeTheElevationOfTheFirstLine)
   ExpectRules(cloud, constrained);
 }
 
+TEST(ConstrainedDelaunay, ACrossingOfALineAcrossTheRangeOfDoubleHasAnElevation)
+{
+  Cloud cloud;
+  for (const auto& p : { std::array<double, 2>{ -9, -9 }, { 9, -9 }, { 9, 9 }, { -9, 9 } })
+  {
+    cloud.Add(p[0], p[1]);
+  }
+  Lines lines;
+  lines.AddPoints({ { -2, 0, -1.5e308 }, { 6, 0, 1.5e308 } }); // whose difference is infinite
+  lines.AddPoints({ { 4, -3, 0 }, { 4, 3, 0 } });
+  const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
+  ASSERT_EQ(constrained.Added.size(), 5u);
+  EXPECT_DOUBLE_EQ(constrained.Added[4].Elevation, 0.75e308);
+}
+
 TEST(ConstrainedDelaunay, ACrossingAtAnInputPointIsThatPoint)
 {
   Cloud cloud = Square(4);
