@@ -169,3 +169,13 @@ TEST(Cuts, OfNoPointsAreThere)
     EXPECT_TRUE(Has(cuts.CellOf(owner, owner + 1), { x, x }));
   }
 }
+
+TEST(Cuts, AreAsNearToTheMiddleAsEqualCoordinatesAllow)
+{
+  std::vector<Point2> sample(48, Point2{ 0.0, 0.0 });
+  sample.resize(88, Point2{ 1.0, 0.0 });
+  sample.resize(100, Point2{ 2.0, 0.0 });
+  const Cuts cuts(sample, 2);
+  EXPECT_EQ(cuts.OwnerOf({ 0.0, 0.0 }), 0);
+  EXPECT_EQ(cuts.OwnerOf({ 1.0, 0.0 }), 1);
+}
