@@ -51,6 +51,7 @@ from .properties import PROPERTIES, checked
 from .ranks import agreed, controller_of, shared, together
 from .reading import read, read_boundary, read_faults
 from .reconstruction import NAMES, reconstruct_cloud
+from .relief import exaggeration_of_points, exaggeration_of_surfaces
 from .report import crs_name
 from .spreading import gather_points
 
@@ -74,6 +75,7 @@ class ElevationPoints(ReportingAlgorithm):
     def __init__(self):
         super().__init__(0, 1)
         self._file, self._given = "", {}
+        self._exaggeration = 1.0
 
     def SetFileName(self, name):
         self.change("_file", name or "")
@@ -84,6 +86,10 @@ class ElevationPoints(ReportingAlgorithm):
     def GetRecognised(self):
         """What was found out about the file, one line each."""
         return self._text
+
+    def GetVerticalExaggeration(self):
+        """The factor for z with which the relief of the points is seen."""
+        return self._exaggeration
 
     def lines(self, contents):
         """The boundary or the faults of the file. Raises ValueError for options of points."""
@@ -131,6 +137,7 @@ class ElevationPoints(ReportingAlgorithm):
             finite_points(cloud)
             self.reading(0.95)
             fill_points(output, cloud)
+            self._exaggeration = exaggeration_of_points(output)
             told = [f"{self._file}: {counted(output.GetNumberOfPoints(), 'point')}"]
             lost = cloud.left_out.items()
             told += [f"{of_reason(count, reason)} left out" for reason, count in lost]
@@ -203,11 +210,15 @@ class ReconstructElevationSurface(ReportingAlgorithm):
 
     def __init__(self):
         super().__init__(3, 4)
-        self._given = {}
+        self._given, self._exaggeration = {}, 1.0
 
     def GetReport(self):
         """What became of every point and hole, one line each."""
         return self._text
+
+    def GetVerticalExaggeration(self):
+        """The factor for z with which the relief of the surface is seen; 1 where it is over a plane."""
+        return self._exaggeration
 
     # -- the pipeline
 
@@ -249,6 +260,8 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         results = {}
         reports = self.reconstruct_surfaces(surfaces, lines, results)
         reports = once(together(controller, lambda: reports))
+        seen = [result.surface for result in results.values() if not result.cloud.plane]
+        self._exaggeration = exaggeration_of_surfaces(seen, controller)
         self.put(data, parts, results, outputs)
         self._text = report_text(reports)
         if controller and controller.GetLocalProcessId() > 0:
@@ -279,7 +292,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         properties = {name: given[name] for name in given if name in PROPERTIES}
         properties = checked(properties, argument)
         options = ReadOptions(**read_options(given))
-        if any(words_of(data, CONTENTS)[:1] == ["boundary"] for data in surface.data):
+        if any(words_of(data.GetFieldData(), CONTENTS)[:1] == ["boundary"] for data in surface.data):
             raise ElevationSurfaceError(
                 "the input is a boundary, which has no elevations; choose it as Boundary, or set "
                 "Contents to Points where the file was opened"
@@ -338,7 +351,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
 
 def has_failed_reader(data):
     """Whether ElevationPoints has left this empty, and reported why."""
-    return words_of(data, CONTENTS) == [NOTHING]
+    return words_of(data.GetFieldData(), CONTENTS) == [NOTHING]
 
 
 def taken(one, value, place):

@@ -21,7 +21,8 @@ def recognised(points, ranks=None):
     ranks  the controller of those that have some of the points each, or None
     """
     count = total(ranks, points.GetNumberOfPoints())
-    words = together(ranks, lambda: [[words_of(points, name) for name in (RECOGNISED, CONTENTS)]])
+    told = points.GetFieldData()
+    words = together(ranks, lambda: [[words_of(told, name) for name in (RECOGNISED, CONTENTS)]])
     lines, contents = next((pair for pair in words if pair[0]), ([], []))
     if lines and contents[1:] != [str(count)]:
         lines[0] += f"; this surface is of {counted(count, 'point')}"
