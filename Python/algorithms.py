@@ -7,6 +7,7 @@ reconstruct() makes of it. Both tell what they have done as text, and an error i
 """
 
 import dataclasses
+import math
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -68,20 +69,28 @@ class ElevationPoints(ReportingAlgorithm):
     Options are those of read(), as text: empty is the default. The output is vtkPolyData with a
     vertex for each point and the point array Elevation. Its field array Recognised tells what the
     file is, which columns were taken, and what was left out; GetRecognised() gives the same text.
+    Several files are time steps, 0, 1 and so on.
     """
 
     TITLE = "Elevation Points"
 
     def __init__(self):
         super().__init__(0, 1)
-        self._file, self._given = "", {}
+        self._files, self._file, self._given = [], "", {}
         self._exaggeration = 1.0
 
     def SetFileName(self, name):
-        self.change("_file", name or "")
+        self.change("_files", [name] if name else [])
+
+    def AddFileName(self, name):
+        self.change("_files", self._files + [name])
+
+    def ClearFileNames(self):
+        self.change("_files", [])
 
     def GetFileName(self):
-        return self._file
+        """The file of the last time step that was read; of one file, that."""
+        return self._file if self._file in self._files else "".join(self._files[:1])
 
     def GetRecognised(self):
         """What was found out about the file, one line each."""
@@ -119,13 +128,34 @@ class ElevationPoints(ReportingAlgorithm):
         set_nothing(vtkPolyData.GetData(outputs))
         return result
 
+    def RequestInformation(self, request, inInfo, outInfo):
+        information, keys = outInfo.GetInformationObject(0), vtkStreamingDemandDrivenPipeline
+        for key in (keys.TIME_STEPS(), keys.TIME_RANGE()):
+            information.Remove(key)
+        last = len(self._files) - 1
+        if last > 0:
+            information.Set(keys.TIME_STEPS(), [float(i) for i in range(last + 1)], last + 1)
+            information.Set(keys.TIME_RANGE(), [0.0, float(last)], 2)
+        return 1
+
+    def choose_file(self, information, output):
+        """Chooses the file of the time that is asked for: the last one that has begun."""
+        last, keys = len(self._files) - 1, vtkStreamingDemandDrivenPipeline
+        step = 0
+        if last > 0 and information.Has(keys.UPDATE_TIME_STEP()):
+            step = min(max(math.floor(information.Get(keys.UPDATE_TIME_STEP())), 0), last)
+        if last > 0:
+            output.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), float(step))
+        self._file = self._files[step]
+
     def read_into(self, output, outputs):
         """Returns the lines to show."""
         information = outputs.GetInformationObject(0)
         if information.Get(vtkStreamingDemandDrivenPipeline.UPDATE_PIECE_NUMBER()):
             return []  # one rank has it all
-        if not self._file:
+        if not self._files:
             raise ValueError("no file is chosen")
+        self.choose_file(information, output)
         contents = self._given.get("contents") or "points"
         if contents != "points":
             output.ShallowCopy(self.lines(contents))
