@@ -240,11 +240,23 @@ class ReconstructElevationSurface(ReportingAlgorithm):
 
     def __init__(self):
         super().__init__(3, 4)
-        self._given, self._exaggeration = {}, 1.0
+        self._given, self._exaggeration, self._chosen = {}, 1.0, {}
 
     def GetReport(self):
         """What became of every point and hole, one line each."""
         return self._text
+
+    def GetEffectiveGapTolerance(self):
+        """The gap tolerance that was used, of the first block; 0 with a boundary that is given."""
+        return self._chosen.get("GapTolerance", 0.0)
+
+    def GetEffectiveOpenEdgeLength(self):
+        """The open edge length that was used, of the first block; 0: none."""
+        return self._chosen.get("OpenEdgeLength", 0.0)
+
+    def GetEffectiveSpacing(self):
+        """The mean distance of the new points of the first block; 0: there is none."""
+        return self._chosen.get("Spacing", 0.0)
 
     def GetVerticalExaggeration(self):
         """The factor for z with which the relief of the surface is seen; 1 where it is over a plane."""
@@ -294,6 +306,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         self._exaggeration = exaggeration_of_surfaces(seen, controller)
         self.put(data, parts, results, outputs)
         self._text = report_text(reports)
+        self._chosen = next((one["chosen"] for one in reports if "chosen" in one), {})
         if controller and controller.GetLocalProcessId() > 0:
             return []  # the first rank tells of all
         return self.tell(reports, any(has_failed_reader(part.data) for part in parts), outputs)
