@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ElevationLook.h"
 
+#include "vtkCallbackCommand.h"
 #include "vtkCamera.h"
 #include "vtkClientServerInterpreter.h"
 #include "vtkClientServerInterpreterInitializer.h"
+#include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
@@ -208,6 +210,15 @@ void ColourByWords(vtkSMProxy* representation, vtkPVXMLElement* xml)
   colours->UpdateVTKObjects();
 }
 
+// Has the panel show the results of each update. ParaView asks for them before it.
+void AskForResults(vtkObject* representation, unsigned long, void*, void*)
+{
+  if (vtkSMProxy* source = InputOf(vtkSMProxy::SafeDownCast(representation)))
+  {
+    source->UpdatePropertyInformation();
+  }
+}
+
 // Called once for each representation that is made, before it is in its view, which is the active one.
 class vtkSMElevationLook : public vtkSMProxyInitializationHelper
 {
@@ -220,7 +231,11 @@ public:
   {
     const vtkSMPropertyHelper input(representation, "Input");
     auto* source = vtkSMSourceProxy::SafeDownCast(input.GetAsProxy());
-    vtkPVDataInformation* data = source ? source->GetDataInformation(input.GetOutputPort()) : nullptr;
+    vtkPVDataInformation* data =
+      source ? source->GetDataInformation(input.GetOutputPort()) : nullptr;
+    vtkNew<vtkCallbackCommand> update;
+    update->SetCallback(AskForResults);
+    representation->AddObserver(vtkCommand::UpdateDataEvent, update);
     if (!data || data->GetNumberOfPoints() == 0)
     {
       return;
@@ -229,13 +244,12 @@ public:
     data->GetBounds(bounds);
     vtkSMSessionProxyManager* proxies = representation->GetSessionProxyManager();
     vtkSMProxySelectionModel* active = proxies->GetSelectionModel("ActiveView");
-    auto* view =
-      vtkSMRenderViewProxy::SafeDownCast(active ? active->GetCurrentProxy() : nullptr);
+    auto* view = vtkSMRenderViewProxy::SafeDownCast(active ? active->GetCurrentProxy() : nullptr);
 
     // z as of what is shown already; where that is nothing, or the input alone, as suits the relief.
     const std::vector<vtkSMProxy*> shown = view ? ShownIn(view) : std::vector<vtkSMProxy*>();
-    const auto scaled = std::find_if(
-      shown.begin(), shown.end(), [](vtkSMProxy* one) { return ScaleOf(one) != 1.0; });
+    const auto scaled =
+      std::find_if(shown.begin(), shown.end(), [](vtkSMProxy* one) { return ScaleOf(one) != 1.0; });
     const bool isFirst = std::all_of(shown.begin(), shown.end(),
                            [&](vtkSMProxy* one) { return InputOf(one) == InputOf(source); }) &&
       scaled == shown.end();
@@ -284,7 +298,7 @@ public:
   }
 };
 vtkStandardNewMacro(vtkSMElevationLook);
-}
+} // namespace
 
 void ElevationLook()
 {

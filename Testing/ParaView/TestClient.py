@@ -70,7 +70,7 @@ def check_las(folder):
     from plugin_testing import FAILURES, check_equal, points
     source = simple.GetActiveSource()
     check_equal(type(source).__name__, "ElevationPoints", "the reader of a LAS file")
-    check_equal(os.path.basename(str(source.FileName)), "seven.las", "the file")
+    check_equal(os.path.basename(source.FileName[0]), "seven.las", "the file")
     cloud = source.SMProxy.GetClientSideObject().GetOutputDataObject(0)
     check_equal(points(cloud).tolist(), [[i, 3 * i, i * i] for i in range(7)], "points of a LAS file")
     note(folder, FAILURES)
@@ -104,6 +104,12 @@ def steps(client, data):
     client.set("MaximumHoleSize", "DoubleLineEdit0", 1)
     client.apply()
     check("no hole filled", 1)
+    # The panel shows what was used, also when Apply is pressed again.
+    used = client.field("EffectiveGapTolerance") + "/DoubleLineEdit0"
+    client.expect(used, "text", "4.5")
+    client.set("GapTolerance", "DoubleLineEdit0", 6)
+    client.apply()
+    client.expect(used, "text", "6")
     # What plays no part is greyed out.
     client.python("source = GetActiveSource(); ring = Disk(); SetActiveSource(source)")
     for name, change in (("GapTolerance", "source.Boundary = ring"), ("Spacing", "source.FillHoles = 0")):
