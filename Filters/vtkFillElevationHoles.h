@@ -21,8 +21,9 @@
  *   the input). Other point arrays: see InterpolatePointData. Where the input has been filled before,
  *   its arrays of these names stay, and holes have the numbers after the largest of its triangles.
  * - 1, the report: one closed line for each hole, filled or not, its rim, counter-clockwise. Cell data
- *   HoleId, Status (HoleStatusType), NumberOfEdges, Perimeter, Area, NumberOfInsertedPoints,
- *   Interpolation (the one used).
+ *   HoleId, Status (HoleStatusType) and StatusName, the same in words, Size (what MaximumHoleSize is
+ *   compared with), NumberOfEdges, Perimeter, Area, NumberOfInsertedPoints, Interpolation (the one
+ *   used) and InterpolationName ("" where nothing was inserted).
  *
  * Field data of both: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *

@@ -13,6 +13,7 @@ import xml.etree.ElementTree as ElementTree
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from Python import look  # noqa: E402
 from Python.description import DESCRIBED, titled  # noqa: E402
 
 TAGS = {"double": "Double", "int": "Int", "bool": "Int", "string": "String"}
@@ -117,6 +118,21 @@ def add_result(parent, given):
         element(element(made, "Hints"), "Widget", type="multi_line")
 
 
+def add_look(parent, given):
+    """The element that has ElevationLook.cxx give a representation its first look."""
+    made = element(element(parent, "Hints"), "InitializationHelper", **{
+        "class": "vtkSMElevationLook", "bearing": str(look.BEARING), "height": str(look.HEIGHT)})
+    if given.get("line_width"):
+        made.set("line_width", given.get("line_width"))
+    if given.get("of") == "elevations":
+        made.set("land", " ".join(look.LAND))
+        made.set("sea", " ".join(look.SEA))
+    elif given.get("of") == "holes":
+        made.set("array", "StatusName")
+        made.set("words", ",".join(look.STATUS))
+        made.set("colours", " ".join(look.STATUS.values()))
+
+
 def add(parent, given, place):
     """Adds what an element of the template becomes. Returns the names of its properties."""
     names = [given.get("name")]
@@ -126,6 +142,8 @@ def add(parent, given, place):
         add_input(parent, given, place)
     elif given.tag == "Result":
         add_result(parent, given)
+    elif given.tag == "Look":
+        add_look(parent, given)
     elif given.tag == "Group":
         names = [name for one in given for name in add(parent, one, place)]
         group = element(parent, "PropertyGroup", label=given.get("label"))
@@ -138,7 +156,7 @@ def add(parent, given, place):
 
 def main(template, path):
     tree = ElementTree.parse(template)
-    for proxy in tree.iter("SourceProxy"):
+    for proxy in (proxy for group in tree.getroot() for proxy in group):
         parts = list(proxy)
         for part in parts:
             proxy.remove(part)

@@ -31,22 +31,10 @@ surface.UpdatePipeline()
 if surface.GetDataInformation().GetNumberOfCells() == 0:
     sys.exit("the surface of the state was not made")
 
-# The relief from the south.
+# The relief, the outlines of the places that were filled, and of the surface.
 show_relief(surface, view)
-
-# The outlines of the places that were filled, and of the surface.
-for port, colour in ((1, [1, 0.9, 0]), (2, [1, 1, 1])):
-    lines = simple.Show(simple.OutputPort(surface, port), view)
-    lines.ColorArrayName = [None, ""]
-    lines.AmbientColor = lines.DiffuseColor = colour
-    lines.LineWidth = 3
-    lines.Scale = [1, 1, 10]
-
-simple.ResetCamera(view)
-camera = simple.GetActiveCamera()
-camera.Elevation(-50)
-simple.ResetCamera(view)
-camera.Zoom(1.3)
+for port in (1, 2):
+    simple.Show(simple.OutputPort(surface, port), view)
 simple.Render(view)
 simple.SetActiveSource(surface)
 path = sys.argv[2]

@@ -66,9 +66,9 @@ def set_words(data, name, lines):
     data.GetFieldData().AddArray(words)
 
 
-def words_of(data, name):
-    """The lines of a field array, as set_words() writes them; none where there is no such array."""
-    words = data.GetFieldData().GetAbstractArray(name)
+def words_of(attributes, name):
+    """The words of an array of field or cell data; none where there is no such array of words."""
+    words = attributes.GetAbstractArray(name)
     if not isinstance(words, vtkStringArray):
         return []
     return [words.GetValue(i) for i in range(words.GetNumberOfValues())]

@@ -7,6 +7,7 @@ reconstruct() makes of it. Both tell what they have done as text, and an error i
 """
 
 import dataclasses
+import math
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -51,6 +52,7 @@ from .properties import PROPERTIES, checked
 from .ranks import agreed, controller_of, shared, together
 from .reading import read, read_boundary, read_faults
 from .reconstruction import NAMES, reconstruct_cloud
+from .relief import exaggeration_of_points, exaggeration_of_surfaces
 from .report import crs_name
 from .spreading import gather_points
 
@@ -67,23 +69,36 @@ class ElevationPoints(ReportingAlgorithm):
     Options are those of read(), as text: empty is the default. The output is vtkPolyData with a
     vertex for each point and the point array Elevation. Its field array Recognised tells what the
     file is, which columns were taken, and what was left out; GetRecognised() gives the same text.
+    Several files are time steps, 0, 1 and so on.
     """
 
     TITLE = "Elevation Points"
 
     def __init__(self):
         super().__init__(0, 1)
-        self._file, self._given = "", {}
+        self._files, self._file, self._given = [], "", {}
+        self._exaggeration = 1.0
 
     def SetFileName(self, name):
-        self.change("_file", name or "")
+        self.change("_files", [name] if name else [])
+
+    def AddFileName(self, name):
+        self.change("_files", self._files + [name])
+
+    def ClearFileNames(self):
+        self.change("_files", [])
 
     def GetFileName(self):
-        return self._file
+        """The file of the last time step that was read; of one file, that."""
+        return self._file if self._file in self._files else "".join(self._files[:1])
 
     def GetRecognised(self):
         """What was found out about the file, one line each."""
         return self._text
+
+    def GetVerticalExaggeration(self):
+        """The factor for z with which the relief of the points is seen."""
+        return self._exaggeration
 
     def lines(self, contents):
         """The boundary or the faults of the file. Raises ValueError for options of points."""
@@ -113,13 +128,34 @@ class ElevationPoints(ReportingAlgorithm):
         set_nothing(vtkPolyData.GetData(outputs))
         return result
 
+    def RequestInformation(self, request, inInfo, outInfo):
+        information, keys = outInfo.GetInformationObject(0), vtkStreamingDemandDrivenPipeline
+        for key in (keys.TIME_STEPS(), keys.TIME_RANGE()):
+            information.Remove(key)
+        last = len(self._files) - 1
+        if last > 0:
+            information.Set(keys.TIME_STEPS(), [float(i) for i in range(last + 1)], last + 1)
+            information.Set(keys.TIME_RANGE(), [0.0, float(last)], 2)
+        return 1
+
+    def choose_file(self, information, output):
+        """Chooses the file of the time that is asked for: the last one that has begun."""
+        last, keys = len(self._files) - 1, vtkStreamingDemandDrivenPipeline
+        step = 0
+        if last > 0 and information.Has(keys.UPDATE_TIME_STEP()):
+            step = min(max(math.floor(information.Get(keys.UPDATE_TIME_STEP())), 0), last)
+        if last > 0:
+            output.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), float(step))
+        self._file = self._files[step]
+
     def read_into(self, output, outputs):
         """Returns the lines to show."""
         information = outputs.GetInformationObject(0)
         if information.Get(vtkStreamingDemandDrivenPipeline.UPDATE_PIECE_NUMBER()):
             return []  # one rank has it all
-        if not self._file:
+        if not self._files:
             raise ValueError("no file is chosen")
+        self.choose_file(information, output)
         contents = self._given.get("contents") or "points"
         if contents != "points":
             output.ShallowCopy(self.lines(contents))
@@ -131,6 +167,7 @@ class ElevationPoints(ReportingAlgorithm):
             finite_points(cloud)
             self.reading(0.95)
             fill_points(output, cloud)
+            self._exaggeration = exaggeration_of_points(output)
             told = [f"{self._file}: {counted(output.GetNumberOfPoints(), 'point')}"]
             lost = cloud.left_out.items()
             told += [f"{of_reason(count, reason)} left out" for reason, count in lost]
@@ -203,11 +240,27 @@ class ReconstructElevationSurface(ReportingAlgorithm):
 
     def __init__(self):
         super().__init__(3, 4)
-        self._given = {}
+        self._given, self._exaggeration, self._chosen = {}, 1.0, {}
 
     def GetReport(self):
         """What became of every point and hole, one line each."""
         return self._text
+
+    def GetEffectiveGapTolerance(self):
+        """The gap tolerance that was used, of the first block; 0 with a boundary that is given."""
+        return self._chosen.get("GapTolerance", 0.0)
+
+    def GetEffectiveOpenEdgeLength(self):
+        """The open edge length that was used, of the first block; 0: none."""
+        return self._chosen.get("OpenEdgeLength", 0.0)
+
+    def GetEffectiveSpacing(self):
+        """The mean distance of the new points of the first block; 0: there is none."""
+        return self._chosen.get("Spacing", 0.0)
+
+    def GetVerticalExaggeration(self):
+        """The factor for z with which the relief of the surface is seen; 1 where it is over a plane."""
+        return self._exaggeration
 
     # -- the pipeline
 
@@ -249,8 +302,11 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         results = {}
         reports = self.reconstruct_surfaces(surfaces, lines, results)
         reports = once(together(controller, lambda: reports))
+        seen = [result.surface for result in results.values() if not result.cloud.plane]
+        self._exaggeration = exaggeration_of_surfaces(seen, controller)
         self.put(data, parts, results, outputs)
         self._text = report_text(reports)
+        self._chosen = next((one["chosen"] for one in reports if "chosen" in one), {})
         if controller and controller.GetLocalProcessId() > 0:
             return []  # the first rank tells of all
         return self.tell(reports, any(has_failed_reader(part.data) for part in parts), outputs)
@@ -279,7 +335,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         properties = {name: given[name] for name in given if name in PROPERTIES}
         properties = checked(properties, argument)
         options = ReadOptions(**read_options(given))
-        if any(words_of(data, CONTENTS)[:1] == ["boundary"] for data in surface.data):
+        if any(words_of(data.GetFieldData(), CONTENTS)[:1] == ["boundary"] for data in surface.data):
             raise ElevationSurfaceError(
                 "the input is a boundary, which has no elevations; choose it as Boundary, or set "
                 "Contents to Points where the file was opened"
@@ -338,7 +394,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
 
 def has_failed_reader(data):
     """Whether ElevationPoints has left this empty, and reported why."""
-    return words_of(data, CONTENTS) == [NOTHING]
+    return words_of(data.GetFieldData(), CONTENTS) == [NOTHING]
 
 
 def taken(one, value, place):

@@ -3,6 +3,8 @@
 """What became of each block of an input: a report of plain values, which ranks can exchange, for each
 block, and the report that these make together."""
 
+import math
+
 from vtkmodules.vtkCommonCore import vtkStringArray
 
 from .algorithm_base import words_of
@@ -21,7 +23,8 @@ def recognised(points, ranks=None):
     ranks  the controller of those that have some of the points each, or None
     """
     count = total(ranks, points.GetNumberOfPoints())
-    words = together(ranks, lambda: [[words_of(points, name) for name in (RECOGNISED, CONTENTS)]])
+    told = points.GetFieldData()
+    words = together(ranks, lambda: [[words_of(told, name) for name in (RECOGNISED, CONTENTS)]])
     lines, contents = next((pair for pair in words if pair[0]), ([], []))
     if lines and contents[1:] != [str(count)]:
         lines[0] += f"; this surface is of {counted(count, 'point')}"
@@ -40,7 +43,32 @@ def report_of_block(surface, result, told):
         "rows": report_lines(result.report),
         "counts": main_counts(result),
         "sums": sums_of(result),
+        "chosen": chosen(result),
     }
+
+
+def chosen(result):
+    """What was used of properties that may be left to be chosen: {property of the panel: value}."""
+    report = result.report
+    holes = report.get("holes", {"open_edge_length": 0.0, "list": ()})
+    return {
+        "GapTolerance": report.get("trim", {}).get("effective_gap_tolerance", 0.0),
+        "OpenEdgeLength": holes["open_edge_length"],
+        "Spacing": spacing_of(result, [hole for hole in holes["list"] if hole["inserted_points"]]),
+    }
+
+
+def spacing_of(result, holes):
+    """The distance of new points: as given, that of a lattice's nodes, or the mean of what each hole has
+    got, the mean length of its edges. 0: there are none."""
+    if not holes:
+        return 0.0
+    if result.fill.GetSpacing():
+        return result.fill.GetSpacing()
+    if result.lattice:
+        return math.sqrt(math.prod(result.lattice["lengths"]))
+    points = sum(hole["inserted_points"] for hole in holes)
+    return sum(hole["inserted_points"] / points * hole["perimeter"] / hole["edges"] for hole in holes)
 
 
 def report_of_failed_block(surface, error):

@@ -5,26 +5,23 @@
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
+from .algorithm_base import words_of
 from .clouds import coordinates_of
 from .messages import counted
 from .names import option
 from .properties import INTERPOLATIONS
 from .ranks import all_values, before, summed, together, total
 
-STATUS = {
-    0: "filled", 1: "too large", 2: "too many edges", 3: "failed", 4: "replaced", 5: "cut out",
-}
-
 
 def holes_of(result):
     """The part of the report on holes."""
     report = report_of_holes(
-        result.holes, result.bridged, result.fill, result.why_opened, result.ranks, result.cloud.plane
+        result.holes, result.bridged, result.fill, result.why_opened, result.ranks
     )
     return {**report, "open_edge_length": result.open_edge_length}
 
 
-def report_of_holes(outlines, bridged, fill, why_opened=None, ranks=None, plane=None):
+def report_of_holes(outlines, bridged, fill, why_opened=None, ranks=None):
     """The part of the report on holes.
 
     outlines    vtkPolyData, with the report of the filter as cell data
@@ -32,25 +29,22 @@ def report_of_holes(outlines, bridged, fill, why_opened=None, ranks=None, plane=
     fill        the filter
     why_opened  where the length from that of the filter is from
     ranks       the controller of those that have some outlines each, or None
-    plane       the Plane in which sizes are measured, or None: x,y
 
     found, filled  counts of holes, and of voids that triangles bridged and that were filled; a hole
                    that the boundary has cut out is found only if it is filled
     cut_out        count of those that stay open
     bridged_left   count of voids whose triangles are left as they are
     """
-    names = ("HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints",
+    names = ("HoleId", "NumberOfEdges", "Perimeter", "Area", "Size", "NumberOfInsertedPoints",
              "Interpolation")
     columns = [column_of(outlines, name).tolist() for name in names]
-    sizes, *places = hole_places(outlines)
-    if plane:
-        sizes = hole_places(plane.levelled(outlines))[0]
-    rows = zip(*columns, bridged.tolist(), sizes, *places)
+    statuses = words_of(outlines.GetCellData(), "StatusName")
+    rows = zip(*columns, statuses, bridged.tolist(), *hole_places(outlines))
     rows = together(ranks, lambda: list(rows))
     holes = [
         {
             "hole": hole,
-            "status": STATUS[status],
+            "status": status,
             "bridged": bridged,
             "edges": edges,
             "perimeter": perimeter,
@@ -61,7 +55,7 @@ def report_of_holes(outlines, bridged, fill, why_opened=None, ranks=None, plane=
             "inserted_points": inserted,
             "interpolation": INTERPOLATIONS[way] if inserted else None,
         }
-        for hole, status, edges, perimeter, area, inserted, way, bridged, size, centre, box in rows
+        for hole, edges, perimeter, area, size, inserted, way, status, bridged, centre, box in rows
     ]
     by_status = {}
     for hole in holes:
@@ -138,10 +132,9 @@ def complex_places(data):
 
 
 def hole_places(lines):
-    """Of each line's box in x,y: [its diagonals, which --maximum-hole-size is compared with; its
-    centres (x, y); its corners ((x, y) lowest, (x, y) highest)]."""
+    """Of each line's box in x,y: [its centres (x, y); its corners ((x, y) lowest, (x, y) highest)]."""
     if lines.GetNumberOfLines() == 0:
-        return [[], [], []]
+        return [[], []]
     cells = lines.GetLines()
     xy = vtk_to_numpy(lines.GetPoints().GetData())[:, :2]
     xy = xy[vtk_to_numpy(cells.GetConnectivityArray())]
@@ -149,7 +142,7 @@ def hole_places(lines):
     low = numpy.minimum.reduceat(xy, starts, axis=0)
     high = numpy.maximum.reduceat(xy, starts, axis=0)
     boxes = numpy.stack((low, high), axis=1)
-    return [numpy.hypot(*(high - low).T).tolist(), boxes.mean(axis=1).tolist(), boxes.tolist()]
+    return [boxes.mean(axis=1).tolist(), boxes.tolist()]
 
 
 def hole_lines(holes, line):

@@ -4,8 +4,9 @@
 
     PV_PLUGIN_PATH=<folder of the plugin> pvpython text_to_surface.py POINTS SURFACE.vtp PICTURE.png
 
-What was recognised in the file and what became of every point and hole is printed. The picture
-shows the relief from the south, with heights times ten.
+What was recognised in the file and what became of every point and hole is printed. The plugin chooses
+the first look of the surface: colours, the view from the south, and a factor for heights, which is the
+third number of shown.Scale.
 """
 import sys
 
@@ -13,15 +14,12 @@ from paraview import simple
 
 
 def show_relief(surface, view):
-    """Heights times ten, coloured by elevation, with a legend."""
+    """The surface with a legend."""
     shown = simple.Show(surface, view)
-    shown.Scale = [1, 1, 10]
-    simple.ColorBy(shown, ("POINTS", "Elevation"))
-    shown.RescaleTransferFunctionToDataRange()
     shown.SetScalarBarVisibility(view, True)
-    legend = simple.GetScalarBar(simple.GetColorTransferFunction("Elevation"), view)
-    legend.Title = "Elevation in m"
-    legend.RangeLabelFormat = "%.0f"
+    simple.GetScalarBar(shown.LookupTable, view).Title = "Elevation in m"
+    simple.ResetCamera(view)
+    simple.GetActiveCamera().Zoom(1.3)
 
 
 def main(points_file, surface_file, picture_file):
@@ -32,10 +30,6 @@ def main(points_file, surface_file, picture_file):
 
     view = simple.CreateRenderView(ViewSize=[1200, 800], OrientationAxesVisibility=0)
     show_relief(surface, view)
-    simple.ResetCamera(view)
-    simple.GetActiveCamera().Elevation(-50)
-    simple.ResetCamera(view)
-    simple.GetActiveCamera().Zoom(1.4)
     simple.SaveScreenshot(picture_file, view)
 
 

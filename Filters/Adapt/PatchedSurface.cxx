@@ -15,6 +15,7 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -26,6 +27,11 @@ namespace elevation
 namespace
 {
 constexpr const char* NameOfHoles = "HoleId";
+// Of FillStatus and Interpolation.
+constexpr const char* StatusNames[] = { "filled", "too large", "too many edges", "failed",
+  "replaced", "cut out" };
+constexpr const char* InterpolationNames[] = { "neighbor mean", "membrane", "thin plate",
+  "adaptive", "cubic spline" };
 } // namespace
 
 void CheckOptions(const FillOptions& options, double openEdgeLength)
@@ -257,6 +263,9 @@ void MakeReport(
   add(NameOfHoles, vtkNew<vtkIdTypeArray>().Get(), [&id](const HoleReport&) { return id++; });
   add("Status", vtkNew<vtkUnsignedCharArray>().Get(),
     [](const HoleReport& report) { return static_cast<unsigned char>(report.Status); });
+  add("StatusName", vtkNew<vtkStringArray>().Get(),
+    [](const HoleReport& report) { return StatusNames[static_cast<int>(report.Status)]; });
+  add("Size", vtkNew<vtkDoubleArray>().Get(), [](const HoleReport& report) { return report.Size; });
   add("NumberOfEdges", vtkNew<vtkIdTypeArray>().Get(),
     [](const HoleReport& report) { return report.NumberOfEdges; });
   add("Perimeter", vtkNew<vtkDoubleArray>().Get(),
@@ -266,6 +275,9 @@ void MakeReport(
     [](const HoleReport& report) { return report.NumberOfInsertedPoints; });
   add("Interpolation", vtkNew<vtkUnsignedCharArray>().Get(),
     [](const HoleReport& report) { return static_cast<unsigned char>(report.Method); });
+  add("InterpolationName", vtkNew<vtkStringArray>().Get(), [](const HoleReport& report) {
+    return report.NumberOfInsertedPoints ? InterpolationNames[static_cast<int>(report.Method)] : "";
+  });
 
   const Holes& holes = patches.Found;
   Rings rims;

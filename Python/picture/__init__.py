@@ -31,7 +31,9 @@ from vtkmodules.vtkRenderingCore import (
 
 from ..clouds import cells_of, corner_flags
 from .display import screen, why_no_server
+from ..look import BEARING, ERROR, FILLED, HEIGHT, LAND, OPEN, SEA
 from ..messages import PictureError
+from ..relief import choose_exaggeration, nice_number
 from .signs import (
     BOTTOM,
     INK,
@@ -43,20 +45,11 @@ from .signs import (
     add_map_signs,
     add_scalar_bar,
     exaggeration_words,
-    nice_number,
     poly_data,
     round_text,
 )
 from .screen_mesh import Cells, mesh_for_screen
 
-# Both maps rise evenly in lightness, so that they keep their order in grey and for colour-blind
-# eyes. Colours are mixed in CIE Lab between the stops.
-LAND = ("#1f4e5f", "#2f7a72", "#6fa06a", "#c3b56b", "#e6cf9c", "#faf3e3")
-ERROR = ("#f1efe9", "#f0c987", "#dc7a4a", "#a62f3f", "#4a1030")
-SEA = ("#13203c", "#1b456e", "#2a729b", "#559fb4", "#8cc4c4", "#cfe9dc")
-
-FILLED = (0.72, 0.07, 0.30)
-OPEN = (0.95, 0.45, 0.05)
 WALL = (0.66, 0.63, 0.59)
 
 MOST_TRIANGLES = 500_000  # of more, no more are drawn than the picture can show
@@ -136,31 +129,6 @@ def columns(points, used):
     return (points[used, i].astype("f8") for i in range(3))
 
 
-def choose_exaggeration(points, triangles):
-    """The factor for z with which relief takes about a sixth of the surface's size.
-
-    Less where the surface is rough: all but the steepest tenth of it stays below about 45 degrees.
-    """
-    used = points[corner_flags(triangles, len(points))]
-    low, high = numpy.percentile(used[:, 2], (1, 99))
-    extent = numpy.ptp(used[:, :2], axis=0)
-    size = max(math.sqrt(extent[0] * extent[1]), 0.4 * float(extent.max()))
-    if high <= low or size == 0.0:
-        # Flat but for a few points: these must not be higher than the picture.
-        relief = float(numpy.ptp(used[:, 2]))
-        factor = 0.17 * size / relief if relief > 0.0 else 1.0
-        return nice_number(factor) if 0.0 < factor < 1.0 else 1.0
-    factor = 0.17 * size / (high - low)
-    a, b, c = (points[triangles[:, i]] for i in range(3))
-    normal = numpy.cross(b - a, c - a)
-    area = numpy.abs(normal[:, 2])
-    order = numpy.argsort(slope := numpy.hypot(normal[:, 0], normal[:, 1]) / (area + 1e-300))
-    covered = numpy.cumsum(area[order])
-    steep = slope[order[numpy.searchsorted(covered, 0.9 * covered[-1])]]
-    factor = min(factor, 1.1 / max(steep, 1e-300))
-    return 1.0 if 0.8 <= factor <= 1.25 else nice_number(factor)
-
-
 def common_range(z):
     """(lowest, highest) elevation to show, and whether elevations beyond it are cut.
 
@@ -191,7 +159,7 @@ def choose_bearing(xy):
     values, vectors = numpy.linalg.eigh(numpy.cov((xy - xy.mean(axis=0)).T))
     ratio = math.sqrt(max(values[1], 1e-300) / max(values[0], 1e-300))
     if ratio < 1.7:
-        return 200.0
+        return BEARING
     short = vectors[:, 0]
     if short[1] > 0:
         short = -short
@@ -212,7 +180,7 @@ def colour_map(low, high, stops=None):
         high = low + 1.0
     for i, stop in enumerate(stops):
         result.AddRGBPoint(low + (high - low) * i / (len(stops) - 1), *colour(stop))
-    result.SetNanColor(*OPEN)
+    result.SetNanColor(*colour(OPEN))
     return result
 
 
@@ -356,7 +324,7 @@ def render(
     xy = numpy.column_stack((x[few], y[few]))
     del x, y, z
     across, stretch = choose_stretch(xy)
-    bearing, height = view or (choose_bearing(xy - middle), 42.0)
+    bearing, height = view or (choose_bearing(xy - middle), HEIGHT)
     margin = 0.3 * (high - low) if is_cut else 0.0
     cut = (low - margin, high + margin) if is_cut else (-numpy.inf, numpy.inf)
     frame = Frame(middle, low, 1.0, cut, across, stretch)
@@ -409,16 +377,16 @@ def render(
     renderer.AddActor(lines_actor(points, mesh.rim, INK, 2.5))
     legend = [("boundary", INK)]
     if len(mesh.patches):
-        renderer.AddActor(lines_actor(points, mesh.patches, FILLED, 2.0, 1))
-        legend.append(("filled hole", FILLED))
+        renderer.AddActor(lines_actor(points, mesh.patches, colour(FILLED), 2.0, 1))
+        legend.append(("filled hole", colour(FILLED)))
     if holes is not None and holes.GetNumberOfLines():
         # 0: filled; 4: triangles that bridged it were replaced
         status = vtk_to_numpy(holes.GetCellData().GetArray("Status"))
         still_open = (status != 0) & (status != 4)
         pairs = segments([p for p, o in zip(line_cells(holes), still_open) if o])
         if len(pairs):
-            renderer.AddActor(lines_actor(frame.of(holes), pairs, OPEN, 3.5, 2))
-            legend.append(("hole left open", OPEN))
+            renderer.AddActor(lines_actor(frame.of(holes), pairs, colour(OPEN), 3.5, 2))
+            legend.append(("hole left open", colour(OPEN)))
 
     progress(0.7)
     window = place_camera(renderer, points, floor, bearing, height)

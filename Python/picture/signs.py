@@ -15,19 +15,12 @@ from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import vtkActor2D, vtkCoordinate, vtkPolyDataMapper2D, vtkTextActor
 
 from ..clouds import cells_of
+from ..relief import nice_number
 
 INK = (0.13, 0.14, 0.16)
 VTK_FONT_FILE = 4  # as in vtkTextProperty.h; not wrapped
 WIDTH = 1800
 TOP, BOTTOM, LEFT, RIGHT = 150, 120, 70, 230
-NICE = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
-
-
-def nice_number(value, steps=NICE):
-    """The nearest round number, by ratio."""
-    power = 10.0 ** math.floor(math.log10(value))
-    choices = [s * p for p in (power, 10 * power) for s in steps]
-    return min(choices, key=lambda c: abs(math.log(c / value)))
 
 
 def poly_data(points, polys=None, lines=None):

@@ -19,7 +19,7 @@ from ..names import option
 from ..progress import no_progress, share
 from ..ranks import total
 from ..selecting import columns_in, condition_of_layer, select
-from .nulls import take_out
+from .nulls import blank_attributes, take_out
 from .text import read_line_table, read_table
 from .unpacking import STANDARD_INPUT, is_plain, unpacked
 from .upwards import notes_on_up
@@ -109,6 +109,8 @@ def finished(path, cloud, options):
         select(name, cloud, options.where)
     whole, options.progress = options.progress, share(options.progress, 0.7, 1.0)
     cloud = take_out(cloud, options)
+    if not options.keep_nulls:
+        cloud.notes += blank_attributes(cloud.points)
     cloud.notes += notes_on_up(cloud, options.depth, name)
     options.progress = whole
     if options.depth:

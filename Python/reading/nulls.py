@@ -8,6 +8,8 @@ ten million points take some two seconds.
 """
 
 import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_FLOAT
 
 from ..clouds import coordinates_of, keep_points
 from .known import NULLS
@@ -64,6 +66,22 @@ def take_out(cloud, options, ranks=None):
     if not options.keep_nulls:
         cloud.notes += doubts(*axes, Numbers(cloud, ranks), share(progress, 0.4, 1.0))
     return cloud
+
+
+def blank_attributes(points):
+    """Puts NaN in place of usual null values in the attributes of points. Returns notes."""
+    notes, data = [], points.GetPointData()
+    for array in [data.GetArray(i) for i in range(data.GetNumberOfArrays())]:
+        if array is None or array.GetDataType() not in (VTK_FLOAT, VTK_DOUBLE):
+            continue
+        values = vtk_to_numpy(array)
+        for value, found in usual_nulls(values) if values.ndim == 1 else ():
+            values[found] = numpy.nan
+            notes.append(
+                f"{array.GetName()}: {counted(numpy.count_nonzero(found), 'null value')} ({value:.9g}) "
+                f"taken as NaN; {option('keep_nulls')} keeps them"
+            )
+    return notes
 
 
 def number_of(ranks, flags):

@@ -155,6 +155,15 @@ for one in DESCRIBED.values():
             check_equal([domain.GetEntryValue(i) for i in range(count)], list(range(count)),
                         "numbers of the choices of " + told)
 
+# What was used of a property is right below it.
+for proxy in (chain, FILTERS["TrimOutwardTriangles"]):
+    proxy = proxy.SMProxy
+    groups = [proxy.GetPropertyGroup(i) for i in range(proxy.GetNumberOfPropertyGroups())]
+    order = [group.GetProperty(i).GetXMLName() for group in groups for i in range(group.GetNumberOfProperties())]
+    below = [(order[i - 1], order[i]) for i in range(len(order)) if order[i].startswith("Effective")]
+    check_equal([one for one, _ in below], [name[len("Effective"):] for _, name in below], "what is below what")
+    check_equal(len(below), 3 if proxy.GetXMLName() == chain.SMProxy.GetXMLName() else 1, "how many were used")
+
 # The menu has all of them, in the order of the work.
 menu = xml.etree.ElementTree.parse(os.path.join(os.path.dirname(data_folder), "Plugin", "Menu.xml"))
 check_equal([entry.get("name") for entry in menu.iter("Proxy")],

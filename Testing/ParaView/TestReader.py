@@ -39,6 +39,8 @@ for suffix in claimed:
         check_equal(readers_of(suffix)[0], "Elevation Points", "first reader of ." + suffix)
     else:
         check_equal(readers_of(suffix), ["Elevation Points"], "readers of ." + suffix)
+horizons = "irap gri cps cps3 ev zmap ts vs pl poi pol hzn hor ixyz iesx p190 str gsi".split()
+check_equal(set(horizons) - set(claimed), set(), "names of horizons and survey lines that are not known")
 for suffix in ("csv", "txt", "tsv", "dat", "pts", "tif", "dem", "shp", "vtp", "ply", "gz"):
     check("Elevation Points" not in readers_of(suffix), "." + suffix + " is left to ParaView's readers")
 table = os.path.join(data_folder, "aegean_sea.csv")
@@ -117,6 +119,21 @@ check_equal(fetch(reader).GetNumberOfPoints(), 3, "points of the file as it was"
 written("grows.xyz", "0 0 1\n1 0 2\n0 1 3\n1 1 4\n")
 simple.ReloadFiles(reader)
 check_equal(fetch(reader).GetNumberOfPoints(), 4, "points of the file that was read again")
+
+# ---- a series of files -------------------------------------------------------------------------
+paths = [written("series_%d.poi" % i, "0 0 %d\n1 0 2\n0 1 3\n" % (10 * i + 5) + "2 2 2\n" * i) for i in range(3)]
+series = simple.OpenDataFile(paths)
+check_equal(type(series).__name__, "ElevationPoints", "reader of a series")
+check_equal(list(series.TimestepValues), [0, 1, 2], "time steps of a series")
+chain = simple.ReconstructElevationSurface(Input=series)
+for time, step in ((2, 2), (0, 0), (1, 1), (1.5, 1), (7, 2)):
+    chain.UpdatePipeline(time)
+    cloud = series.SMProxy.GetClientSideObject().GetOutputDataObject(0)
+    check_equal((cloud.GetNumberOfPoints(), points(cloud)[0, 2]), (3 + step, 10 * step + 5), "points at %g" % time)
+    check(paths[step] in information(series, "Recognised"), "the file at %g" % time)
+    surface = chain.SMProxy.GetClientSideObject().GetOutputDataObject(0)
+    check_equal(surface.GetPoint(0)[2], 10 * step + 5, "the surface at %g" % time)
+check_equal(list(simple.ElevationPoints(FileName=paths[0]).TimestepValues or []), [], "time steps of one file")
 
 # ---- boundaries and faults ---------------------------------------------------------------------
 ring = written("ring.txt", "0 0\n4 0\n4 4\n0 0\n\n1 1\n2 1\n2 2\n1 1\n")

@@ -55,6 +55,27 @@ check(numpy.array_equal(array(surface.GetPointData(), "Elevation"), points(surfa
 shown = simple.Show(whole, simple.CreateRenderView())
 check_equal(list(shown.ColorArrayName), ["POINTS", "Elevation"], "what the surface is coloured by")
 
+# ---- what was used, given or chosen ------------------------------------------------------------
+def used(source):
+    return [information(source, "Effective" + name) for name in ("GapTolerance", "OpenEdgeLength", "Spacing")]
+
+
+table = fetch(fill, 1).GetCellData()
+lengths = array(table, "Perimeter") / array(table, "NumberOfEdges")
+mean = numpy.average(lengths, weights=array(table, "NumberOfInsertedPoints"))
+check(numpy.allclose(used(whole), [6, 2.5, mean]), "what was given, and the distance of new points")
+chooses = simple.ReconstructElevationSurface(
+    Input=simple.ElevationPoints(FileName=data_file("olinda_land.xyz")))
+fetch(chooses)
+check(numpy.allclose(used(chooses), [4.5, 1.5 * 2 ** 0.5 * 89.994, 89.994], rtol=1e-4),
+      "what is chosen on a grid: %s" % used(chooses))
+chooses.Spacing = 40
+fetch(chooses)
+check_equal(used(chooses)[2], 40, "a spacing that is given")
+chooses.Trim = chooses.FillHoles = 0
+fetch(chooses)
+check_equal(used(chooses), [0, 0, 0], "nothing is chosen where nothing is trimmed and filled")
+
 # ---- the report --------------------------------------------------------------------------------
 rows = report(whole)
 check_equal(rows[0], ("points", "13,299 read"), "first row of the report")

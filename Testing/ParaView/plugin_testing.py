@@ -158,6 +158,13 @@ def ring_area(coordinates):
     return 0.5 * float(numpy.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
 
 
+def check_elevation_colours(pixels, claim):
+    """Checks that high and low places are seen in the colours of look.py, of pixels of screenshot()."""
+    red, green, blue = numpy.moveaxis(pixels.astype(int), -1, 0)
+    high, low = (red - blue > 40).mean(), (green - red > 25).mean()
+    check(high > 0.01 and low > 0.05, "%s: high and low places are seen (%.3f, %.3f)" % (claim, high, low))
+
+
 def screenshot(path, view):
     """Saves a picture and returns its pixels, height x width x 3."""
     simple.SaveScreenshot(path, view)

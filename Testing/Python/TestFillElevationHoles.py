@@ -138,11 +138,17 @@ class TestFillElevationHoles(unittest.TestCase):
 
         table = {name: vtk_to_numpy(report.GetCellData().GetArray(name)) for name in (
             "HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints",
-            "Interpolation")}
+            "Interpolation", "Size")}
+        words = [report.GetCellData().GetAbstractArray(name) for name in ("StatusName", "InterpolationName")]
         order = numpy.argsort(table["Area"])
         numpy.testing.assert_array_equal(table["HoleId"], [0, 1])
         numpy.testing.assert_array_equal(table["Status"], [0, 0])
         numpy.testing.assert_array_equal(table["Area"][order], [4.0, 12.0])
+        numpy.testing.assert_array_equal(table["Size"][order], [8.0 ** 0.5, 5.0])
+        for hole in table["HoleId"]:
+            way = words[1].GetValue(hole)
+            self.assertEqual(words[0].GetValue(hole), "filled")
+            self.assertEqual(way in ("membrane", "thin plate"), table["NumberOfInsertedPoints"][hole] > 0, way)
         numpy.testing.assert_array_equal(table["NumberOfEdges"][order], [8, 14])
         numpy.testing.assert_array_equal(table["Perimeter"][order], [8.0, 14.0])
         self.assertEqual(table["NumberOfInsertedPoints"].sum(), filled.sum())

@@ -154,6 +154,26 @@ class Nulls(unittest.TestCase):
         self.assertEqual(vtk_to_numpy(arrays.GetArray("RGB")).shape, (90, 3))
         self.assertEqual(arrays.GetArray("RGB").GetDataTypeAsString(), "unsigned char")
 
+    def test_null_values_of_attributes_become_nan(self):
+        rows = numpy.column_stack((terrain(100), numpy.arange(200.0).reshape(100, 2)))
+        rows[::7, 3], rows[5:9, 4] = 1e30, -999.25
+        names = ("Amplitude", "Velocity", "Line")
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "attributes.csv")
+            rows = numpy.column_stack((rows, numpy.arange(100) % 4 - 9999.0))  # real: not apart
+            numpy.savetxt(path, rows, "%.9g", ",", header=",".join(("x,y,z", *names)), comments="")
+            for keeps in (False, True):
+                cloud = read(path, keep_nulls=keeps)
+                data = cloud.points.GetPointData()
+                found = numpy.column_stack([vtk_to_numpy(data.GetArray(name)) for name in names])
+                expected = rows[:, 3:].copy()
+                if not keeps:
+                    expected[::7, 0] = expected[5:9, 1] = numpy.nan
+                numpy.testing.assert_array_equal(found, expected)
+                notes = [note for note in cloud.notes if "NaN" in note]
+                self.assertEqual([note.split(" (")[0] for note in notes], [] if keeps else [
+                    "Amplitude: 15 null values", "Velocity: 4 null values"])
+
     def test_what_looks_like_an_unusual_null_value_is_named_and_kept(self):
         cloud = taken(with_z(terrain(low=1500.0, high=2500.0), 0.0, 40))
         self.assertEqual(cloud.left_out, {})
