@@ -107,6 +107,8 @@ set(es_Adapt
   LimitAdvice
   MeshConversion
   PatchedSurface
+  PointsOnWall
+  PointsPrecision
   ReportMessages
   Requests
   TrimmedSurface

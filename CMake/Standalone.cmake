@@ -71,8 +71,8 @@ include(CTest)
 # ---- VTK ---------------------------------------------------------------------------------------
 set(CMAKE_POLICY_DEFAULT_CMP0174 OLD) # else CMake 3.31 and newer warn of VTK's own files
 set(es_vtk_components CommonCore CommonDataModel CommonExecutionModel FiltersCore ParallelCore eigen)
-set(es_vtk_test_components FiltersModeling FiltersSources IOXML InteractionStyle
-  RenderingOpenGL2 TestingCore TestingRendering)
+set(es_vtk_test_components FiltersModeling FiltersSources IOXML TestingCore)
+set(es_vtk_optional_components ParallelMPI)
 
 if (ES_PARAVIEW)
   include("${CMAKE_CURRENT_LIST_DIR}/ParaView.cmake")
@@ -95,11 +95,12 @@ else ()
 endif ()
 if (BUILD_TESTING)
   list(APPEND es_vtk_components ${es_vtk_test_components})
+  list(APPEND es_vtk_optional_components InteractionStyle RenderingOpenGL2 TestingRendering)
 endif ()
 if (ES_BENCHMARKS)
   list(APPEND es_vtk_components FiltersModeling IOXML)
 endif ()
-find_package(VTK 9.1 REQUIRED COMPONENTS ${es_vtk_components} OPTIONAL_COMPONENTS ParallelMPI)
+find_package(VTK 9.1 REQUIRED COMPONENTS ${es_vtk_components} OPTIONAL_COMPONENTS ${es_vtk_optional_components})
 message(STATUS "VTK ${VTK_VERSION} in ${VTK_DIR}")
 
 # ---- the module --------------------------------------------------------------------------------

@@ -273,6 +273,17 @@ public:
 
   ///@{
   /**
+   * The type of points in all outputs: vtkAlgorithm::SINGLE_PRECISION, DOUBLE_PRECISION or
+   * DEFAULT_PRECISION (default): float where the input's are float, else double.
+   * Single precision rounds what has been made in double; a triangle that would turn over then, or
+   * lose its area, is an error.
+   */
+  vtkSetMacro(OutputPointsPrecision, int);
+  vtkGetMacro(OutputPointsPrecision, int);
+  ///@}
+
+  ///@{
+  /**
    * Threads to use, of those that vtkSMPTools has: 0 (default) to 1024, of which 0 is all. Its
    * backend and number are as you have set them; where VTK starts without threads (backend
    * Sequential), vtkSMPTools::SetBackend("STDThread") or VTK_SMP_BACKEND_IN_USE=STDThread in the
@@ -314,13 +325,13 @@ public:
    * {property:Spacing}); in a composite ("block", the name of the block); and a row for each value.
    * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent, whose
    * text has the same for people, are invoked. Codes, besides those of data that are invalid, which
-   * are "Words":
-   * NothingToFill, HoleNotFilled and RegionNotFilled (with a reason: BordersTouch, SizeOutOfRange,
-   * MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall, PointsCoincide), MoreHolesNotFilled,
-   * BordersMeet, TooManyPointsToFill, TooManyPointsByDefault, InvalidOpenEdgeLength, InvalidHoleSize,
-   * InvalidHoleEdges, InvalidSpacing, InvalidInsertedPoints, InvalidExpectedPoints, InvalidThreads,
-   * EdgeLengthRenamed, ArraysLeftOut,
-   * OnOneRank (with a reason: PartsDoNotFit), RankWaits, NotEnoughMemory, Stopped.
+   * are "Words": NothingToFill, HoleNotFilled and RegionNotFilled (with a reason: BordersTouch,
+   * SizeOutOfRange, MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall, PointsCoincide),
+   * MoreHolesNotFilled, BordersMeet, TooManyPointsToFill, TooManyPointsByDefault,
+   * InvalidOpenEdgeLength, InvalidHoleSize, InvalidHoleEdges, InvalidSpacing,
+   * InvalidInsertedPoints, InvalidExpectedPoints, InvalidThreads, InvalidPrecision, FoldsInSingle,
+   * EdgeLengthRenamed, ArraysLeftOut, OnOneRank (with a reason: PartsDoNotFit), RankWaits,
+   * NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 
@@ -342,6 +353,7 @@ protected:
   int Interpolation = ADAPTIVE;
   bool InterpolatePointData = true;
   bool RemoveUnusedPoints = false;
+  int OutputPointsPrecision = DEFAULT_PRECISION;
   int NumberOfThreads = 0;
 
   vtkIdType NumberOfHoles = 0;

@@ -24,6 +24,7 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -196,6 +197,14 @@ elevation::ConstrainedTriangulation TriangulateSpread(
   parts.Triangulate(block.Outputs.empty() ? 0 : 1, block.Second, options, block.Warnings);
   const elevation::TriangulateParts::Totals& all = parts.All();
   elevation::WarnOfLeft("point", parts.LeftOut(), block.Warnings);
+  std::vector<std::array<double, 3>> sample;
+  ranks.Agree([&] {
+    if (block.Input)
+    {
+      sample = elevation::SampleOf(elevation::ViewPoints(block.Input).View);
+    }
+  });
+  elevation::WarnOfWall(ranks.Collect(sample), block.Warnings);
   parts.WarnOfMissing(block.Warnings);
   elevation::ConstrainedTriangulation counts;
   counts.NumberOfCrossings = all.Crossings;
@@ -277,6 +286,7 @@ int vtkGridDelaunay2D::RequestData(
     this, this->Controller, request, inputVector, outputVector, this->Messages);
   call.Second = "constraints";
   call.CleanedOutputs = this->RemoveUnusedPoints ? 1 : 0;
+  call.Precision = this->OutputPointsPrecision;
   call.ListsUnused = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
     &this->NumberOfRedundantPoints, &this->NumberOfConstraintCrossings, &this->NumberOfAddedPoints,
@@ -316,6 +326,7 @@ int vtkGridDelaunay2D::RequestData(
       source, points.View, options, SubProgress(progress, 0.0, triangulated), block.Warnings);
     elevation::Triangulation& triangulation = constrained.Result;
     elevation::NameHidden(elevation::GhostsOf(block.Input->GetPointData()), triangulation);
+    elevation::WarnOfWall(elevation::SampleOf(points.View), block.Warnings);
     WarnOfMissing(source, points.View, options, constrained, SubProgress(progress, triangulated, told),
       block.Warnings);
     elevation::PassPoints(
@@ -393,6 +404,7 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LatticeTolerance: " << this->LatticeTolerance << "\n";
   os << indent << "LatticeFound: " << this->GetLatticeFound() << "\n";
   os << indent << "RemoveUnusedPoints: " << (this->RemoveUnusedPoints ? "On" : "Off") << "\n";
+  os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "NumberOfDuplicatePoints: " << this->NumberOfDuplicatePoints << "\n";

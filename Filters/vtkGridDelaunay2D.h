@@ -260,6 +260,17 @@ public:
 
   ///@{
   /**
+   * The type of points in all outputs: vtkAlgorithm::SINGLE_PRECISION, DOUBLE_PRECISION or
+   * DEFAULT_PRECISION (default): float where the input's are float and there are no constraints, else double.
+   * Single precision rounds what has been made in double; a triangle that would turn over then, or
+   * lose its area, is an error.
+   */
+  vtkSetMacro(OutputPointsPrecision, int);
+  vtkGetMacro(OutputPointsPrecision, int);
+  ///@}
+
+  ///@{
+  /**
    * Threads to use, of those that vtkSMPTools has: 0 (default) to 1024, of which 0 is all. Its
    * backend and number are as you have set them; where VTK starts without threads (backend
    * Sequential), vtkSMPTools::SetBackend("STDThread") or VTK_SMP_BACKEND_IN_USE=STDThread in the
@@ -316,12 +327,12 @@ public:
    * {property:Spacing}); in a composite ("block", the name of the block); and a row for each value.
    * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent,
    * whose text has the same for people, are invoked. Codes, besides those of data that are invalid,
-   * which are "Words": NoTriangle, FewTriangles, FewTrianglesAdvice, InvalidEdgeLength,
-   * InvalidElevationError, InvalidLatticeTolerance, InvalidThreads, TwoLimits, LatticeNotUsed,
-   * NoLines, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, NonFinitePointOfLine,
-   * LinesElsewhere, LinesFarOutside, PolygonsAreLines, LinesNotDraped, LinesNotSettled,
-   * ArraysLeftOut, OnOneRank (with a reason: ErrorNeedsAll, DrapingNeedsAll), RankWaits,
-   * NotEnoughMemory, Stopped.
+   * which are "Words": NoTriangle, PointsOnWall, FewTriangles, FewTrianglesAdvice, InvalidEdgeLength,
+   * InvalidElevationError, InvalidLatticeTolerance, InvalidThreads, InvalidPrecision,
+   * FoldsInSingle, TwoLimits, LatticeNotUsed, NoLines, StripsInLines, TooManyPointsInLines,
+   * NoSuchPointOfLine, NonFinitePointOfLine, LinesElsewhere, LinesFarOutside, PolygonsAreLines,
+   * LinesNotDraped, LinesNotSettled, ArraysLeftOut, OnOneRank (with a reason: ErrorNeedsAll,
+   * DrapingNeedsAll), RankWaits, NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 
@@ -344,6 +355,7 @@ protected:
   double Lattice[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   double LatticeTolerance = 0.01;
   bool RemoveUnusedPoints = false;
+  int OutputPointsPrecision = DEFAULT_PRECISION;
   int NumberOfThreads = 0;
 
   vtkIdType NumberOfLattices = 0;

@@ -192,6 +192,7 @@ int vtkTrimOutwardTriangles::RequestData(
     this, this->Controller, request, inputVector, outputVector, this->Messages);
   call.Second = "boundary";
   call.CleanedOutputs = this->RemoveUnusedPoints ? 2 : 0;
+  call.Precision = this->OutputPointsPrecision;
   call.Sums = { &this->NumberOfOutwardTriangles, &this->NumberOfRecoveredEdges,
     &this->NumberOfPointsLeftOut, &this->NumberOfInsertedPoints };
   call.Maxima = { &this->EffectiveGapTolerance };
@@ -279,6 +280,7 @@ void vtkTrimOutwardTriangles::PrintSelf(ostream& os, vtkIndent indent)
      << this->GridSteps[2] << ", " << this->GridSteps[3] << "\n";
   os << indent << "RecoverBoundary: " << (this->RecoverBoundary ? "On" : "Off") << "\n";
   os << indent << "RemoveUnusedPoints: " << (this->RemoveUnusedPoints ? "On" : "Off") << "\n";
+  os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "EffectiveGapTolerance: " << this->EffectiveGapTolerance << "\n";

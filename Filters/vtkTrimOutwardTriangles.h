@@ -211,6 +211,17 @@ public:
 
   ///@{
   /**
+   * The type of points in all outputs: vtkAlgorithm::SINGLE_PRECISION, DOUBLE_PRECISION or
+   * DEFAULT_PRECISION (default): float where the input's are float and there is no boundary, else double.
+   * Single precision rounds what has been made in double; a triangle that would turn over then, or
+   * lose its area, is an error.
+   */
+  vtkSetMacro(OutputPointsPrecision, int);
+  vtkGetMacro(OutputPointsPrecision, int);
+  ///@}
+
+  ///@{
+  /**
    * Threads to use, of those that vtkSMPTools has: 0 (default) to 1024, of which 0 is all. Its
    * backend and number are as you have set them; where VTK starts without threads (backend
    * Sequential), vtkSMPTools::SetBackend("STDThread") or VTK_SMP_BACKEND_IN_USE=STDThread in the
@@ -276,12 +287,11 @@ public:
    * {property:Spacing}); in a composite ("block", the name of the block); and a row for each value.
    * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent, whose
    * text has the same for people, are invoked. Codes, besides those of data that are invalid, which
-   * are "Words":
-   * NothingToTrim, InvalidThreads, InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut,
-   * BoundaryLeavesOutAll, RingsRepeated, BoundaryEnclosesNothing (reasons: NothingInRing,
-   * NothingBetweenRings, BoundaryElsewhere), StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
-   * ArraysLeftOut, OnOneRank (with a reason: NormalsNeedAll, PartsDoNotFit), RankWaits,
-   * NotEnoughMemory, Stopped.
+   * are "Words": NothingToTrim, InvalidThreads, InvalidPrecision, FoldsInSingle,
+   * InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut, BoundaryLeavesOutAll, RingsRepeated,
+   * BoundaryEnclosesNothing (reasons: NothingInRing, NothingBetweenRings, BoundaryElsewhere),
+   * StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, ArraysLeftOut, OnOneRank (with a
+   * reason: NormalsNeedAll, PartsDoNotFit), RankWaits, NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 
@@ -299,6 +309,7 @@ protected:
   bool RecoverBoundary = true;
   int BoundaryEdges = FOLLOW_SURFACE;
   bool RemoveUnusedPoints = false;
+  int OutputPointsPrecision = DEFAULT_PRECISION;
   int NumberOfThreads = 0;
 
   double EffectiveGapTolerance = 0.0;

@@ -133,9 +133,9 @@ class Run:
         for data in lines.values() if options.project else ():
             set_crs(data, crs_of(data) or crs)  # lines that tell none are in that of the points
         names = {"points": options.files[0], "boundary": options.boundary, "faults": options.faults}
-        cloud, lines, wall = in_plane(cloud, lines, options.given)
+        cloud, lines = in_plane(cloud, lines, options.given)
         lines, notes = fitted(cloud, lines, names, options.given, options.strict)
-        cloud.notes += wall + notes + notes_on(cloud, lines)
+        cloud.notes += notes + notes_on(cloud, lines)
         return cloud, lines.get("boundary"), lines.get("faults")
 
     def check_spacing(self, reach):

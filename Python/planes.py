@@ -1,22 +1,16 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Clouds that lie in a plane other than x,y, on a wall say: how they are noticed, and turned."""
+"""Clouds that lie in a plane other than x,y, on a wall say: how they are turned."""
 
 import numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
 from .clouds import bare_lines, coordinates_of, heights_of, make_points, marked_points
 from .messages import ElevationSurfaceError
-from .names import argument, option
+from .names import argument
 from .ranks import all_values
 
 MOST_SAMPLES = 20_000  # points of each rank
-# A cloud is on a wall when its best plane is steeper than this, and its scatter off the plane is at
-# most a part of that along it. A survey along one line is none: its scatter along the plane differs more.
-STEEP = 60.0  # degrees
-THIN = 0.1
-LEAST_WIDTH = 0.2  # of the plane's length
-LEAST_POINTS = 20
 OUTLYING = 3.0  # spans of the middle 80 % of x, y or z beside it: nulls and blunders
 
 
@@ -81,26 +75,10 @@ def best_plane(points, ranks=None):
     return Plane(unit * middle, directions[:, 0]), unit * numpy.sqrt(numpy.maximum(squares, 0.0))
 
 
-def wall_note(points, ranks=None):
-    """A line for the user where the points lie on a wall, else None."""
-    if len(sample_of(points, ranks)) < LEAST_POINTS:
-        return None
-    plane, (off, across, along) = best_plane(points, ranks)
-    steepness = numpy.degrees(numpy.arccos(min(1.0, plane.axes[2][2])))
-    if steepness < STEEP or off > THIN * across or not across > LEAST_WIDTH * along:
-        return None
-    return (
-        f"the points lie on a wall: their best plane is {steepness:.0f} degrees steep, and they scatter "
-        f"{off:.3g} off it and {across:.3g} along it; z is taken as the height above x,y all the same: "
-        f"{option('plane')} best turns the plane level, and back afterwards"
-    )
-
-
 def in_plane(cloud, lines, given, ranks=None):
-    """(Cloud, lines) as they are reconstructed, with plane=best turned into their best plane; [notes]."""
+    """(Cloud, lines) as they are reconstructed, with plane=best turned into their best plane."""
     if not given.get("plane"):
-        note = wall_note(cloud.points, ranks)
-        return cloud, lines, [note] if note else []
+        return cloud, lines
     low, high = heights_of(cloud.points, ranks) or (0.0, 0.0)
     for name, data in lines.items():
         is_zero = not coordinates_of(data)[:, 2].any() and (low > 0.0 or high < 0.0)
@@ -115,7 +93,7 @@ def in_plane(cloud, lines, given, ranks=None):
     if not across > 1e-6 * along:
         raise ElevationSurfaceError(f"{argument('plane')}: all finite points lie on one line")
     turned.points = turned.plane.levelled(cloud.points)
-    return turned, {name: turned.plane.levelled(data) for name, data in lines.items()}, []
+    return turned, {name: turned.plane.levelled(data) for name, data in lines.items()}
 
 
 def turn_back(result):

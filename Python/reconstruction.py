@@ -366,11 +366,11 @@ def reconstruct_cloud(cloud, lines, names, given, *, strict=False, ranks=None, *
     lines, names  as fitted() takes them
     """
     check_spacing(least_reach(cloud.points, ranks), given.get("spacing", 0.0))
-    cloud, lines, wall = in_plane(cloud, lines, given, ranks)
+    cloud, lines = in_plane(cloud, lines, given, ranks)
     lines, notes = fitted(cloud, lines, names, given, strict, ranks)
     boundary, faults = lines.get("boundary"), lines.get("faults")
     result = run_chain(cloud, boundary, faults, given, strict=strict, ranks=ranks, **options)
-    result.notes[:0] = wall + notes
+    result.notes[:0] = notes
     return result
 
 

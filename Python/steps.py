@@ -246,6 +246,8 @@ def why_no_triangle(ranks, xyz, limit, warnings):
         return (
             f"no surface: all {number_of_finite:,} finite points lie on one line in x,y, from "
             f"({a[0]:.10g}, {a[1]:.10g}) to ({b[0]:.10g}, {b[1]:.10g})"
+            + (f"; if they are a wall, {argument('plane')} best makes its surface"
+               if any(one.code == "PointsOnWall" for one in warnings) else "")
         )
     name = argument("maximum_edge_length")
     words = f"no surface: no triangle has edges of at most {limit:g}; use a larger {name}."

@@ -13,6 +13,8 @@
 #include "LimitAdvice.h"
 #include "MeshConversion.h"
 #include "PatchedSurface.h"
+#include "PointsOnWall.h"
+#include "PointsPrecision.h"
 #include "ReportMessages.h"
 #include "Requests.h"
 #include "TrimmedSurface.h"

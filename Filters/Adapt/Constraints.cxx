@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace elevation
 {
@@ -77,21 +76,6 @@ void CheckLines(const ConstraintLines& lines, const Box& box, std::vector<Messag
 
 namespace
 {
-/** The type of the output's points: float if the added ones are exact in it. */
-int TypeOfPoints(vtkPoints* input, const std::vector<AddedPoint>& added)
-{
-  bool isFloat = !input || input->GetDataType() == VTK_FLOAT;
-  for (const AddedPoint& point : added)
-  {
-    for (const double value : { point.Position.X, point.Position.Y, point.Elevation })
-    {
-      isFloat = isFloat && std::fabs(value) <= std::numeric_limits<float>::max() &&
-        static_cast<double>(static_cast<float>(value)) == value;
-    }
-  }
-  return isFloat ? VTK_FLOAT : VTK_DOUBLE;
-}
-
 /** The array of the constraints that matches one of the input, or nullptr. */
 vtkAbstractArray* FindGiven(vtkPointData* source, vtkAbstractArray* array)
 {
@@ -134,8 +118,8 @@ void PassPoints(vtkPointSet* input, vtkPolyData* source, const std::vector<Added
   const Progress& progress, vtkPolyData* output)
 {
   const vtkIdType count = static_cast<vtkIdType>(added.size());
-  output->SetPoints(AppendPoints(input->GetPoints(), count, TypeOfPoints(input->GetPoints(), added),
-    SubProgress(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
+  output->SetPoints(AppendPoints(
+    input->GetPoints(), count, SubProgress(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
       xyz[0] = added[i].Position.X;
       xyz[1] = added[i].Position.Y;
       xyz[2] = added[i].Elevation;

@@ -595,7 +595,7 @@ bool IsIdArray(vtkDataSetAttributes* data, vtkAbstractArray* array)
     array == data->GetAbstractAttribute(vtkDataSetAttributes::PEDIGREEIDS);
 }
 
-vtkSmartPointer<vtkPoints> AppendPoints(vtkPoints* input, vtkIdType numberOfNew, int type,
+vtkSmartPointer<vtkPoints> AppendPoints(vtkPoints* input, vtkIdType numberOfNew,
   const Progress& progress, const std::function<void(vtkIdType i, double* xyz)>& place)
 {
   if (numberOfNew == 0)
@@ -605,7 +605,7 @@ vtkSmartPointer<vtkPoints> AppendPoints(vtkPoints* input, vtkIdType numberOfNew,
   const vtkIdType count = input ? input->GetNumberOfPoints() : 0;
   const std::size_t all = static_cast<std::size_t>(count + numberOfNew);
   auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataType(type);
+  points->SetDataType(input ? input->GetDataType() : VTK_DOUBLE);
   points->SetNumberOfPoints(count + numberOfNew);
   for (vtkIdType i = 0; i < count; i += TuplesAtOnce)
   {

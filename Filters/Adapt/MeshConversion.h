@@ -149,10 +149,9 @@ bool IsIdArray(vtkDataSetAttributes* data, vtkAbstractArray* array);
 /**
  * The points of an input, if any, followed by new ones; place(i, xyz) sets the coordinates of new
  * point i.
- * @param[in] type  VTK_FLOAT or VTK_DOUBLE, to which all points are converted
- * @return the input's own points when there are no new ones
+ * @return points of the type of the input's; these themselves when there are no new ones
  */
-vtkSmartPointer<vtkPoints> AppendPoints(vtkPoints* input, vtkIdType numberOfNew, int type,
+vtkSmartPointer<vtkPoints> AppendPoints(vtkPoints* input, vtkIdType numberOfNew,
   const Progress& progress, const std::function<void(vtkIdType i, double* xyz)>& place);
 
 /** The values of new points in one array. Where a function is empty, they have no value. */

@@ -89,9 +89,9 @@ namespace
 void PassPoints(vtkPolyData* input, const FillResult& patches, bool interpolate,
   const Progress& progress, vtkPolyData* output)
 {
-  output->SetPoints(AppendPoints(input->GetPoints(), patches.NumberOfPoints(),
-    HasFloatPoints(input) ? VTK_FLOAT : VTK_DOUBLE, SubProgress(progress, 0.0, 0.3),
-    [&](vtkIdType i, double* xyz) { std::copy_n(patches.Points.data() + 3 * i, 3, xyz); }));
+  output->SetPoints(
+    AppendPoints(input->GetPoints(), patches.NumberOfPoints(), SubProgress(progress, 0.0, 0.3),
+      [&](vtkIdType i, double* xyz) { std::copy_n(patches.Points.data() + 3 * i, 3, xyz); }));
   vtkPointData* pointData = input->GetPointData();
   std::size_t next = 0; // of the attributes, which are in the order of the arrays
   PassExtended(pointData, patches.NumberOfPoints(), output->GetPointData(),

@@ -88,9 +88,8 @@ void PassPoints(
 {
   const std::vector<InsertedVertex>& inserted = trimmed.Inserted;
   const vtkIdType count = static_cast<vtkIdType>(inserted.size());
-  // In double precision; otherwise rounding would move new points off the boundary.
-  output->SetPoints(AppendPoints(input->GetPoints(), count, VTK_DOUBLE,
-    SubProgress(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
+  output->SetPoints(AppendPoints(
+    input->GetPoints(), count, SubProgress(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
       xyz[0] = trimmed.Places[i].X;
       xyz[1] = trimmed.Places[i].Y;
       xyz[2] = 0.0;
@@ -222,17 +221,9 @@ vtkUnsignedCharArray* BoundaryMarksOf(vtkPointData* data)
 void PassTrimmedPoints(
   vtkPolyData* input, const TrimmedPoints& points, const Progress& progress, vtkPolyData* output)
 {
-  vtkPoints* const given = input->GetPoints();
   const vtkIdType added = static_cast<vtkIdType>(points.Added.size());
-  vtkSmartPointer<vtkPoints> passed = AppendPoints(given, added, points.Type, progress,
-    [&points](vtkIdType i, double* xyz) { points.New->GetPoint(points.Added[i], xyz); });
-  if (passed->GetDataType() != points.Type)
-  {
-    passed = vtkSmartPointer<vtkPoints>::New();
-    passed->SetDataType(points.Type);
-    passed->DeepCopy(given);
-  }
-  output->SetPoints(passed);
+  output->SetPoints(AppendPoints(input->GetPoints(), added, progress,
+    [&points](vtkIdType i, double* xyz) { points.New->GetPoint(points.Added[i], xyz); }));
   vtkPointData* const before = input->GetPointData();
   vtkPointData* const after = output->GetPointData();
   after->PassData(before);

@@ -64,7 +64,6 @@ struct TrimmedPoints
   std::vector<vtkIdType> Added;     ///< the new points that it gets
   std::vector<Index> OfOthers;      ///< of the output: points that another part owns
   bool AreMarked = false;           ///< points of any part: all have the flags of ghosts then
-  int Type = 0;                     ///< VTK_FLOAT or VTK_DOUBLE, the same for all parts with points
 };
 
 void PassTrimmedPoints(

@@ -185,7 +185,6 @@ void AddedLines::AddPoints()
     vtkNew<vtkPolyData> near, extended;
     this->PassNear(near);
     PassPoints(near, this->Source, this->Pieces.Added, watched, extended);
-    common.TypeOfPoints = extended->GetPoints()->GetDataType();
     const vtkIdType ofNear = static_cast<vtkIdType>(this->Near.Count());
     PointTable rows(common.Kinds);
     rows.Read(extended, this->LargestId + 1 - ofNear, watched);

@@ -178,7 +178,6 @@ vtkSmartPointer<vtkPolyData> FilledPart::WithCorners(bool areMarked, const Progr
   points.New = this->Filled.Surrounding;
   points.Added.assign(this->Added.begin(), this->Added.end());
   points.AreMarked = areMarked;
-  points.Type = this->Input->GetPoints()->GetDataType();
   const Index own = static_cast<Index>(this->Input->GetNumberOfPoints());
   for (std::size_t i = 0; i < this->Shared.AreCopies.size(); ++i)
   {

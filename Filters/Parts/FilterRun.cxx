@@ -176,9 +176,16 @@ void FilterRun::EmptyOutputs()
 
 vtkSmartPointer<vtkPolyData> FilterRun::ShareSecond(const Ranks& ranks) const
 {
-  return this->Filter->GetNumberOfInputPorts() < 2
-    ? nullptr
-    : ShareLines(vtkDataObject::GetData(this->Inputs[1]), this->Second, ranks);
+  if (this->Filter->GetNumberOfInputPorts() < 2)
+  {
+    return nullptr;
+  }
+  vtkSmartPointer<vtkPolyData> second =
+    ShareLines(vtkDataObject::GetData(this->Inputs[1]), this->Second, ranks);
+  ranks.Agree([&second] {
+    second = second ? vtkPolyData::SafeDownCast(WithPointsFor(true, second)) : nullptr;
+  });
+  return second;
 }
 
 bool FilterRun::ShouldReport(const Place& place, const Ranks& ranks) const
@@ -210,7 +217,7 @@ double FilterRun::GatherSpreadBlocks(
     try
     {
       Message why;
-      this->PrepareParts(own, ranks);
+      this->PrepareParts(own, ranks, second);
       if (!this->RunSpread(own, ranks, second, ofBlock, why))
       {
         std::vector<Message> warnings;
@@ -247,19 +254,26 @@ void FilterRun::AddMessages(const std::vector<Place*>& places, const std::vector
   }
 }
 
-/** What the filter works on: without hidden cells, and with original ids where they are wanted. */
-vtkSmartPointer<vtkPointSet> FilterRun::ShownOf(vtkPointSet* input, vtkIdType first) const
+/**
+ * What the filter works on: without hidden cells, with original ids where they are wanted, and with
+ * points in the precision that is needed.
+ */
+vtkSmartPointer<vtkPointSet> FilterRun::Prepared(
+  vtkPointSet* input, vtkPolyData* second, vtkIdType first) const
 {
-  vtkSmartPointer<vtkPointSet> shown = input;
+  CheckPrecision(this->Precision);
+  vtkSmartPointer<vtkPointSet> shown =
+    WithPointsFor(NeedsDouble(this->Precision, second != nullptr), input);
   if (this->KindOfParts() == PartKind::Mesh)
   {
-    shown = WithoutHiddenCells(vtkPolyData::SafeDownCast(input));
+    shown = WithoutHiddenCells(vtkPolyData::SafeDownCast(shown));
   }
   return this->CleanedOutputs > 0 ? WithOriginalIds(shown, first) : shown;
 }
 
 /** Makes the parts of a block what the filter works on. */
-void FilterRun::PrepareParts(const std::vector<Place*>& places, const Ranks& ranks) const
+void FilterRun::PrepareParts(
+  const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second) const
 {
   std::vector<vtkIdType> counts(1, 0);
   for (vtkPointSet* part : PartsOf(places))
@@ -274,7 +288,7 @@ void FilterRun::PrepareParts(const std::vector<Place*>& places, const Ranks& ran
       if (HasPoints(*place))
       {
         auto* const points = vtkPointSet::SafeDownCast(place->Input);
-        place->Own = this->ShownOf(points, first);
+        place->Own = this->Prepared(points, second, first);
         first += points->GetNumberOfPoints();
         place->Input = place->Own;
       }
@@ -282,8 +296,11 @@ void FilterRun::PrepareParts(const std::vector<Place*>& places, const Ranks& ran
   });
 }
 
-/** Leaves points that cells have in the surfaces of a block; of several ranks, all call it. */
-void FilterRun::RemoveUnused(Block& block, const Ranks& ranks) const
+/**
+ * Leaves points that cells have in the surfaces of a block, and rounds them where that is asked for;
+ * of several ranks, all call it.
+ */
+void FilterRun::FinishOutputs(Block& block, const Ranks& ranks) const
 {
   for (std::size_t port = 0; port < static_cast<std::size_t>(this->CleanedOutputs); ++port)
   {
@@ -293,6 +310,10 @@ void FilterRun::RemoveUnused(Block& block, const Ranks& ranks) const
       NameUnusedByOriginalIds(surface);
     }
     KeepUsed(surface, ranks, SubProgress(block.Progress, 1.0, 1.0));
+  }
+  if (this->Precision == vtkAlgorithm::SINGLE_PRECISION)
+  {
+    ranks.Agree([&block] { RoundPoints(block.Outputs); });
   }
 }
 
@@ -319,7 +340,7 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
     whyGathered = block.WhyGathered;
     return false;
   }
-  this->RemoveUnused(block, ranks);
+  this->FinishOutputs(block, ranks);
   this->AddMessages(places, block.Warnings, this->Warnings);
   Empty(places);
   if (home)
@@ -408,10 +429,10 @@ Message FilterRun::RunPlace(
         " is needed.");
     }
     const vtkSmartPointer<vtkPointSet> input =
-      this->ShownOf(vtkPointSet::SafeDownCast(place.Input), 0);
+      this->Prepared(vtkPointSet::SafeDownCast(place.Input), block.Second, 0);
     block.Input = input;
     body(block);
-    this->RemoveUnused(block, Ranks());
+    this->FinishOutputs(block, Ranks());
     return message;
   }
   catch (const Aborted&)

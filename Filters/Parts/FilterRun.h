@@ -67,6 +67,7 @@ public:
    * (UsedPoints.h): on several ranks global ids or places in the input, rank after rank.
    */
   int CleanedOutputs = 0;
+  int Precision = 2;        ///< OutputPointsPrecision
   bool ListsUnused = false; ///< whether the filter lists unused points in field data
   /** Results of the filter: set to 0, and added up (the largest taken) over blocks and ranks. */
   std::vector<vtkIdType*> Sums;
@@ -95,9 +96,11 @@ private:
   /** Works on the blocks that are spread over ranks. @return the progress that has been made */
   double GatherSpreadBlocks(
     std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress);
-  vtkSmartPointer<vtkPointSet> ShownOf(vtkPointSet* input, vtkIdType first) const;
-  void PrepareParts(const std::vector<Place*>& places, const Ranks& ranks) const;
-  void RemoveUnused(Block& block, const Ranks& ranks) const;
+  vtkSmartPointer<vtkPointSet> Prepared(
+    vtkPointSet* input, vtkPolyData* second, vtkIdType first) const;
+  void PrepareParts(
+    const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second) const;
+  void FinishOutputs(Block& block, const Ranks& ranks) const;
   bool RunSpread(const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second,
     const Progress& progress, Message& whyGathered);
   void AddMessages(const std::vector<Place*>& places, const std::vector<Message>& messages,

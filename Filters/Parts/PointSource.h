@@ -47,6 +47,9 @@ public:
   PointSource(const Ranks& ranks, const std::string& folder);
   ~PointSource();
 
+  /** Whatever the type of the points is. */
+  void UseDoublePoints() { this->TypeOfPoints = VTK_DOUBLE; }
+
   /**
    * Adds points of this rank, numbered on.
    * @throws Error if their arrays are not as those before; Aborted

@@ -270,6 +270,10 @@ void ReconstructParts::Check() const
   {
     throw MakeError<sentences::UnusedPointsInPieces>();
   }
+  if (this->Set.IsPrecisionGiven)
+  {
+    throw MakeError<sentences::PrecisionInPieces>();
+  }
   if (this->IsTrimmed() && this->Set.Trim.Test != OutwardTest::Exact)
   {
     throw MakeError<sentences::InwardNormalNotInPieces>();
@@ -305,6 +309,10 @@ void ReconstructParts::Triangulate(const Progress& progress)
   this->Do(true, [&]() {
     DelaunayOptions& options = this->Set.Delaunay;
     options.Monitor = progress;
+    if (NeedsDouble(vtkAlgorithm::DEFAULT_PRECISION, this->Constraints || this->Boundary))
+    {
+      this->Work->UseDoublePoints();
+    }
     this->Work->Triangulate(
       this->NumberOfParts / this->Everybody->Count(), this->Constraints, options, warnings);
     this->Work->WarnOfMissing(warnings);

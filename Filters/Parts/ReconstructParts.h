@@ -66,6 +66,7 @@ public:
     double LongestEdge = 0.0;      ///< of triangles that filling does not open; 0: of all
     bool DrapeConstraints = false;   ///< for points in memory alone
     bool RemoveUnusedPoints = false; ///< the same
+    bool IsPrecisionGiven = false;   ///< the same
     // Their input 1 has lines of this rank, or composites of them, or there is none.
     vtkAlgorithm* HasConstraints = nullptr;
     vtkAlgorithm* HasBoundary = nullptr;

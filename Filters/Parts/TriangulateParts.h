@@ -57,6 +57,7 @@ public:
   explicit TriangulateParts(const Ranks& ranks, const std::string& folder = std::string());
   ~TriangulateParts();
 
+  void UseDoublePoints() { this->Source.UseDoublePoints(); }
   /** As PointSource::Add(). */
   void Add(vtkPointSet* points, const Progress& progress);
 

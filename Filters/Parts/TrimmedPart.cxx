@@ -265,7 +265,6 @@ void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* b
   const TrimOptions& options, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
 {
   this->Points.AreMarked = areMarked;
-  this->Points.Type = areInserted ? VTK_DOUBLE : this->Input->GetPoints()->GetDataType();
   PassTrimmedPoints(this->Input, this->Points, SubProgress(progress, 0.0, 0.2), kept);
   if (boundary)
   {

@@ -39,6 +39,11 @@ vtkReconstructPieces::vtkReconstructPieces()
     made.RemoveUnusedPoints = this->Delaunay->GetRemoveUnusedPoints() ||
       (this->TrimOutward && this->Trim->GetRemoveUnusedPoints()) ||
       (this->FillHoles && this->Fill->GetRemoveUnusedPoints());
+    for (const int precision : { this->Delaunay->GetOutputPointsPrecision(),
+           this->Trim->GetOutputPointsPrecision(), this->Fill->GetOutputPointsPrecision() })
+    {
+      made.IsPrecisionGiven |= precision != vtkAlgorithm::DEFAULT_PRECISION;
+    }
     made.LongestEdge = this->Fill->GetOpenEdgeLength();
     made.HasConstraints = this->Delaunay;
     made.HasBoundary = this->Trim;

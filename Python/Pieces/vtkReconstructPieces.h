@@ -22,8 +22,8 @@
  *
  * @par Properties:
  * All properties of the triangulation are those of GetDelaunay(), and so are constraints. As those of
- * the other filters, they are brought up to date. MaximumElevationError, DrapeConstraints and
- * RemoveUnusedPoints are for points in memory, and are errors. Where GetTrim() has a boundary, all pieces are trimmed along it, as
+ * the other filters, they are brought up to date. MaximumElevationError, DrapeConstraints,
+ * RemoveUnusedPoints and OutputPointsPrecision are for points in memory, and are errors. Where GetTrim() has a boundary, all pieces are trimmed along it, as
  * that filter would trim the whole surface; with TrimOutward on and no boundary, along the outline that
  * it would find. Where only the whole surface would tell the outline, as of some surveys along lines,
  * there is an error. Points that constraints add get ids after the largest, and
@@ -197,7 +197,7 @@ public:
   /**
    * As of the three filters, but those of the last ErrorEvent or WarningEvent alone. Further codes are
    * HoleTooLarge, Aborted, TooFewPieces, TooFewPiecesToFill, ErrorNotInPieces, ConstraintsNotInPieces,
-   * InwardNormalNotInPieces, UnusedPointsInPieces, BoundaryNotInPieces and OutlineNotInPieces.
+   * InwardNormalNotInPieces, UnusedPointsInPieces, PrecisionInPieces, BoundaryNotInPieces and OutlineNotInPieces.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 

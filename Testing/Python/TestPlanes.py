@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Points on a wall or in a tilted plane: a note tells of them, and plane="best" makes their surface."""
+"""Points on a wall or in a tilted plane: a warning reports them, and plane="best" makes their surface."""
 
 import os
 import tempfile
@@ -10,10 +10,11 @@ import warnings
 import numpy
 
 import meshes
-from vtkelevationsurface import ElevationSurfaceError, read, reconstruct
+import outcomes
+from vtkelevationsurface import ElevationSurfaceError, read, reconstruct, vtkGridDelaunay2D
 from vtkelevationsurface.clouds import coordinates_of, make_points
 from vtkelevationsurface.command import main
-from vtkelevationsurface.planes import best_plane, wall_note
+from vtkelevationsurface.planes import best_plane
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Data")
@@ -39,14 +40,22 @@ def area(surface):
     return 0.5 * float(numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1).sum())
 
 
-def note(xyz):
-    return wall_note(make_points(numpy.asarray(xyz, "f8")))
+def note(points):
+    """What the filter says of walls."""
+    one = vtkGridDelaunay2D()
+    said = outcomes.noted(one)
+    one.SetInputData(points)
+    one.Update()
+    return "".join(text for _, text in said if "lie on a wall" in text)
 
 
 class Walls(unittest.TestCase):
     def test_a_note_tells_of_walls(self):
         for degrees in (65, 75, 90):
-            self.assertIn(f"{degrees} degrees", note(tilted(relief(), degrees)) or "")
+            self.assertIn(f"{degrees} degrees", note(make_points(tilted(relief(), degrees))))
+        upright = tilted(relief(), 90, 0.0)
+        upright[:, 1] = 5.0  # which has no triangle
+        self.assertIn("90 degrees", note(make_points(upright)))
 
     def test_none_tells_of_terrain(self):
         lines = numpy.array([(x, y, 3 * numpy.sin(x / 50)) for y in range(0, 900, 300) for x in range(900)])
@@ -61,7 +70,7 @@ class Walls(unittest.TestCase):
             "one place": numpy.ones((50, 3)),
         }
         for name, xyz in cases.items():
-            self.assertIsNone(note(xyz), name)
+            self.assertEqual(note(make_points(numpy.asarray(xyz, "f8"))), "", name)
         for name in os.listdir(DATA):
             if name.endswith((".vtp", ".xyz", ".csv", ".txt", ".dat")) and "boundary" not in name:
                 with self.subTest(name=name):
@@ -69,7 +78,13 @@ class Walls(unittest.TestCase):
                         points = read(os.path.join(DATA, name)).points
                     except ElevationSurfaceError:
                         continue  # no points
-                    self.assertIsNone(wall_note(points))
+                    self.assertEqual(note(points), "")
+
+    def test_an_upright_wall_names_the_way_out(self):
+        upright = tilted(relief(), 90, 0.0)
+        upright[:, 1] = 5.0
+        with self.assertRaisesRegex(ElevationSurfaceError, "on one line in x,y, .* plane best makes"):
+            reconstruct(upright)
 
     def test_reconstruct_warns(self):
         with warnings.catch_warnings(record=True) as caught:

@@ -49,6 +49,7 @@ points that are not finite        |                            | not finite     
 two points                        |                            | two points                   | s  s  s  s  s  s  s
 no points                         |                            | no points                    | s  s  s  s  s  s  s
 points of another kind of data set|                            | points + unstructured        | s  s  s  s  s  s  s
+points in single precision        | OutputPointsPrecision=0    | breaklines                   | s  s  s  s  r  r  r
 unused points removed             | RemoveUnusedPoints=True    | not finite + global ids      | s  s  s  s  r  r  r
 point data: float                 |                            | points + float array         | s  s  s  s  s  s  s
 point data: double                |                            | points + double array        | s  s  s  s  s  s  s
@@ -79,6 +80,7 @@ boundary found along tracks       |                            | tracks         
 boundary found by inward normals  | OutwardTest=1              | gaps                         | s  s  g  g  r  r  r
 gap tolerance                     | GapTolerance=2.5           | gaps                         | s  s  s  s  s  s  s
 steps of a grid                   | GridSteps=(2.0, 1.5, -0.9, 1.2) | lattice                      | s  s  s  s  s  s  s
+points in single precision        | OutputPointsPrecision=0    | coast                        | s  s  s  s  r  r  r
 unused points removed             | RemoveUnusedPoints=True    | coast + global ids           | s  s  s  s  r  r  r
 points of floats                  |                            | coast + float                | s  s  s  s  s  s  s
 point data: float, double         |                            | coast + float array + double array | s  s  s  s  s  s  s
@@ -111,6 +113,8 @@ most points expected              | MaximumNumberOfExpectedPoints=20 | coast and
 spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  s
 point data not interpolated       | InterpolatePointData=False | coast and lakes              | s  s  s  s  s  s  s
 holes of an edge limit            | Delaunay.MaximumEdgeLength=2.2 | points                       | s  s  s  s  s  s  s
+points in single precision        | OutputPointsPrecision=0    | coast and lakes              | s  s  s  s  r  r  r
+points of floats, in double        | OutputPointsPrecision=1, Delaunay.MaximumEdgeLength=2.2 | points + float               | s  s  s  s  r  r  r
 unused points removed, by all filters | RemoveUnusedPoints=True, Trim.RemoveUnusedPoints=True, Delaunay.RemoveUnusedPoints=True | coast and lakes + global ids | s  s  s  d2 r  r  r
 points of floats                  |                            | coast and lakes + float      | s  s  s  s  s  s  s
 point data: float, double         |                            | coast and lakes + float array + double array | s  s  s  s  s  s  s

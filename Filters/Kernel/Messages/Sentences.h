@@ -32,6 +32,11 @@ ELEVATION_SENTENCE(ArraysLeftOut,
   "out.");
 ELEVATION_SENTENCE(
   InvalidThreads, "{property:NumberOfThreads} is {value}; it must be 0 (those of VTK) to {most}.");
+ELEVATION_SENTENCE(InvalidPrecision,
+  "{property:OutputPointsPrecision} is {value}; it must be 0 (single), 1 (double) or 2 (default).");
+ELEVATION_SENTENCE(FoldsInSingle,
+  "In single precision cell {cell} of the output would turn over, lose its area or reach infinity. "
+  "Use {property:OutputPointsPrecision} 1 (double), or move the origin to the points first.");
 /** @} */
 
 /** @name Of a filter on several ranks; each rank reports it for itself, while it waits @{ */
@@ -90,6 +95,10 @@ ELEVATION_SENTENCE(LinesNotSettled,
 /** @} */
 
 /** @name Of the triangulation @{ */
+ELEVATION_SENTENCE(PointsOnWall,
+  "The points lie on a wall: their best plane is {degrees} degrees steep, and they scatter {off} "
+  "off it and {across} along it. z is taken as the height above x,y all the same. Turn the points "
+  "level first, as plane=\"best\" of reconstruct() in Python, --plane best and Plane do.");
 ELEVATION_SENTENCE(NoTriangle,
   "No triangle was made: the {points} input points are fewer than three distinct finite points, "
   "or all on one line.");
@@ -226,6 +235,8 @@ ELEVATION_SENTENCE(ConstraintsNotInPieces,
   "Constraints with {property:DrapeConstraints} are for points in memory, not for pieces.");
 ELEVATION_SENTENCE(UnusedPointsInPieces,
   "{property:RemoveUnusedPoints} is for a surface in memory; pieces keep all points.");
+ELEVATION_SENTENCE(PrecisionInPieces,
+  "{property:OutputPointsPrecision} is for a surface in memory; pieces have its default.");
 ELEVATION_SENTENCE(InwardNormalNotInPieces,
   "{property:OutwardTest} InwardNormal is for a surface in memory, not for pieces.");
 ELEVATION_SENTENCE(BoundaryNotInPieces,

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PointsOnWall.h"
+
+#include "vtkMath.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace elevation
+{
+
+namespace
+{
+using Place = std::array<double, 3>;
+
+constexpr Index MostSamples = 2000;
+constexpr std::size_t FewestPoints = 20;
+// A wall is steeper than this, scatters off its plane by at most this part of its width, and is at
+// least this part of its length wide.
+constexpr double Steep = 60.0, Thin = 0.1, Wide = 0.2; // degrees
+/** Points are blunders this many spans of the middle 80 % of x, y or z beside it. */
+constexpr double Outlying = 3.0;
+
+void RemoveBlunders(std::vector<Place>& sample)
+{
+  Place low, high;
+  for (int c = 0; c < 3; ++c)
+  {
+    const auto quantile = [&](double part) {
+      const auto at = sample.begin() + static_cast<std::ptrdiff_t>(part * (sample.size() - 1));
+      std::nth_element(sample.begin(), at, sample.end(),
+        [c](const Place& p, const Place& q) { return p[c] < q[c]; });
+      return (*at)[c];
+    };
+    const double first = quantile(0.1), last = quantile(0.9);
+    low[c] = first - Outlying * (last - first);
+    high[c] = last + Outlying * (last - first);
+  }
+  const auto isBlunder = [&](const Place& p) {
+    return p[0] < low[0] || p[0] > high[0] || p[1] < low[1] || p[1] > high[1] || p[2] < low[2] ||
+      p[2] > high[2];
+  };
+  sample.erase(std::remove_if(sample.begin(), sample.end(), isBlunder), sample.end());
+}
+} // namespace
+
+std::vector<Place> SampleOf(const PointView& points)
+{
+  // Steps of the golden ratio meet no rhythm of rows in the order.
+  constexpr double golden = 0.6180339887498949;
+  const Index count = std::min(points.Count, MostSamples);
+  std::vector<Place> sample;
+  for (Index i = 0; i < count; ++i)
+  {
+    const double part = golden * i - std::floor(golden * i);
+    const Index at = count == points.Count ? i : static_cast<Index>(part * points.Count);
+    const Point2 p = points.At(at);
+    const Place place = { p.X, p.Y, points.Elevation(at) };
+    if (std::all_of(place.begin(), place.end(), [](double value) { return std::isfinite(value); }))
+    {
+      sample.push_back(place);
+    }
+  }
+  return sample;
+}
+
+void WarnOfWall(std::vector<Place> sample, std::vector<Message>& warnings)
+{
+  if (sample.size() < FewestPoints)
+  {
+    return;
+  }
+  RemoveBlunders(sample);
+  Place middle = {};
+  double unit = 0.0; // squares of large coordinates would be infinite
+  for (const Place& p : sample)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      unit = std::max(unit, std::fabs(p[c]));
+      middle[c] += p[c] / sample.size();
+    }
+  }
+  double squares[3][3] = {};
+  for (const Place& p : sample)
+  {
+    for (int c = 0; c < 9 && unit > 0.0; ++c)
+    {
+      squares[c / 3][c % 3] += (p[c / 3] - middle[c / 3]) / unit * ((p[c % 3] - middle[c % 3]) / unit);
+    }
+  }
+  double scatter[3], directions[3][3];
+  vtkMath::Diagonalize3x3(squares, scatter, directions);
+  const auto normal = std::min_element(scatter, scatter + 3) - scatter;
+  const double upright = std::min(1.0, std::fabs(directions[2][normal]));
+  for (double& value : scatter)
+  {
+    value = unit * std::sqrt(std::max(0.0, value) / (sample.size() - 1));
+  }
+  std::sort(scatter, scatter + 3);
+  const double off = scatter[0], across = scatter[1], along = scatter[2];
+  const double steepness = vtkMath::DegreesFromRadians(std::acos(upright));
+  if (steepness >= Steep && off <= Thin * across && across > Wide * along)
+  {
+    warnings.push_back(MakeMessage<sentences::PointsOnWall>(
+      std::lround(steepness), ToText(off, 3), ToText(across, 3)));
+  }
+}
+
+} // namespace elevation
