@@ -122,7 +122,7 @@ macro (es_make_state)
       OUTPUT  "${es_state}"
       COMMAND "${CMAKE_COMMAND}" -E env ${es_environment} ${es_prefix} "${ES_PVPYTHON}"
               "${CMAKE_CURRENT_SOURCE_DIR}/Plugin/make_state.py" "$<TARGET_FILE:ElevationSurfacePlugin>" "${es_state}"
-      DEPENDS ElevationSurfacePlugin vtkElevationSurfacePython "${CMAKE_CURRENT_SOURCE_DIR}/Plugin/make_state.py"
+      DEPENDS ElevationSurfacePlugin "${es_python_target}" "${CMAKE_CURRENT_SOURCE_DIR}/Plugin/make_state.py"
       COMMENT "The state ElevationSurface.pvsm (-DES_STATE=OFF leaves it out)"
       VERBATIM)
     add_custom_target(ElevationSurfaceState ALL DEPENDS "${es_state}")

@@ -26,7 +26,6 @@ endif ()
 # vtk_module_build() needs the install folders, and the output folders, before it runs.
 include(GNUInstallDirs)
 set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
-set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_BINDIR}")
 set(es_library_destination "${CMAKE_INSTALL_LIBDIR}")
 if (SKBUILD) # by pip: the library lies in the package, which finds it there
@@ -72,8 +71,8 @@ include(CTest)
 # ---- VTK ---------------------------------------------------------------------------------------
 set(CMAKE_POLICY_DEFAULT_CMP0174 OLD) # else CMake 3.31 and newer warn of VTK's own files
 set(es_vtk_components CommonCore CommonDataModel CommonExecutionModel FiltersCore ParallelCore eigen)
-set(es_vtk_test_components FiltersModeling FiltersSources IOXML InteractionStyle
-  RenderingOpenGL2 TestingCore TestingRendering)
+set(es_vtk_test_components FiltersModeling FiltersSources IOXML TestingCore)
+set(es_vtk_optional_components ParallelMPI)
 
 if (ES_PARAVIEW)
   include("${CMAKE_CURRENT_LIST_DIR}/ParaView.cmake")
@@ -96,11 +95,12 @@ else ()
 endif ()
 if (BUILD_TESTING)
   list(APPEND es_vtk_components ${es_vtk_test_components})
+  list(APPEND es_vtk_optional_components InteractionStyle RenderingOpenGL2 TestingRendering)
 endif ()
 if (ES_BENCHMARKS)
   list(APPEND es_vtk_components FiltersModeling IOXML)
 endif ()
-find_package(VTK 9.1 REQUIRED COMPONENTS ${es_vtk_components} OPTIONAL_COMPONENTS ParallelMPI)
+find_package(VTK 9.1 REQUIRED COMPONENTS ${es_vtk_components} OPTIONAL_COMPONENTS ${es_vtk_optional_components})
 message(STATUS "VTK ${VTK_VERSION} in ${VTK_DIR}")
 
 # ---- the module --------------------------------------------------------------------------------
@@ -115,33 +115,34 @@ endif ()
 set(es_tests OFF)
 if (BUILD_TESTING)
   set(es_tests ON)
+  include("${CMAKE_CURRENT_LIST_DIR}/Testing.cmake")
 endif ()
+
+# VTK enters the folder where it finds the module's file. That cannot be the root, which has been entered; so this
+# is a link to the root's vtk.module.
 vtk_module_scan(
-  MODULE_FILES     "${CMAKE_CURRENT_SOURCE_DIR}/vtk.module"
+  MODULE_FILES     "${CMAKE_CURRENT_SOURCE_DIR}/Filters/ElevationSurface.module"
   REQUEST_MODULES  VTK::ElevationSurface
   PROVIDES_MODULES es_modules
   ENABLE_TESTS     "${es_tests}")
 
-# vtk_module_build() adds the folder of vtk.module, which is the root, with the binary folder
-# CMAKE_BINARY_DIR, which is taken. Within this function's scope it is another one.
-function (es_build_module)
-  set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${es_library_destination}")
-  set(CMAKE_BINARY_DIR "${CMAKE_BINARY_DIR}/module")
-  vtk_module_build(
-    MODULES               ${es_modules}
-    PACKAGE               vtkElevationSurface
-    INSTALL_EXPORT        vtkElevationSurface
-    INSTALL_HEADERS       ON
-    HEADERS_DESTINATION   "${CMAKE_INSTALL_INCLUDEDIR}/vtkElevationSurface"
-    LIBRARY_DESTINATION   "${es_library_destination}"
-    HIERARCHY_DESTINATION "${CMAKE_INSTALL_LIBDIR}/vtk/hierarchy/vtkElevationSurface"
-    TARGETS_COMPONENT     "${es_library_component}"
-    CMAKE_DESTINATION     "${es_cmake_destination}"
-    VERSION               "${PROJECT_VERSION}"
-    SOVERSION             "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
-    TEST_DIRECTORY_NAME   "NONE")
-endfunction ()
-es_build_module()
+vtk_module_build(
+  MODULES                    ${es_modules}
+  PACKAGE                    vtkElevationSurface
+  INSTALL_EXPORT             vtkElevationSurface
+  INSTALL_HEADERS            ON
+  HEADERS_DESTINATION        "${CMAKE_INSTALL_INCLUDEDIR}/vtkElevationSurface"
+  LIBRARY_DESTINATION        "${es_library_destination}"
+  HIERARCHY_DESTINATION      "${CMAKE_INSTALL_LIBDIR}/vtk/hierarchy/vtkElevationSurface"
+  TARGETS_COMPONENT          "${es_library_component}"
+  CMAKE_DESTINATION          "${es_cmake_destination}"
+  VERSION                    "${PROJECT_VERSION}"
+  SOVERSION                  "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
+  TEST_DIRECTORY_NAME        "../Testing"
+  TEST_DATA_TARGET           ESData
+  TEST_INPUT_DATA_DIRECTORY  "${CMAKE_CURRENT_SOURCE_DIR}/Data"
+  TEST_OUTPUT_DATA_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/Data"
+  TEST_OUTPUT_DIRECTORY      "${CMAKE_BINARY_DIR}/Testing/Temporary")
 if (NOT ES_KERNEL AND NOT es_multi_config) # what another build may take over as its ES_KERNEL
   file(GENERATE OUTPUT "${CMAKE_BINARY_DIR}/ES_KERNEL" CONTENT "$<TARGET_FILE:ElevationKernel>\n")
 endif ()
@@ -191,6 +192,10 @@ if (ES_WRAP_PYTHON)
     COMPONENT           "${es_python_component}"
     INSTALL_HEADERS     OFF
     BUILD_STATIC        OFF)
+  set(es_python_target vtkElevationSurfacePython)
+  if (NOT TARGET "${es_python_target}") # from VTK 9.7 on
+    set(es_python_target PyvtkElevationSurfacePython)
+  endif ()
   set(es_python_package "${es_python_destination}/vtkelevationsurface")
   configure_file("${CMAKE_CURRENT_SOURCE_DIR}/Python/__init__.py.in"
     "${CMAKE_BINARY_DIR}/${es_python_package}/__init__.py" @ONLY)
@@ -220,7 +225,7 @@ if (ES_WRAP_PYTHON)
       OUTPUT  "${es_stubs}"
       COMMAND "${CMAKE_COMMAND}" -E env "PYTHONPATH=${CMAKE_BINARY_DIR}/${es_python_destination}:$ENV{PYTHONPATH}"
               "${Python3_EXECUTABLE}" -m vtkmodules.generate_pyi -p vtkelevationsurface vtkElevationSurface
-      DEPENDS vtkElevationSurfacePython
+      DEPENDS "${es_python_target}"
       VERBATIM)
     add_custom_target(ElevationSurfaceStubs ALL DEPENDS "${es_stubs}")
     install(FILES "${es_stubs}"
@@ -256,9 +261,17 @@ endif ()
 include("${CMAKE_CURRENT_LIST_DIR}/Documentation.cmake")
 
 # ---- tests -------------------------------------------------------------------------------------
+# What our own project makes: the Python package, the plugin, the installation. The module's have been added with it.
 if (BUILD_TESTING)
-  include("${CMAKE_CURRENT_LIST_DIR}/Testing.cmake")
-  add_subdirectory(Testing)
+  if (ES_PARAVIEW)
+    add_subdirectory(Testing/ParaView)
+  elseif (ES_WRAP_PYTHON)
+    add_subdirectory(Testing/Python)
+  endif ()
+  add_subdirectory(Testing/Install)
+  if (NOT ES_PARAVIEW) # VTK's CMake is the same there
+    add_subdirectory(Testing/RemoteModule)
+  endif ()
   ExternalData_Add_Target(ESData)
 endif ()
 

@@ -1,16 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# What vtk_module_build() of VTK sets up for the Testing folder of a module, for our own build.
+# What the tests of our own project need, before vtk_module_build() enters Testing.
 
 include("${VTK_DIR}/vtkModuleTesting.cmake") # installed with VTK, but not included by its config
-
-set(_vtk_build_test VTK::ElevationSurface)
-set(_vtk_build_test_labels)
-set(_vtk_build_TEST_DATA_TARGET ESData)
-set(_vtk_build_TEST_INPUT_DATA_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/Data")
-set(_vtk_build_TEST_OUTPUT_DATA_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/Data")
-set(_vtk_build_TEST_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/Testing/Temporary")
 
 # All data are plain files of the repository; ExternalData asks for a store all the same.
 set(ExternalData_OBJECT_STORES "${CMAKE_BINARY_DIR}/ExternalData/Objects")
@@ -49,9 +42,3 @@ function (es_find_mpirun variable)
   endif ()
   set("${variable}" "${command}" PARENT_SCOPE)
 endfunction ()
-
-# Where lines are counted, the library can write its counts before its end.
-if (CMAKE_BUILD_TYPE STREQUAL "Coverage")
-  get_target_property(es_target VTK::ElevationSurface ALIASED_TARGET)
-  target_sources("${es_target}" PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/Testing/Coverage/Dump.cxx")
-endif ()

@@ -8,6 +8,7 @@
 #ifndef VTKVersions_h
 #define VTKVersions_h
 
+#include "vtkAbstractArray.h"
 #include "vtkAlgorithm.h"
 #include "vtkVersionMacros.h"
 
@@ -24,6 +25,16 @@ inline bool IsAbortRequested(vtkAlgorithm* filter)
   return filter->CheckAbort();
 #else
   return filter->GetAbortExecute() != 0;
+#endif
+}
+
+/** Makes room for tuples, more than there are, and keeps the values. */
+inline void ReserveTuples(vtkAbstractArray* array, vtkIdType count)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 7, 0)
+  array->ReserveTuples(count);
+#else
+  array->Resize(count);
 #endif
 }
 

@@ -4,6 +4,7 @@
 
 #include "Adapt/Adapt.h"
 
+#include "vtkAOSDataArrayTemplate.h"
 #include "vtkAbstractArray.h"
 #include "vtkBitArray.h"
 #include "vtkCellData.h"
@@ -240,6 +241,17 @@ void PointTable::View(vtkPointData* data)
 
 namespace
 {
+/** The numbers of a table's array, which lie as View() and MakeArray() leave them: one after another. */
+char* BytesOf(vtkAbstractArray* array)
+{
+  switch (array->GetDataType())
+  {
+    vtkTemplateMacro(return reinterpret_cast<char*>(
+      vtkAOSDataArrayTemplate<VTK_TT>::FastDownCast(array)->GetPointer(0)));
+  }
+  return nullptr;
+}
+
 /** Appends the values of chosen tuples. */
 void PackArray(const ArrayKind& kind, vtkAbstractArray* array, const std::vector<vtkIdType>& places,
   Bytes& bytes)
@@ -249,7 +261,7 @@ void PackArray(const ArrayKind& kind, vtkAbstractArray* array, const std::vector
     const std::size_t size = bytes.size();
     bytes.Resize(size + row * places.size());
     char* to = bytes.data() + size;
-    const char* const from = static_cast<const char*>(array->GetVoidPointer(0));
+    const char* const from = BytesOf(array);
     for (const vtkIdType place : places)
     {
       std::memcpy(to, from + row * place, row);
@@ -279,7 +291,7 @@ void UnpackArray(const ArrayKind& kind, vtkIdType first, vtkIdType count, const 
 {
   if (const std::size_t row = RowSize(kind))
   {
-    TakeFrom(from, static_cast<char*>(array->GetVoidPointer(0)) + row * first, row * count);
+    TakeFrom(from, BytesOf(array) + row * first, row * count);
     return;
   }
   auto* const texts = vtkArrayDownCast<vtkStringArray>(array);
@@ -348,7 +360,7 @@ void PointTable::Unpack(const Bytes* packed, std::size_t count)
   this->Ids.Resize(static_cast<std::size_t>(all));
   for (const auto& array : this->Arrays)
   {
-    array->Resize(all); // keeps the values, unlike the next
+    ReserveTuples(array, all); // keeps the values, unlike the next
     array->SetNumberOfTuples(all);
     if (array->GetNumberOfTuples() != all)
     {

@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs a test script as vtkpython would.
 
-    launch.py <folder of the package> [--enable-bt] <script> [arguments]
-
-VTK's test functions pass --enable-bt to vtkpython, which plain python3 would refuse.
+    launch.py <folder of the package> <script> [arguments]
 """
 import faulthandler
 import os
@@ -22,10 +20,8 @@ def name_skipped(result, test, reason, add=unittest.TextTestResult.addSkip):
 def main():
     if len(sys.argv) < 3:
         sys.exit(__doc__)
+    faulthandler.enable()
     package_folder, *arguments = sys.argv[1:]
-    if arguments[0] == "--enable-bt":
-        faulthandler.enable()
-        arguments = arguments[1:]
     script = arguments[0]
     # As if the script had been started directly: its own folder first, then the package. Programs that
     # the script starts find the package too.
