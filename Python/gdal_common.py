@@ -11,8 +11,8 @@ from .messages import FileError
 from .names import option
 from .reading.columns import meaning
 
-# Drivers that are not asked: text tables have a reader of their own, and nothing is fetched.
-NOT_ASKED = {"XYZ", "DERIVED", "HTTP", "WMS", "WCS", "WMTS", "OGCAPI", "PLMOSAIC", "EEDA", "EEDAI"}
+# Drivers that are not asked: text tables and ZMAP+ have readers of their own, and nothing is fetched.
+NOT_ASKED = {"XYZ", "ZMap", "DERIVED", "HTTP", "WMS", "WCS", "WMTS", "OGCAPI", "PLMOSAIC", "EEDA", "EEDAI"}
 NOT_ASKED |= {"DAAS", "STACTA", "STACIT", "PostGISRaster", "PDF", "Rasterlite", "KMLSUPEROVERLAY"}
 # Those that are asked for points and lines.
 VECTORS = (

@@ -163,6 +163,7 @@ EARTHVISION = rb"(#[^\n]*\n)*#\s*(Type:\s*scattered data|Field:\s*\d)"
 IESX = rb"(\s*[#!][^\n]*\n)*PROFILE [^\n]*TYPE +\d"
 LANDXML = rb"(\xef\xbb\xbf)?\s*(<\?xml.*?\?>\s*)?(<!--.*?-->\s*)*<LandXML\b"
 PCD = rb"(#[^\n]*\n)*VERSION [.\d]+\s*\nFIELDS"
+ZMAP = rb"(\s*![^\n]*\n)*\s*@[^\n]*,\s*GRID\s*,"
 PETREL = rb"(#[^\n]*\n)*\s*VERSION \d+\s+BEGIN HEADER\s"
 # Lines begin with > or ->, or end with 999 999 999.
 SEGMENTS = rb"(#(?! ?@VGMT)[^\n]*\n)*(-?>|FFASCI|([^\n]*\n)*?\s*999(\.0*)?(\s+999(\.0*)?){2}\s*\n)"
@@ -187,6 +188,7 @@ FORMATS = (
     Format("a PCD file", ".pcd", begins(PCD), "pcd"),
     Format("an ADCIRC mesh", ".14", is_adcirc, "adcirc"),
     Format("a CPS-3 grid", ".cps .cps3", begins(rb"\s*FSASCI\b"), "horizons.read_cps3_grid"),
+    Format("a ZMAP+ grid", ".zmap .dat", begins(ZMAP), "horizons.read_zmap"),
     Format("EarthVision data", ".ev", begins(EARTHVISION), "horizons.read_earthvision"),
     Format("Petrel points", "", begins(PETREL), "horizons.read_petrel_points"),
     Format("lines in segments", ".gmt", begins(SEGMENTS), "horizons.read_segments", "horizons"),
@@ -203,7 +205,7 @@ FORMATS = (
     ),
     Format(
         "a raster",
-        ".tif .tiff .dem .asc .grd .nc .bag .vrt .img .hgt .flt .bil .dat .zmap",
+        ".tif .tiff .dem .asc .grd .nc .bag .vrt .img .hgt .flt .bil",
         is_of_gdal("raster"),
         "rasters",
     ),

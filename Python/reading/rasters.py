@@ -24,7 +24,7 @@ OPEN_OPTIONS = {
     "netCDF": ["IGNORE_XY_AXIS_NAME_CHECKS=YES"],
 }
 # GDAL takes words for 0 in these, and does not count their numbers.
-TEXT_KINDS = ("AAIGrid", "GRASSASCIIGrid", "GSAG", "ZMap")
+TEXT_KINDS = ("AAIGrid", "GRASSASCIIGrid", "GSAG")
 IN_NUMBERS = b" \t\r\n+-.,*0123456789eEdDnNaAiIfF#"
 HINTS = {
     ".flt": "; is its .hdr beside it?",
@@ -55,8 +55,6 @@ def open_raster(path, options):
     if kind is None:
         hint = HINTS.get(suffix_of(path), "")
         raise FileError(f"{path}: GDAL knows no raster format that this could be{hint}")
-    # What a ZMAP+ file tells are the places of its nodes.
-    gdal.SetConfigOption("ZMAP_PIXEL_IS_POINT", "YES")
     try:
         flags = gdal.OF_RASTER | gdal.OF_VERBOSE_ERROR
         settings = OPEN_OPTIONS.get(kind, [])
@@ -81,14 +79,10 @@ def open_raster(path, options):
 
 def body_of(kind, stream):
     """Yields (number, line) of a grid of text, without its header."""
-    marks = 0
+    begun = False
     for number, line in enumerate(stream, 1):
-        if marks > 1 or kind == "GSAG" and number > 5:
-            yield number, line
-        elif kind == "ZMap":
-            marks += line.startswith(b"@")
-        elif kind != "GSAG" and line.strip() and numbers_of(line[:100].split()[0]):
-            marks = 2
+        begun = begun or (number > 5 if kind == "GSAG" else bool(line.strip() and numbers_of(line[:100].split()[0])))
+        if begun:
             yield number, line
 
 
@@ -100,8 +94,7 @@ def check_words(path, kind, nodes, progress):
             if line.translate(None, IN_NUMBERS):
                 raise FileError(f"{path}, band 1, line {number}: holds a word that is no number")
             count += len(line.split())
-    # Numbers of fixed width may touch.
-    if count != nodes and kind != "ZMap":
+    if count != nodes:
         raise FileError(f"{path}, band 1: {nodes:,} numbers are announced, {count:,} found")
     if not line.endswith(b"\n"):
         return ["the last line has no end, so the last number may be cut off"]
@@ -172,11 +165,6 @@ def alpha_of(data, band):
     return next((other for other in others if other.GetColorInterpretation() == alpha), None)
 
 
-def made_by_gdal(path):
-    with open(path, "rb") as stream:
-        return b"Created by GDAL" in stream.read(HEAD)
-
-
 def notes_of_raster(path, data, band, options):
     """What the user must know of how the pixels are taken."""
     gdal = gdal_module()
@@ -199,11 +187,6 @@ def notes_of_raster(path, data, band, options):
         notes.append(f"the pixels are colours ({name}), taken as elevation all the same")
     if band.GetUnitType():
         notes.append(f"elevation in {band.GetUnitType()}, as the file says")
-    if kind == "ZMap" and made_by_gdal(path):
-        notes.append(
-            "x and y of the header are taken for the outermost nodes; gdal_translate writes the "
-            "outer edges of pixels there, so the points may be half a step away"
-        )
     if kind in TEXT_KINDS:
         notes += check_words(
             path, kind, data.RasterXSize * data.RasterYSize, share(options.progress, 0.0, WORDS)
@@ -247,7 +230,6 @@ def read_points(path, options):
         notes.append(note_on_degrees(is_certain))
     cloud = Cloud(make_points(points, copy=False), notes)
     cloud.z_name = name_of_z(band)
-    cloud.is_horizon = data.GetDriver().ShortName == "ZMap"
     if lost:
         cloud.left_out[Reason("pixel", "without data")] = lost
     cloud.crs = reference.ExportToWkt() if reference else None
