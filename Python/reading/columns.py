@@ -42,6 +42,7 @@ class Choice:
     z_name: str = ""  # what z is called, with its unit
     is_horizon: bool = False  # whether lines and traces of a seismic survey stand beside
     texts: dict = dataclasses.field(default_factory=dict)
+    angles: str = "no"  # as of a Cloud
 
 
 def advice_on_columns():
@@ -72,7 +73,7 @@ def choose_columns(path, rows, consecutive, number, names, width, columns, neede
     z_name = names[search.indices[-1]] if names and needed == 3 else ""
     is_horizon = any(map(is_seismic, names)) if names else search.has_line_and_trace
     return Choice(
-        search.indices, extras, of_numbers, search.notes, z_name, is_horizon, search.texts
+        search.indices, extras, of_numbers, search.notes, z_name, is_horizon, search.texts, search.angles
     )
 
 
@@ -114,7 +115,7 @@ class Search:
         if self.is_in_lines:
             of_lines = [(words, axis) for words, axis in ((INLINES, "x"), (CROSSLINES, "y"))]
             self.mean({word: Meaning(axis, 8) for words, axis in of_lines for word in words}, letters)
-        self.indices, self.notes, self.texts = None, [], {}
+        self.indices, self.notes, self.texts, self.angles = None, [], {}, "no"
 
     def mean(self, meanings, letters):
         """Gives columns of some names another meaning."""
@@ -584,11 +585,10 @@ class Search:
             z = self.finite(self.indices[2])
             wide = max(numpy.ptp(xs), numpy.ptp(ys))
             fine = min(self.decimals[x], self.decimals[y]) >= 4
-            if by_name or fine and len(z) and 0 < wide < 0.1 * numpy.ptp(z):
-                self.notes.append(
-                    "x,y look like degrees: project them first to give triangles their true shape"
-                    + ("" if by_name else f"; x is longitude, if it is not: {option('columns')} swaps them")
-                )
+            if by_name:
+                self.angles = "look like degrees"
+            elif fine and len(z) and 0 < wide < 0.1 * numpy.ptp(z):
+                self.angles = f"look like degrees, x being the longitude ({option('columns')} swaps them)"
         if self.is_utm(y, x) and not self.has_swapped:
             self.notes.append(
                 "x is as large as a northing and y as an easting of UTM; if so, "

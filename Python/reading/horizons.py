@@ -20,6 +20,7 @@ BLANK = re.compile(rb"\s")
 SEPARATORS = (b">", b"->")
 CPS3_HEAD = re.compile(rb"(\s*(FS|!|->)[^\n]*\n)*")
 ZMAP_HEAD = re.compile(rb"\s*@[^\n]*\n([^@]*)\n\s*@[^\n]*\n")
+MOST_ROUGHNESS = 4  # times that of the numbers in another order
 END_OF_LINE = re.compile(rb"\s*999(\.0*)?(\s+999(\.0*)?){2}\s*")
 
 
@@ -68,11 +69,24 @@ def grid_cloud(path, x, y, z, note):
     return cloud
 
 
+def roughness(z):
+    """How much neighbours in a column of an array differ; 0 where there are too few to say so."""
+    steps = numpy.abs(numpy.diff(z, axis=0))
+    return float(numpy.nanmean(steps)) if min(z.shape) > 9 and not numpy.isnan(steps).all() else 0.0
+
+
 def cloud_of_columns(path, x, y, values, is_null, name):
     """A grid whose columns go from west to east, each from north to south, as a Cloud. Its points are in the
     order of y."""
     check_count(path, len(values), len(x) * len(y))
-    z = numpy.where(is_null(values), numpy.nan, values).reshape(len(x), len(y)).T
+    values = numpy.where(is_null(values), numpy.nan, values)
+    as_told, swapped = (roughness(values.reshape(shape)) for shape in ((len(x), len(y)), (len(y), len(x))))
+    if as_told > MOST_ROUGHNESS * swapped:
+        raise FileError(
+            f"{path}: is no {name} as it should be: neighbours in a row differ by {as_told:.4g}, and by {swapped:.4g} "
+            "if the numbers go row by row; its program mixed up rows and columns: write it in another format, as .asc"
+        )
+    z = values.reshape(len(x), len(y)).T
     z = z[::-1] if y[0] < y[-1] else z
     return grid_cloud(path, *numpy.meshgrid(x, y), z, f"{name}, columns from north to south")
 

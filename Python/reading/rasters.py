@@ -15,7 +15,6 @@ from ..messages import FileError, Reason
 from ..names import option
 from ..paths import suffix_of
 from ..progress import share, told_lines
-from ..projecting import looks_like_degrees, note_on_degrees
 
 # Text of decimals would else become single precision, plain axes x and y be overlooked.
 OPEN_OPTIONS = {
@@ -224,16 +223,12 @@ def read_points(path, options):
         raise FileError(f"{path}: all {len(points):,} pixels are without data")
     lost = len(points) - count
     points = points[:count]
-    is_certain = reference.IsGeographic() if reference else tells_degrees(data)
-    step = min(map(abs, grid.steps[::3])) if grid else 0.0
-    if not options.project and (is_certain or not reference and looks_like_degrees(points, step)):
-        notes.append(note_on_degrees(is_certain))
     cloud = Cloud(make_points(points, copy=False), notes)
     cloud.z_name = name_of_z(band)
     if lost:
         cloud.left_out[Reason("pixel", "without data")] = lost
     cloud.crs = reference.ExportToWkt() if reference else None
-    cloud.grid, cloud.frame = grid, frame
+    cloud.grid, cloud.frame, cloud.angles = grid, frame, "are angles" if tells_degrees(data) else ""
     return cloud
 
 

@@ -30,6 +30,7 @@ from .layouts import (
 )
 from ..messages import FileError, Reason, counted
 from ..progress import no_progress, told_items
+from ..projecting import note_on_degrees
 from ..selecting import MOST_VALUES, WordReader
 from ..names import option
 
@@ -149,7 +150,7 @@ class Table:
     texts            {index: name} of the columns of text
     of_numbers       indices of the columns that hold more numbers than text
     first            index of the first line of data
-    z_name, is_horizon  see Choice
+    z_name, is_horizon, angles  see Choice
     advice           what a user can do where columns are wrong; None: choose others
     has_summaries    whether lines that begin with "Total" or such are no data
     sees_summaries   whether there are such at the start or at the end of the first block
@@ -184,7 +185,7 @@ class Table:
         )
         self.indices, self.extras = chosen.indices, chosen.extras
         self.notes, self.z_name = chosen.notes, chosen.z_name
-        self.is_horizon = chosen.is_horizon
+        self.is_horizon, self.angles = chosen.is_horizon, chosen.angles
         self.of_numbers, self.texts = chosen.of_numbers, chosen.texts
         check_marks(path, rows, self.of_numbers)
         if needed == 3:
@@ -664,7 +665,7 @@ def read_text(path, options):
     )
     table = parser.table
     cloud = Cloud(None, notes, lines=numbers)
-    cloud.z_name, cloud.is_horizon = table.z_name, table.is_horizon
+    cloud.z_name, cloud.is_horizon, cloud.angles = table.z_name, table.is_horizon, table.angles
     cloud.words = parser.take_words()
     if options.no_data is not None:
         keep = rows[:, 2] != options.no_data
@@ -709,6 +710,8 @@ class TextSlices:
         self.parser.take_facts(facts)
         cloud.notes += self.parser.told()
         cloud.z_name, cloud.is_horizon = table.z_name, table.is_horizon
+        if table.angles != "no":
+            cloud.notes.append(note_on_degrees(table.angles))
         if table.extras:
             cloud.notes.append(f"left out: {', '.join(table.extras.values())}")
 
