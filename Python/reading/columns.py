@@ -9,6 +9,7 @@ better than the next, a note tells what it rests on. If not, an error shows both
 import dataclasses
 import itertools
 import math
+import os
 import re
 
 import numpy
@@ -22,7 +23,9 @@ from .nulls import usual_nulls
 from ..messages import FileError
 from ..names import option
 
-SHOWN = 3  # rows, below a question
+SHOWN, MOST_SHOWN = 3, 12  # rows and columns, below a question
+MOST_COLUMNS = 12  # of rows of points without names; with more, they are a grid
+ROWS_OF_GRID = 20  # times its columns, and no more
 
 
 @dataclasses.dataclass
@@ -51,17 +54,38 @@ def advice_on_columns():
 
 
 @numpy.errstate(all="ignore")
-def choose_columns(path, rows, consecutive, number, names, width, columns, needed, advice):
+def is_of_heights(values):
+    """Whether rows of numbers look like a grid of heights: few rows, whose neighbours are near each other, or which
+    have many columns, all alike, as those of x, y and z are not."""
+    values = numpy.asarray(values, "f8")
+    values = values[numpy.isfinite(values).all(axis=1)]
+    if values.shape[1] < 4 or not 3 < len(values) <= ROWS_OF_GRID * values.shape[1]:
+        return False
+    spread = float(numpy.ptp(numpy.percentile(values, (10, 90))))
+    is_near = numpy.median(abs(numpy.diff(values, axis=1)), axis=0).max() < 0.25 * spread
+    apart, wide = abs(numpy.median(values, axis=0) - numpy.median(values)), values.std(axis=0) / (spread or 1.0)
+    are_alike = apart.max() < 0.6 * spread and 0.15 < wide.min() and wide.max() < 0.8
+    return bool(is_near or are_alike and values.shape[1] > 6)
+
+
+def as_grid(path, source):
+    """The command that makes a grid of heights of a file; source: what numpy reads it by."""
+    target = os.path.splitext(os.path.basename(path))[0] + ".npz"
+    return f"""python3 -c "import numpy; numpy.savez('{target}', z={source})" and then {target}"""
+
+
+@numpy.errstate(all="ignore")
+def choose_columns(path, rows, consecutive, layout, names, width, columns, needed, advice):
     """Finds the columns of x, y and z, or of x and y. Returns a Choice. Raises FileError.
 
     rows         some rows as words; the first so many (consecutive) follow each other in the file
-    number       makes a number of a word: NaN where it is missing, None for text
+    layout       the Layout of lines
     names, width  of the columns; names may be None
     columns      None, or what the user said: names or numbers
     needed       3 or 2
     advice       what a user can do where no choice is sure; None: choose columns
     """
-    search = Search(path, rows, consecutive, number, names, width, needed, advice)
+    search = Search(path, rows, consecutive, layout, names, width, needed, advice)
     if columns:
         search.use_given(columns)
     elif not search.by_names():
@@ -80,14 +104,14 @@ def choose_columns(path, rows, consecutive, number, names, width, columns, neede
 class Search:
     """The state of choose_columns()."""
 
-    def __init__(self, path, rows, consecutive, number, names, width, needed, advice):
-        self.path, self.names, self.width, self.needed = path, names, width, needed
+    def __init__(self, path, rows, consecutive, layout, names, width, needed, advice):
+        self.path, self.layout, self.names, self.width, self.needed = path, layout, names, width, needed
         self.axes, self.has_line_and_trace, self.has_swapped = "xyz"[:needed], False, False
         self.has_times = False
         self.ids = set()  # columns that are so by their values
         self.can_be_chosen, self.advice = advice is None, advice or advice_on_columns()
         self.first_rows, self.rows = rows[:SHOWN], rows
-        table = [[number(w) for w in row[:width]] + [math.nan] * (width - len(row)) for row in rows]
+        table = [[layout.number(w) for w in row[:width]] + [math.nan] * (width - len(row)) for row in rows]
         text = numpy.array([[value is None for value in row] for row in table], dtype=bool)
         self.read = numpy.array(
             [[math.nan if value is None else value for value in row] for row in table], dtype="f8"
@@ -162,18 +186,20 @@ class Search:
             self.ask([one for one in readings if one in (best, others[0])], why)
         self.indices = list(best)
 
-    def ask(self, readings, why):
-        """Raises the error that shows readings as options, and the first rows under the columns' numbers."""
+    def ask(self, readings, why, other=""):
+        """Raises the error that shows readings as options, or another command, and the first rows under the columns'
+        numbers."""
         if not self.can_be_chosen:
             raise FileError(f"{self.path}: {why}; {self.advice}")
-        ways = " or ".join(f"{option('columns')} {self.numbered(one)}" for one in readings)
-        shown = [[str(i + 1) for i in range(self.width)]]
-        shown += [self.names] if self.names else []
-        shown += [row[: self.width] + [""] * (self.width - len(row)) for row in self.first_rows]
+        ways = [f"{option('columns')} {self.numbered(one)}" for one in readings] + [other] * bool(other)
+        width = min(self.width, max([MOST_SHOWN, *(max(one) + 1 for one in readings)]))
+        shown = [[str(i + 1) for i in range(width)]]
+        shown += [self.names[:width]] if self.names else []
+        shown += [row[:width] + [""] * (width - len(row)) for row in self.first_rows]
         shown = [[word[:16] for word in row] for row in shown]
         widths = [max(map(len, column)) for column in zip(*shown)]
         lines = ["  ".join(word.rjust(w) for word, w in zip(row, widths)) for row in shown]
-        choose = f"choose {ways}" if readings else self.advice
+        choose = f"choose {' or '.join(ways)}" if ways else self.advice
         raise FileError("\n  ".join([f"{self.path}: {why}; {choose}", *lines]))
 
     # -- names
@@ -273,8 +299,8 @@ class Search:
         if len(usable) < self.needed:
             are = "is" if len(usable) == 1 else "are"
             self.ask([], f"{self.needed} columns of numbers are needed, and there {are} {len(usable)}")
-        if not self.names and len(usable) == self.width > 12:
-            self.ask([], f"{self.width} columns of numbers without names may be a grid of elevations; write it as .asc or .npy")
+        if not self.names and len(usable) == self.width and self.needed == 3:
+            self.ask_for_grid()
         left, reasons = self.without_others(usable)
         self.decide(self.scored(left))
         chosen = self.indices
@@ -301,6 +327,16 @@ class Search:
         self.notes.append(
             f"columns by their values: {''.join(why)}{taken} (see {option('columns')})"
         )
+
+    def ask_for_grid(self):
+        """Asks where rows may be those of a grid."""
+        is_wide, layout = self.width > MOST_COLUMNS, self.layout
+        if is_wide or is_of_heights(self.values):
+            lines = "(line.replace(',', '.') for line in open('{}'))" if layout.decimal_comma else "'{}'"
+            between = f", delimiter={layout.separator!r}" if layout.separator else ""
+            source = f"numpy.loadtxt({lines.format(self.path)}{between})"
+            why = f"{self.width} columns of numbers without names may be a grid of elevations"
+            self.ask([] if is_wide else [(0, 1, 2)], why, "for a grid " + as_grid(self.path, source))
 
     def in_their_order(self):
         """Takes columns that are no more than needed as they stand."""

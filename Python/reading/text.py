@@ -180,7 +180,7 @@ class Table:
             before = [lines[number - 1] for number, _ in preamble]
             check_names(path, self.layout, before, rows[:400], self.names, self.width, self.advice)
         chosen = choose_columns(
-            path, rows, consecutive, self.layout.number, self.names, self.width, columns, needed,
+            path, rows, consecutive, self.layout, self.names, self.width, columns, needed,
             advice,
         )
         self.indices, self.extras = chosen.indices, chosen.extras

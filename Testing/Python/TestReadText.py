@@ -17,6 +17,7 @@ from vtkelevationsurface.clouds import ReadOptions
 from vtkelevationsurface.reading.column_names import meaning
 from vtkelevationsurface.messages import FileError
 from vtkelevationsurface.reading.nulls import take_out
+from vtkelevationsurface.projecting import notes_on_degrees
 from vtkelevationsurface.reading.text import BLOCK, read_table, read_text
 from vtkelevationsurface.reading.upwards import notes_on_up
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -191,6 +192,7 @@ class Tables(unittest.TestCase):
 
     def read(self, content, **options):
         cloud = read_text(self.file(content), ReadOptions(**options))
+        cloud.notes += notes_on_degrees(cloud)
         cloud.notes += notes_on_up(cloud, options.get("depth", False))
         return cloud
 
