@@ -102,7 +102,7 @@ def project(path, cloud):
     moved.ShallowCopy(cloud.points)
     moved.SetPoints(make_points(xyz).GetPoints())
     before = cloud.crs or "EPSG:4326"
-    known = "" if cloud.crs else ", which is assumed as nothing is told"
+    known = "" if cloud.crs else ", assumed as nothing is told,"
     cloud.points, cloud.crs, cloud.frame = moved, zone, None
     cloud.notes.append(f"x,y are projected from {name_of(before)}{known} to {name_of(zone)}")
     if high[0] - low[0] > 2.0 * WIDE:

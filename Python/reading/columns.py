@@ -374,12 +374,24 @@ class Search:
             else:
                 break
             reasons[left.pop(0)] = reason
+        for i in left[2:-1] if len(left) > self.needed else ():
+            if self.is_distance(i, *left[:2]):
+                left.remove(i)
+                reasons[i] = "the distance along a line: it grows as x and y go on"
+                break
         if self.needed == 3 and len(left) >= 5:
             for i in self.place_in_grid(left):
                 left.remove(i)
                 reasons[i] = "a line, trace or place in a grid: others follow from it"
                 self.has_line_and_trace = True
         return left, reasons
+
+    def is_distance(self, i, x, y):
+        """Whether a column grows by the way between rows, in metres or kilometres, but where a line begins. With even
+        steps that may be by chance."""
+        grown, way = self.steps(i), numpy.hypot(self.steps(x), self.steps(y))
+        fits = numpy.isclose(grown, way, 0.02, 0.0) | numpy.isclose(1000 * grown, way, 0.02, 0.0)
+        return (fits & (way > 0)).sum() > 5 and fits.mean() > 0.9 and way[fits].std() > 0.05 * way[fits].mean()
 
     def scored(self, columns):
         """{indices: score} of the readings of columns, in a row or with numbers of lines before z."""
@@ -586,7 +598,7 @@ class Search:
         wide = max(numpy.ptp(self.finite(x)), numpy.ptp(self.finite(y)))
         dated = any(
             re.search(r"\d{4}-\d\d-\d\d|\d:\d\d", word) for row in self.first_rows for word in row)
-        return self.has_times or dated or ys.max() > 90 and wide < 0.1 * numpy.ptp(self.finite(z))
+        return self.has_times or dated or wide < 0.1 * numpy.ptp(self.finite(z))
 
     def is_utm(self, x, y):
         """Whether columns are easting and northing of UTM by their sizes, in metres."""
@@ -621,10 +633,8 @@ class Search:
             z = self.finite(self.indices[2])
             wide = max(numpy.ptp(xs), numpy.ptp(ys))
             fine = min(self.decimals[x], self.decimals[y]) >= 4
-            if by_name:
+            if by_name or fine and len(z) and 0 < wide < 0.1 * numpy.ptp(z):
                 self.angles = "look like degrees"
-            elif fine and len(z) and 0 < wide < 0.1 * numpy.ptp(z):
-                self.angles = f"look like degrees, x being the longitude ({option('columns')} swaps them)"
         if self.is_utm(y, x) and not self.has_swapped:
             self.notes.append(
                 "x is as large as a northing and y as an easting of UTM; if so, "

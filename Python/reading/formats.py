@@ -231,6 +231,11 @@ FOREIGN = tuple(
         (rb"\s*~V", "is a well log, not a LAS file of points"),
         (rb"C?OFF\s", "is an OFF file, which is not read: convert it to .ply"),
         (rb"glTF", "is a glTF file, which is not read: convert it to .ply or .obj"),
+        (rb"[^\n]{0,60}\$[A-Z]{2}(GGA|GLL|RMC|GNS|DBT|DBS|DPT|VTG|GSA|GSV|ZDA|HDT),",
+         "is a log of NMEA sentences: gpsbabel -i nmea -f {path} -o gpx -F track.gpx makes heights of it, which track.gpx "
+         "gives; soundings need a program for surveys, which writes x, y and depth"),
+        (rb"FTP NEW \d|((VER|INF|FTP|TND|PRJ) [^\n]*\n)+(DEV|POS|EC1|ECH|MSG) ",
+         "is a raw file of HYPACK, whose soundings have no places yet: edit it in HYPACK and save it as .xyz"),
     )
 )
 
@@ -245,7 +250,7 @@ def recognise(path):
         head = head.decode("utf-16", "ignore").encode()
     for pattern, words in FOREIGN:
         if pattern.match(head):
-            raise FileError(f"{path}: {words}")
+            raise FileError(f"{path}: {words.replace('{path}', path)}")
     suffix = suffix_of(path)
     named = [kind for kind in FORMATS if suffix in kind.suffixes.split()]
     for kind in FORMATS:

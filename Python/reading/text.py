@@ -19,6 +19,7 @@ from ..clouds import WHOLE, Cloud, Part, add_array, make_points
 from .columns import advice_on_columns, choose_columns
 from .known import COMMENT_MARKS, SUMMARY
 from .layouts import (
+    are_touching,
     check_marks,
     check_names,
     doubtful_marks,
@@ -27,6 +28,7 @@ from .layouts import (
     find_names,
     is_comment,
     is_data,
+    touching_in,
 )
 from ..messages import FileError, Reason, counted
 from ..progress import no_progress, told_items
@@ -230,7 +232,10 @@ class Table:
 
     def bad_line(self, number, line, why, advice=""):
         """The error for a line that is no row."""
-        if self.can_skip and not (advice and self.is_like(line)):
+        touching = touching_in(line)
+        if touching:
+            why, advice = are_touching(touching), ""
+        elif self.can_skip and not (advice and self.is_like(line)):
             advice = f"{option('skip_bad_lines')} leaves out such lines"
         return BadLine(f"{self.path}, line {number}: {why}" + (advice and "; " + advice))
 
