@@ -336,7 +336,7 @@ class Search:
             between = f", delimiter={layout.separator!r}" if layout.separator else ""
             source = f"numpy.loadtxt({lines.format(self.path)}{between})"
             why = f"{self.width} columns of numbers without names may be a grid of elevations"
-            self.ask([] if is_wide else [(0, 1, 2)], why, "for a grid " + as_grid(self.path, source))
+            self.ask([] if is_wide else [(0, 1, 2)], why, as_grid(self.path, source))
 
     def in_their_order(self):
         """Takes columns that are no more than needed as they stand."""

@@ -10,7 +10,7 @@ import re
 from ..messages import FileError
 from ..paths import is_geodatabase, suffix_of
 
-HEAD = 4096
+HEAD, LONG_HEAD = 4096, 1 << 16
 
 
 @dataclasses.dataclass(frozen=True)
@@ -134,6 +134,22 @@ def is_adcirc(head, path):
     return elements > 0 and nodes > 2 and ids == [1, 2] and all(len(place) == 3 for place in places)
 
 
+def is_gxf(head, path):
+    """Text with the word that a grid of GXF begins with; long comments may stand before."""
+    if head.lstrip()[:1] not in (b"!", b"#"):
+        return False
+    with open(path, "rb") as stream:
+        return re.search(rb"(?m)^#GRID[ \t]*\r?$", stream.read(LONG_HEAD)) is not None
+
+
+def is_segments(head, path):
+    """Text of lines that are marked, at the latest by the end of the last one."""
+    with open(path, "rb") as stream:
+        stream.seek(max(0, os.path.getsize(path) - 99))
+        is_ended = re.search(SEGMENT_END + rb"\s*$", stream.read()) is not None
+    return is_ended or re.match(SEGMENTS, head, re.DOTALL) is not None
+
+
 def is_saga_header(head, path):
     return re.match(rb"NAME\s*=[^\n]*\nDESCRIPTION\s*=.*\nDATAFORMAT", head, re.DOTALL) is not None
 
@@ -163,10 +179,11 @@ EARTHVISION = rb"(#[^\n]*\n)*#\s*(Type:\s*scattered data|Field:\s*\d)"
 IESX = rb"(\s*[#!][^\n]*\n)*PROFILE [^\n]*TYPE +\d"
 LANDXML = rb"(\xef\xbb\xbf)?\s*(<\?xml.*?\?>\s*)?(<!--.*?-->\s*)*<LandXML\b"
 PCD = rb"(#[^\n]*\n)*VERSION [.\d]+\s*\nFIELDS"
-ZMAP = rb"(\s*![^\n]*\n)*\s*@[^\n]*,\s*GRID\s*,"
+ZMAP = rb"(\s*![^\n]*\n)*\s*@[^\n]*,\s*"
 PETREL = rb"(#[^\n]*\n)*\s*VERSION \d+\s+BEGIN HEADER\s"
 # Lines begin with > or ->, or end with 999 999 999.
-SEGMENTS = rb"(#(?! ?@VGMT)[^\n]*\n)*(-?>|FFASCI|([^\n]*\n)*?\s*999(\.0*)?(\s+999(\.0*)?){2}\s*\n)"
+SEGMENT_END = rb"\n[ \t]*999(\.0*)?([ \t]+999(\.0*)?){2}[ \t]*\r?\n"
+SEGMENTS = rb"(#(?! ?@VGMT)[^\n]*\n)*(-?>|FFASCI|[ \t]*999(\.0*)?([ \t]+999(\.0*)?){2}\s*\n|.*?" + SEGMENT_END + b")"
 
 # In the order of asking.
 FORMATS = (
@@ -188,10 +205,12 @@ FORMATS = (
     Format("a PCD file", ".pcd", begins(PCD), "pcd"),
     Format("an ADCIRC mesh", ".14", is_adcirc, "adcirc"),
     Format("a CPS-3 grid", ".cps .cps3", begins(rb"\s*FSASCI\b"), "horizons.read_cps3_grid"),
-    Format("a ZMAP+ grid", ".zmap .dat", begins(ZMAP), "horizons.read_zmap"),
+    Format("a GXF grid", ".gxf", is_gxf, "gxf.read_grid"),
+    Format("a ZMAP+ grid", ".zmap .dat", begins(ZMAP + rb"GRID\s*,"), "horizons.read_zmap"),
+    Format("ZMAP+ points", ".zmap .dat", begins(ZMAP + rb"DATA\s*,"), "horizons.read_zmap_points"),
     Format("EarthVision data", ".ev", begins(EARTHVISION), "horizons.read_earthvision"),
     Format("Petrel points", "", begins(PETREL), "horizons.read_petrel_points"),
-    Format("lines in segments", ".gmt", begins(SEGMENTS), "horizons.read_segments", "horizons"),
+    Format("lines in segments", ".gmt", is_segments, "horizons.read_segments", "horizons"),
     Format("a raster", ".sgrd .sdat", is_saga_header, "rasters"),
     Format("a vector file", ".csv", is_table_with_geometry, "vectors", "vectors"),
     Format("a vector file", ".gmt", begins(rb"# ?@VGMT"), "vectors", "vectors"),

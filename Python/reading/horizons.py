@@ -116,16 +116,16 @@ def read_zmap(path, options):
     of a column."""
     text = read_bytes(path)
     by_gdal = b"Created by GDAL" in text[:HEAD]
-    text = re.sub(rb"(?m)^[ \t]*!.*(\n|$)", b"", text)
+    text = re.sub(rb"(?m)^[ \t]*(!|\+[ \t]*[A-Za-z]).*(\n|$)", b"", text)
     head = ZMAP_HEAD.match(text)
     try:
         form, places = ([word.strip() for word in line.split(b",")] for line in head.group(1).splitlines()[:2])
         width, start, null = int(form[0]), int(form[4]), float(form[1] or form[2])
-        rows, columns = map(int, places[:2])
+        (rows, columns), end = map(int, places[:2]), head.end()
         x_min, x_max, y_min, y_max = map(float, places[2:6])
     except (AttributeError, IndexError, ValueError):
         raise FileError(f"{path}: is damaged: its header does not tell rows, columns and limits") from None
-    body = text[head.end() :]
+    body = text[end:]
     values = numbers(body, options.progress)
     if len(values) != rows * columns:  # numbers of fixed width may touch
         lines = [line[start - 1 :].rstrip() for line in body.splitlines()]
@@ -203,6 +203,22 @@ def read_earthvision(path, options):
             elif key.strip() == "Null_value" and words:
                 null = float(words[0])
     return read_table(path, names or ["x", "y", "z"], first, options.progress, null)
+
+
+def read_zmap_points(path, options):
+    """ZMAP+ points or lines: a line of the header for each column, then rows."""
+    columns, marks = [], 0
+    with open(path, encoding="latin-1") as stream:
+        for number, line in enumerate(stream, 1):
+            words = [word.strip() for word in line.split(",")]
+            if line.startswith("@"):
+                marks += 1
+            elif marks == 1 and not line.startswith("!"):
+                columns.append(words)
+            if marks == 2:
+                nulls = [float(words[7]) for words in columns if len(words) > 7 and words[7]]
+                return read_table(path, [words[0] for words in columns], number, options.progress, *nulls[:1])
+    raise FileError(f"{path}: is cut off within its header")
 
 
 def read_petrel_points(path, options):

@@ -68,7 +68,7 @@ BESIDE = _words(
     "ground terrain water bed value val pos position posisjon wgs84 total station survey surveyed "
     "zone geografica geograficzna geographique geographische decimale z in du de la le den der "
     "gridded slm snm nmm gnss rtk true average mbsl amsl asl navd ngvd odn lv rt sirgas ed psad "
-    "magna irenet osgb bng cs crs srs seabed seafloor bottom dtm dem dgm dsm mdt bunn fond fondo "
+    "utme utmn magna irenet osgb bng cs crs srs seabed seafloor bottom dtm dem dgm dsm mdt bunn fond fondo "
     "bodem grund uber ueber sobre sur over reduced boven l ii iii iv sjobunn"
 )
 # What a column with such a name is, when it is no coordinate. A name that holds one of the words of
@@ -138,7 +138,7 @@ NO_TABLES = (
     (r"gocad\b", "a GOCAD file"),
     (r"h\d{4}[a-z].*\n(.*\n)*?[a-z]", "a file of UKOOA P1/90: awk '/^[^H]/ {print substr($0,47,9), substr($0,56,9), "
      "substr($0,65,6)}' {path} > points.txt takes x, y and depth out of it"),
-    (r"[^,\n]*,\s*\d{1,2}-[a-z]{3}-\d{2}.*\n\s*0,\s*0\.0+,", "a Surpac string file, with y before x: awk -F, '$1 > 0 "
+    (r"[^,\n]*,\s*\d{1,2}-[a-z]{3}-\d{2}.*\n\s*0,\s*0\.0+,", "a Surpac string file, with y before x: awk -F, '$1 + 0 > 0 "
      "{print $3, $2, $4}' {path} > points.txt takes x, y and z out of it"),
     (r"\*?11\d{4}[+-]", "a Leica GSI file: export x, y and z as text from the instrument or its program"),
     (r"\d+\n\d+\n(\S+ +\S+ +\S+ *\n){4}(\S+ +\S+ +\S+ +\S+ *\n){4}", "a Leica PTX scan: convert it to .las or "
@@ -154,7 +154,7 @@ COMMA_IN_QUOTES = r"\"\s*[-+]?\d+,\d+\s*\"\s*,"  # "1,5","2,5"
 BLANK_IN_NUMBER = r"\d[\u00a0\u202f]\d{3}"
 NO_NUMBERS = (
     (
-        r"(?<!\w)\d{1,3}[,.' ]\d{3}[,.' ]\d{3}|\d,\d{3}\.\d|\d\.\d{3},\d|" + BLANK_IN_NUMBER,
+        r"(?<!\w)\d{1,3}(?P<sign>[,.' ])\d{3}(?P=sign)\d{3}|(?<![\d.])\d{1,3},\d{3}\.\d|(?<![\d.])\d{1,3}\.\d{3},\d+(?![\d.])|" + BLANK_IN_NUMBER,
         "marks between thousands",
     ),
     (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", "degrees, minutes and seconds"),

@@ -72,6 +72,8 @@ def open_raster(path, options):
         notes = [f"elevation: variable {name} (of {', '.join(variables)})"]
         data = gdal.OpenEx(variables[name], flags, [], settings)
         return data, notes if len(variables) > 1 else []
+    except FileError:
+        raise
     except RuntimeError as error:
         raise FileError(f"{path}: cannot be read: {one_line(error)}") from None
 

@@ -180,6 +180,8 @@ class Layer:
                 raise FileError(f"{self.path}: has no attribute {columns[2]}; attributes: {names}")
             return columns[2]
         named = [name for name in self.fields if meaning(name).axis == "z"]
+        # A time of a clock, or an altitudeMode, is none.
+        named = [name for name in named if meaning(name).rank < 4 or self.numbers(name) is not None]
         # Those that tools give are doubtful names, so they count last.
         named = named or [name for name in self.fields if name.lower() in GIVEN_BY_TOOLS]
         named = [name for name in named if any(v is not None for v in self.fields[name])]

@@ -170,7 +170,7 @@ class Laz(InFolder):
 
     def test_without_laspy_it_is_named(self):
         with mock.patch.dict(sys.modules, {"laspy": None}):
-            self.assert_refused(["laspy and lazrs", "pip install", "pdal translate"], las(1, packed=True), "a.laz")
+            self.assert_refused(["python3-laspy python3-laszip (Debian 13)", "pip install laspy lazrs", "pdal translate", "a.las"], las(1, packed=True), "a.laz")
 
     def test_points_that_laspy_decodes_are_read(self):
         kind = numpy.dtype((numpy.void, len(point(7, 0))))
