@@ -146,7 +146,7 @@ def is_segments(head, path):
     """Text of lines that are marked, at the latest by the end of the last one."""
     with open(path, "rb") as stream:
         stream.seek(max(0, os.path.getsize(path) - 99))
-        is_ended = re.search(SEGMENT_END + rb"\s*$", stream.read()) is not None
+        is_ended = re.search(SEGMENT_END + rb"\s*$", stream.read() + b"\n") is not None
     return is_ended or re.match(SEGMENTS, head, re.DOTALL) is not None
 
 
