@@ -42,6 +42,8 @@ TAIL = 50  # lines at the end of a block among which summaries are looked for
 CHUNK = 1000  # lines that are tried at once where a block is not all numbers
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED = 3  # that many lines of other kinds are named
+SUMMED = ("count", "comments", "repeated", "ragged", "summaries", "skipped", "skipped_lines", "uneven")  # over parts of a file
+MOST_UNEVEN = 0.2  # lines of numbers that are left out, as a share of rows
 
 
 class BadLine(FileError):
@@ -312,7 +314,7 @@ class Parser:
         self.words = {index: WordReader() for index in table.texts}
         self.used = list(table.indices) + list(table.extras)
         self.parts, self.numbers, self.starts = [], [], []
-        self.count = self.line = self.comments = self.repeated = 0
+        self.count = self.line = self.comments = self.repeated = self.uneven = 0
         self.after_blank = True
         self.before = None  # lines before this part of the file, once a message needs their number
         self.ragged = []  # the first line with more words than others, and their number
@@ -354,6 +356,7 @@ class Parser:
     def skip(self, i, line):
         """Leaves out a line of another kind."""
         self.skipped += 1
+        self.uneven += self.table.is_like(line)
         if len(self.skipped_lines) < NAMED:
             self.skipped_lines.append([self.number(i), line.strip()])
 
@@ -550,28 +553,26 @@ class Parser:
     def facts(self):
         """What told() tells of lines, as plain values that can be added to those of other parts."""
         return {
-            "comments": self.comments,
-            "repeated": self.repeated,
-            "ragged": self.ragged,
-            "summaries": self.summaries,
-            "skipped": self.skipped,
-            "skipped_lines": self.skipped_lines,
+            **{name: getattr(self, name) for name in SUMMED},
             "no_numbers": {str(i): [found] for i, found in self.no_numbers.items()},
         }
 
     def take_facts(self, facts):
         """Takes the facts of the whole file as its own."""
-        self.comments, self.repeated = facts["comments"], facts["repeated"]
-        self.ragged, self.summaries = facts["ragged"], facts["summaries"]
-        self.skipped, self.skipped_lines = facts["skipped"], facts["skipped_lines"]
+        vars(self).update({name: facts[name] for name in SUMMED})
         self.no_numbers = {
             int(i): [sum(count for count, *_ in found), *found[0][1:]]
             for i, found in facts["no_numbers"].items()
         }
 
     def told(self):
-        """Notes, once all lines are read."""
+        """Notes, once all lines are read. Raises FileError where many rows have other numbers of columns."""
         table = self.table
+        if self.uneven > MOST_UNEVEN * self.count:
+            raise FileError(
+                f"{table.path}: {self.uneven:,} lines of numbers have other columns than {self.count:,} rows: blanks do not "
+                "part the columns of this table; export it as .csv"
+            )
         notes, comments = table.notes, self.comments + table.comments
         seen = [f"separated by {table.layout}"]
         for count, what in ((table.headers, "header"), (comments, "comment")):
