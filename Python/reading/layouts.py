@@ -102,9 +102,9 @@ def find_layout(path, lines, needed):
             raise FileError(f"{path}: numbers with {what} cannot be read; export plain decimals")
     if any(re.search(COMMA_IN_QUOTES, line) for line in sample):
         raise FileError(f"{path}: commas stand for decimals and between columns; {SEMICOLONS}")
-    touching = next(filter(None, map(touching_in, sample)), None)
-    if touching:
-        raise FileError(f"{path}: {are_touching(touching)}")
+    touching = list(filter(None, map(touching_in, sample)))
+    if 2 * len(touching) > len(sample):
+        raise FileError(f"{path}: {are_touching(touching[0])}")
     if most == 0:
         raise FileError(f"{path}: holds text, but no numbers")
     raise FileError(
