@@ -143,11 +143,14 @@ def is_gxf(head, path):
 
 
 def is_segments(head, path):
-    """Text of lines that are marked, at the latest by the end of the last one."""
+    """Text of lines that are marked where they begin, or by the mark at the end of the last one."""
+    if re.match(SEGMENTS, head, re.DOTALL):
+        return True
+    if not numbers_of(head.partition(b"\n")[0]):
+        return False
     with open(path, "rb") as stream:
         stream.seek(max(0, os.path.getsize(path) - 99))
-        is_ended = re.search(SEGMENT_END + rb"\s*$", stream.read() + b"\n") is not None
-    return is_ended or re.match(SEGMENTS, head, re.DOTALL) is not None
+        return re.search(SEGMENT_END + rb"\s*$", stream.read() + b"\n") is not None
 
 
 def is_saga_header(head, path):

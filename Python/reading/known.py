@@ -181,6 +181,8 @@ NULLS = (
     + (-32768.0, -32767.0, 32767.0, -2147483648.0, 2147483647.0)
     + (1e30, -1e30, 1e20, -1e20, 1e35, 1.70141e38, FLOAT_MAX, -FLOAT_MAX, 3.4e38, -3.4e38)
 )
+# Of rows that have it in each of x, y and z; 999 is IRAP's mark at the end of a line.
+NULL_ROWS = (0.0, 999.0)
 
 # ---- readings of columns ------------------------------------------------------------------------
 

@@ -10,7 +10,7 @@ ten million points take some two seconds.
 import numpy
 
 from ..clouds import coordinates_of, keep_points
-from .known import NULLS
+from .known import NULL_ROWS, NULLS
 from ..messages import Reason, counted, of_reason
 from ..names import option
 from ..progress import share, told_items
@@ -47,9 +47,11 @@ def take_out(cloud, options, ranks=None):
             found &= ~null
             counts[Reason("null value", f"({name} = {value:.9g})")] = number_of(ranks, found)
             null |= found
-    found = zero_rows(*axes, ranks) & ~null
-    counts[Reason("row", "0 0 0")] = number_of(ranks, found)
-    counts, null = {reason: count for reason, count in counts.items() if count}, null | found
+    for value in NULL_ROWS:
+        found = null_rows(*axes, value, ranks) & ~null
+        counts[Reason("row", f"{value:g} {value:g} {value:g}")] = number_of(ranks, found)
+        null |= found
+    counts = {reason: count for reason, count in counts.items() if count}
     progress(0.35)
     if counts and number_of(ranks, ~null):
         if options.keep_nulls:
@@ -209,16 +211,16 @@ def usual_nulls(values, is_place=False, ranks=None):
     ]
 
 
-def zero_rows(x, y, z, ranks=None):
-    """Which rows are 0 0 0, where x,y of the others are all elsewhere."""
-    zero = (x == 0.0) & (y == 0.0) & (z == 0.0)
-    if number_of(ranks, zero) and number_of(ranks, ~zero):
-        near = ~zero
+def null_rows(x, y, z, value, ranks=None):
+    """Which rows have a value thrice, as 0 0 0, where x,y of the others are all elsewhere."""
+    found = (x == value) & (y == value) & (z == value)
+    if number_of(ranks, found) and number_of(ranks, ~found):
+        near = ~found
         for values in (x, y):
-            near &= numpy.abs(values) < max(body(values[~zero], ranks), 1e-300)
+            near &= numpy.abs(values - value) < max(body(values[~found], ranks), 1e-300)
         if number_of(ranks, near):
-            zero[:] = False
-    return zero
+            found[:] = False
+    return found
 
 
 def repeated_extremes(z, progress, ranks):
