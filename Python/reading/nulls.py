@@ -47,8 +47,8 @@ def take_out(cloud, options, ranks=None):
             found &= ~null
             counts[Reason("null value", f"({name} = {value:.9g})")] = number_of(ranks, found)
             null |= found
-    for value in NULL_ROWS:
-        found = null_rows(*axes, value, ranks) & ~null
+    for value, found in null_rows(*axes, ranks):
+        found &= ~null
         counts[Reason("row", f"{value:g} {value:g} {value:g}")] = number_of(ranks, found)
         null |= found
     counts = {reason: count for reason, count in counts.items() if count}
@@ -211,16 +211,18 @@ def usual_nulls(values, is_place=False, ranks=None):
     ]
 
 
-def null_rows(x, y, z, value, ranks=None):
-    """Which rows have a value thrice, as 0 0 0, where x,y of the others are all elsewhere."""
-    found = (x == value) & (y == value) & (z == value)
-    if number_of(ranks, found) and number_of(ranks, ~found):
-        near = ~found
-        for values in (x, y):
-            near &= numpy.abs(values - value) < max(body(values[~found], ranks), 1e-300)
-        if number_of(ranks, near):
-            found[:] = False
-    return found
+def null_rows(x, y, z, ranks=None):
+    """[(value, (n,) of bool)]: the rows that have it thrice, as 0 0 0, where x,y of the others are all elsewhere."""
+    present = [(value, (x == value) & (y == value) & (z == value)) for value in NULL_ROWS]
+    others, result = ~numpy.logical_or.reduce([found for _, found in present]), []
+    for value, found in present:
+        near = others.copy()
+        if number_of(ranks, found) and number_of(ranks, others):
+            for values in (x, y):
+                near &= numpy.abs(values - value) < max(body(values[others], ranks), 1e-300)
+        if number_of(ranks, found) and not number_of(ranks, near):
+            result.append((value, found))
+    return result
 
 
 def repeated_extremes(z, progress, ranks):

@@ -22,7 +22,7 @@ from ..ranks import agreed, rank_and_count, together, total
 from ..selecting import NothingChosen, Selection, as_option, none_chosen
 from . import NAMES_IN_COLUMNS, check_use
 from .formats import FORMATS, recognise
-from .known import NULL_ROWS, NULLS
+from .known import NULLS
 from .nulls import null_rows, usual_nulls
 from .unpacking import STANDARD_INPUT, is_plain, named, unpacked
 from .upwards import notes_on_range
@@ -152,12 +152,11 @@ def check_nulls(path, points):
                 f"{path}: {name} = {value:.9g}, far from other values, looks like a null value: "
                 f"{advice}--keep-nulls keeps them"
             )
-    for value in NULL_ROWS:
-        if null_rows(*axes, value).any():
-            raise FileError(
-                f"{path}: points {value:g} {value:g} {value:g} apart from all others look like null values: --keep-nulls "
-                "keeps them"
-            )
+    for value, _ in null_rows(*axes):
+        raise FileError(
+            f"{path}: points {value:g} {value:g} {value:g} apart from all others look like null values: --keep-nulls "
+            "keeps them"
+        )
 
 
 def parts_of(paths, rank, ranks):
