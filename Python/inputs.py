@@ -3,7 +3,6 @@
 """Points and lines of VTK's data objects, as reconstruct() takes them: of point sets, images,
 rectilinear grids and tables, and of composite data sets of these."""
 
-import math
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Grids of Geosoft's Grid Exchange Format (GXF). GDAL leaves out their rotation, and knows none behind long comments."""
+"""Grids of Geosoft's Grid Exchange Format (GXF). GDAL leaves out their rotation."""
 
 import re
 
@@ -25,13 +25,12 @@ def read_grid(path, options):
 
     try:
         columns, rows, x, y = (told(key, "none") for key in ("POINTS", "ROWS", "XORIGIN", "YORIGIN"))
-        dx, dy, turned, sense = (
-            told(key, default) for key, default in (("PTSEPARATION", 1), ("RWSEPARATION", 1), ("ROTATION", 0), ("SENSE", 1))
-        )
+        dx, dy = told("PTSEPARATION", 1), told("RWSEPARATION", 1)
+        turned, sense = told("ROTATION", 0), told("SENSE", 1)
         dummy, is_packed = told("DUMMY", "nan"), told("GTYPE", 0) != 0
         scale, offset, *_ = map(float, found.get("TRANSFORM", ["1", "0"]))
     except (ValueError, IndexError):
-        raise FileError(f"{path}: is damaged: its header does not tell POINTS, ROWS, XORIGIN and YORIGIN as numbers") from None
+        raise FileError(f"{path}: is damaged: it does not tell POINTS, ROWS, XORIGIN and YORIGIN as numbers") from None
     if is_packed or sense not in (1, -2):
         what = "its numbers are packed" if is_packed else f"its SENSE is {sense:g}"
         raise FileError(f"{path}: {what}, which is not read: gdal_translate {path} grid.tif makes a raster of it")

@@ -135,7 +135,8 @@ def read_zmap(path, options):
     cloud = cloud_of_columns(path, x, y, values, lambda z: numpy.isclose(z, null, 1e-6, 0.0), "ZMAP+ grid")
     if b"." not in body and form[3].strip(b"0"):
         cloud.notes.append(
-            f"none of its numbers has a decimal sign, though the header tells {form[3].decode()} decimals: they are read as they stand"
+            f"none of its numbers has a decimal sign, though the header tells {form[3].decode()} decimals: they are read as "
+            "they stand"
         )
     if by_gdal:
         cloud.notes.append(

@@ -154,7 +154,8 @@ COMMA_IN_QUOTES = r"\"\s*[-+]?\d+,\d+\s*\"\s*,"  # "1,5","2,5"
 BLANK_IN_NUMBER = r"\d[\u00a0\u202f]\d{3}"
 NO_NUMBERS = (
     (
-        r"(?<!\w)\d{1,3}(?P<sign>[,.' ])\d{3}(?P=sign)\d{3}|(?<![\d.])\d{1,3},\d{3}\.\d|(?<![\d.,])\d{1,3}\.\d{3},\d+(?![\d.])|" + BLANK_IN_NUMBER,
+        r"(?<!\w)\d{1,3}(?P<sign>[,.' ])\d{3}(?P=sign)\d{3}|(?<![\d.])\d{1,3},\d{3}\.\d|"
+        r"(?<![\d.,])\d{1,3}\.\d{3},\d+(?![\d.])|" + BLANK_IN_NUMBER,
         "marks between thousands",
     ),
     (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", "degrees, minutes and seconds"),

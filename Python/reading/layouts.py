@@ -84,7 +84,8 @@ def find_layout(path, lines, needed):
         if re.match(pattern, head):
             lacks = what in (ESRI_GRID, SURFER_GRID) and importlib.util.find_spec("osgeo") is None
             advice = "; install python3-gdal to read it" if lacks else ""
-            raise FileError(f"{path}: is {what.replace('{path}', path)}{', not a table of points' * (':' not in what)}{advice}")
+            what += ", not a table of points" * (":" not in what)
+            raise FileError(f"{path}: is {what.replace('{path}', path)}{advice}")
     best, best_score, most = None, (0, 0), 0
     for layout in LAYOUTS:
         counts = [layout.numbers(line) for line in sample]

@@ -42,7 +42,8 @@ TAIL = 50  # lines at the end of a block among which summaries are looked for
 CHUNK = 1000  # lines that are tried at once where a block is not all numbers
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED = 3  # that many lines of other kinds are named
-SUMMED = ("count", "comments", "repeated", "ragged", "summaries", "skipped", "skipped_lines", "uneven")  # over parts of a file
+# Over parts of a file.
+SUMMED = ("count", "comments", "repeated", "ragged", "summaries", "skipped", "skipped_lines", "uneven")
 MOST_UNEVEN = 0.2  # lines of numbers that are left out, as a share of rows
 
 

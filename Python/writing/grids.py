@@ -146,10 +146,10 @@ def grid_of(result, step=None, like=None, progress=None):
     if not numpy.isfinite(z).any() and like is not None:
         west, east, south, north = result.surface.GetBounds()[:4]
         x, y = (ends.ravel()[[0, -1]] for ends in frame.centres())
+        name = "like" if hasattr(like, "frame") else like
         raise ElevationSurfaceError(
-            f"no pixel of {like if isinstance(like, (str, os.PathLike)) else 'like'} has its centre in the surface: it is "
-            f"from x,y {x.min():.7g}, {y.min():.7g} to {x.max():.7g}, {y.max():.7g}, and the surface from {west:.7g}, "
-            f"{south:.7g} to {east:.7g}, {north:.7g}"
+            f"no pixel of {name} has its centre in the surface: it is from x,y {x.min():.7g}, {y.min():.7g} to "
+            f"{x.max():.7g}, {y.max():.7g}, the surface from {west:.7g}, {south:.7g} to {east:.7g}, {north:.7g}"
         )
     if not numpy.isfinite(z).any():
         raise ElevationSurfaceError(
