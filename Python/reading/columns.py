@@ -16,7 +16,7 @@ import numpy
 
 from .column_names import Meaning, in_brackets, is_seismic, meaning, plain
 from .known import (
-    CLEAR, CLEAR_OF_POOR, COLOURS, CROSSLINES, FINNISH, GOOD, INLINES, MOST_STEP_OF_LINES,
+    CLEAR, CLEAR_OF_POOR, COLOURS, CROSSLINES, FINNISH, GOOD, HIGHEST, INLINES, MOST_STEP_OF_LINES,
     PARTS_OF_TIME, TIMES, WEIGHTS
 )
 from .nulls import usual_nulls
@@ -353,6 +353,8 @@ class Search:
                     readings[other] = GOOD
             if self.may_be_latitude(*order):
                 readings = {(1, 0, 2): GOOD, order: GOOD}
+            if len(readings) == 1 and len(self.finite(2)) and abs(self.finite(2)).min() > HIGHEST:
+                self.ask([order, (1, 2, 0)], "the last column is higher than any place, so z may lack or stand first")
         self.decide(readings)
 
     def without_others(self, columns):
@@ -428,7 +430,7 @@ class Search:
         if z:
             heights = abs(self.finite(z[0]))
             found["z spans less"] = spans[2] <= 10 * max(spans[:2])
-            found["z is higher than any place"] = len(heights) > 0 and heights.min() > 1e5
+            found["z is higher than any place"] = len(heights) > 0 and heights.min() > HIGHEST
         return sum(WEIGHTS[what] for what, is_so in found.items() if is_so)
 
     def finite(self, i):

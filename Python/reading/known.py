@@ -190,6 +190,7 @@ NULL_ROWS = (0.0, 999.0)
 INLINES, CROSSLINES = _words("inline il iline"), _words("crossline xline xl")
 MOST_STEP_OF_LINES = 4  # between their numbers
 FINNISH = {"p": "y", "i": "x"}  # pohjoinen, itä
+HIGHEST = 1e5  # no place is as high
 # What speaks for a reading of columns as x, y and z by their values, and against it. Some differences of
 # sums are those of cases: "stands first" outweighs a fault of all but the weightiest.
 WEIGHTS = {

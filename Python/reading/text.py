@@ -28,6 +28,7 @@ from .layouts import (
     find_names,
     is_comment,
     is_data,
+    known_axes,
     touching_in,
 )
 from ..messages import FileError, Reason, counted
@@ -212,7 +213,7 @@ class Table:
             if is_comment(line):
                 head.append(line.strip().lstrip("#%/!*> "))
                 comments += 1
-            elif self.layout.numbers(line) >= self.needed:
+            elif self.is_like(line) and not known_axes(self.layout.words(line)) >= set("xyz"):  # as x,y,z,0,1
                 break
             elif line.strip():
                 head.append(line.strip())
