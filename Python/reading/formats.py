@@ -171,7 +171,7 @@ def is_of_gdal(what):
 
 TEXT = ".csv .xyz .txt .dat .asc .pts .tsv"
 XML = rb"(\xef\xbb\xbf)?\s*(<\?xml.*?\?>\s*)?(<!--.*?-->\s*)*<VTKFile\b"
-OBJ = rb"(\s*(#|mtllib |o |g |s |usemtl )[^\n]*\n)*\s*v\s+[-+.\d]"
+OBJ = rb"(\s*(#|mtllib |o |g |s |usemtl |vn |vt )[^\n]*\n)*\s*v\s+[-+.\d]"
 
 GEOMETRY = re.compile(
     rb"[^\n]*\n[^\n]*\b(MULTI)?(POINT|LINESTRING|POLYGON)\s*Z?M?\s*\(", re.IGNORECASE
