@@ -31,6 +31,7 @@ class Cloud:
     largest_cell  of points from a grid of unequal steps: the diagonal of its largest cell, else 0
     z_name   what z is called where it is from, with its unit, or ""
     is_horizon  whether it is of a kind of file or table in which horizons are
+    angles   "" or that x and y are degrees by their names or units, as "are angles"; "no" where they are none
     words    {name: Words} of columns of text
     files    of merged files, Words with the file of each point, else None
     grid     the PixelGrid of points from a raster, or None
@@ -46,7 +47,7 @@ class Cloud:
         self.lines = lines
         self.crs = crs
         self.largest_cell = 0.0
-        self.z_name, self.is_horizon = "", False
+        self.z_name, self.is_horizon, self.angles = "", False, ""
         self.words, self.files = {}, None
         self.grid = self.pixels = self.frame = self.plane = None
 
@@ -55,7 +56,7 @@ class Cloud:
         copied = Cloud(self.points, self.notes, self.left_out, self.lines, self.crs)
         copied.grid, copied.frame, copied.plane = self.grid, self.frame, self.plane
         copied.largest_cell, copied.files = self.largest_cell, self.files
-        copied.z_name, copied.is_horizon = self.z_name, self.is_horizon
+        copied.z_name, copied.is_horizon, copied.angles = self.z_name, self.is_horizon, self.angles
         copied.words = dict(self.words)
         return copied
 

@@ -9,10 +9,9 @@ import os
 
 from .messages import FileError
 from .names import option
-from .reading.columns import meaning
 
-# Drivers that are not asked: text tables have a reader of their own, and nothing is fetched.
-NOT_ASKED = {"XYZ", "DERIVED", "HTTP", "WMS", "WCS", "WMTS", "OGCAPI", "PLMOSAIC", "EEDA", "EEDAI"}
+# Drivers that are not asked: text tables and ZMAP+ have readers of their own, and nothing is fetched.
+NOT_ASKED = {"XYZ", "ZMap", "DERIVED", "HTTP", "WMS", "WCS", "WMTS", "OGCAPI", "PLMOSAIC", "EEDA", "EEDAI"}
 NOT_ASKED |= {"DAAS", "STACTA", "STACIT", "PostGISRaster", "PDF", "Rasterlite", "KMLSUPEROVERLAY"}
 # Those that are asked for points and lines.
 VECTORS = (
@@ -96,6 +95,8 @@ def choose_layer(path, wanted, names, what):
             raise FileError(f"{path}: has no layer {wanted}; {what}: {', '.join(names)}")
         return wanted
     if len(names) > 1:
+        from .reading.column_names import meaning  # whose package imports this module
+
         named = [name for name in names if meaning(name).axis == "z"]
         names = named if len(named) == 1 else names
     if len(names) != 1:
@@ -151,7 +152,10 @@ def reference_of(crs):
 def name_of(crs):
     """"ETRS89 / UTM zone 32N (EPSG:25832)" of what reference_of() takes."""
     reference = reference_of(crs)
-    name, code = reference.GetName() or "unnamed", reference.GetAuthorityCode(None)
+    name, code = reference.GetName() or "", reference.GetAuthorityCode(None)
+    if name.lower() in ("", "unnamed", "unknown", "undefined"):
+        kind = "degrees" if reference.IsGeographic() else reference.GetAttrValue("PROJECTION") or "local"
+        name = f"a system without a name ({kind.replace('_', ' ')})"
     return f"{name} ({reference.GetAuthorityName(None)}:{code})" if code else name
 
 

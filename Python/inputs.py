@@ -3,7 +3,6 @@
 """Points and lines of VTK's data objects, as reconstruct() takes them: of point sets, images,
 rectilinear grids and tables, and of composite data sets of these."""
 
-import math
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -34,7 +33,7 @@ from .messages import ElevationSurfaceError, Reason
 from .ranks import before, together, total
 from .reading import leave_out
 from .reading.columns import choose_columns
-from .reading.known import MISSING
+from .reading.layouts import Layout
 from .reading.nulls import take_out
 from .reading.upwards import notes_on_up
 from .reading.vtk_files import points_of_grid
@@ -215,14 +214,6 @@ def columns_of(table):
     return found
 
 
-def number(word):
-    """The number that a word is; NaN where it says that there is none, None for other words."""
-    try:
-        return math.nan if word.strip().lower() in MISSING else float(word)
-    except ValueError:
-        return None
-
-
 def clouds_of_tables(tables, options, ranks):
     """x, y and z of each table, found in all of them together as those of text files are; all columns
     become point arrays."""
@@ -247,12 +238,13 @@ def clouds_of_tables(tables, options, ranks):
     some = numpy.unique(numpy.linspace(0, count - 1, min(count, SAMPLE)).astype("i8"))
     rows = together(ranks, lambda: rows_at(head)) + together(ranks, lambda: rows_at(some))
     choice = choose_columns(
-        "input", rows, len(head), number, names, len(names), options.columns, 3, None
+        "input", rows, len(head), Layout(None), names, len(names), options.columns, 3, None
     )
     clouds = []
     for table, columns, begin in zip(tables, every, begins.tolist()):
         chosen = [numbers_of(columns[names[i]], names[i], begin) for i in choice.indices]
-        cloud = Cloud(make_points(numpy.column_stack(chosen)), choice.notes, crs=crs_of(table))
+        notes = [f"x,y {choice.angles}: project them first"] if choice.angles != "no" else []
+        cloud = Cloud(make_points(numpy.column_stack(chosen)), choice.notes + notes, crs=crs_of(table))
         for i in range(table.GetNumberOfColumns()):
             cloud.points.GetPointData().AddArray(table.GetColumn(i))
         cloud.z_name, cloud.is_horizon = choice.z_name, choice.is_horizon
@@ -271,7 +263,7 @@ def numbers_of(column, name, first):
     """Doubles of a column, also of one of words that are numbers; first: the number of its first row."""
     if isinstance(column, numpy.ndarray):
         return column.astype("f8")
-    values = [number(word) for word in column]
+    values = [Layout(None).number(word) for word in column]
     if None in values:
         row = values.index(None)
         raise ElevationSurfaceError(f"row {first + row} of column {name} is no number: {column[row]}")

@@ -14,16 +14,31 @@ OF_UTM = 84.0  # degrees north, and 80 south; polar stereographic beyond
 WIDE = 9.0  # degrees from the middle: lengths are 1 % too long there at the equator
 
 
-def looks_like_degrees(points, step):
-    """Whether x and y of (n, 3) points of a raster can only be degrees: z has much the wider range."""
-    (west, south, low), (east, north, high) = points.min(axis=0), points.max(axis=0)
+def looks_like_degrees(cloud):
+    """Whether x and y can only be degrees: z has much the wider range."""
+    west, east, south, north, low, high = cloud.points.GetBounds()
     wide = max(east - west, north - south)
     is_angle = max(abs(west), abs(east)) <= LONGITUDES and max(abs(south), abs(north)) <= LATITUDES
-    return bool(is_angle and 0.0 < step < 1.0 and wide < 0.1 * (high - low))
+    is_fine = not cloud.grid or min(map(abs, cloud.grid.steps[::3])) < 1.0
+    return is_angle and is_fine and 0.0 < wide < 0.1 * (high - low)
 
 
-def note_on_degrees(is_certain):
-    words = "are angles" if is_certain else "look like degrees"
+def is_geographic(crs):
+    try:
+        return reference_of(crs).IsGeographic()
+    except (ImportError, ValueError):
+        return False
+
+
+def notes_on_degrees(cloud):
+    """A note where x and y of a Cloud are degrees, by its system, their names or their values."""
+    words = "are angles" if cloud.crs and is_geographic(cloud.crs) else cloud.angles
+    if not words and not cloud.crs and looks_like_degrees(cloud):
+        words = "look like degrees"
+    return [note_on_degrees(words)] if words not in ("", "no") else []
+
+
+def note_on_degrees(words):
     return f"x,y {words}: {option('project')} makes metres of them, which gives triangles their true shape"
 
 
@@ -87,7 +102,7 @@ def project(path, cloud):
     moved.ShallowCopy(cloud.points)
     moved.SetPoints(make_points(xyz).GetPoints())
     before = cloud.crs or "EPSG:4326"
-    known = "" if cloud.crs else ", which is assumed as nothing is told"
+    known = "" if cloud.crs else ", assumed as nothing is told,"
     cloud.points, cloud.crs, cloud.frame = moved, zone, None
     cloud.notes.append(f"x,y are projected from {name_of(before)}{known} to {name_of(zone)}")
     if high[0] - low[0] > 2.0 * WIDE:

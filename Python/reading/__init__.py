@@ -17,6 +17,7 @@ from .formats import recognise
 from ..messages import FileError, Reason, did_you_mean
 from ..names import option
 from ..progress import no_progress, share
+from ..projecting import notes_on_degrees, project
 from ..ranks import total
 from ..selecting import columns_in, condition_of_layer, select
 from .nulls import blank_attributes, take_out
@@ -68,8 +69,6 @@ def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
     options = ReadOptions(**options)
     cloud = finished(path, read_whole(path, options), options)
     if options.project:
-        from ..projecting import project
-
         project(os.fspath(path), cloud)
     return cloud
 
@@ -112,6 +111,8 @@ def finished(path, cloud, options):
     if not options.keep_nulls:
         cloud.notes += blank_attributes(cloud.points)
     cloud.notes += notes_on_up(cloud, options.depth, name)
+    if not options.project:
+        cloud.notes += notes_on_degrees(cloud)
     options.progress = whole
     if options.depth:
         turn_over(cloud)

@@ -6,11 +6,9 @@ Of files, .npy and .npz, and as reconstruct() takes them."""
 import numpy
 
 from ..clouds import Cloud, add_array, make_points, slices
-from .columns import meaning
+from .columns import MOST_COLUMNS, as_grid, is_of_heights, meaning
 from ..messages import FileError
 from .rasters import points_of_raster
-
-MOST_COLUMNS = 12  # of an array of rows; one with more is a grid
 
 
 def loaded(path):
@@ -109,13 +107,31 @@ def cloud_of_grid(path, z, x=None, y=None):
     return cloud
 
 
+def check_certain(path, array):
+    """Refuses an array of two axes that is neither rows of points for sure nor a grid."""
+    rows, columns = array.shape
+    load = f"numpy.load('{path}')"
+    points = "python3 -c \"import numpy; numpy.save('points.npy', {})\" and then points.npy"
+    shape, way = f"{path}: holds {rows} x {columns} numbers", points.format(load + "[:, :3]")
+    if columns == 2 or rows == 2 and columns > MOST_COLUMNS:
+        raise FileError(f"{shape}, as x and y without z; if it is a grid of elevations, {as_grid(path, load)}")
+    if rows == 3 and columns > MOST_COLUMNS:
+        way = points.format(load + ".T")
+    elif not are_rows(array) or not is_of_heights(array):
+        return
+    raise FileError(f"{shape}, points or a grid of elevations; if points, {way}; if a grid, {as_grid(path, load)}")
+
+
 def read_array(path, options):
     """The points or the grid of a file of numpy."""
     array = loaded(path)
     options.progress(0.5)
-    if hasattr(array, "keys") and len(array) == 1:
+    if hasattr(array, "keys") and len(array) == 1 and "z" not in array:
         array = next(iter(array.values()))
-    if not hasattr(array, "keys") and not array.dtype.names and not are_rows(array):
+    is_plain = not hasattr(array, "keys") and not array.dtype.names
+    if is_plain and array.ndim == 2 and array.dtype.kind in "fiu":
+        check_certain(path, array)
+    if is_plain and not are_rows(array):
         shape = " x ".join(map(str, array.shape)) or "one"
         if array.ndim != 2 or array.dtype.kind not in "fiu" or min(array.shape) < 2:
             raise FileError(f"{path}: holds {shape} of {array.dtype}; rows of x, y and z, or a grid, are needed")

@@ -9,20 +9,23 @@ better than the next, a note tells what it rests on. If not, an error shows both
 import dataclasses
 import itertools
 import math
+import os
 import re
 
 import numpy
 
 from .column_names import Meaning, in_brackets, is_seismic, meaning, plain
 from .known import (
-    CLEAR, CLEAR_OF_POOR, COLOURS, CROSSLINES, FINNISH, GOOD, INLINES, MOST_STEP_OF_LINES,
+    CLEAR, CLEAR_OF_POOR, COLOURS, CROSSLINES, FINNISH, GOOD, HIGHEST, INLINES, MOST_STEP_OF_LINES,
     PARTS_OF_TIME, TIMES, WEIGHTS
 )
 from .nulls import usual_nulls
 from ..messages import FileError
 from ..names import option
 
-SHOWN = 3  # rows, below a question
+SHOWN, MOST_SHOWN = 3, 12  # rows and columns, below a question
+MOST_COLUMNS = 12  # of rows of points without names; with more, they are a grid
+ROWS_OF_GRID = 20  # times its columns, and no more
 
 
 @dataclasses.dataclass
@@ -42,6 +45,7 @@ class Choice:
     z_name: str = ""  # what z is called, with its unit
     is_horizon: bool = False  # whether lines and traces of a seismic survey stand beside
     texts: dict = dataclasses.field(default_factory=dict)
+    angles: str = "no"  # as of a Cloud
 
 
 def advice_on_columns():
@@ -50,17 +54,38 @@ def advice_on_columns():
 
 
 @numpy.errstate(all="ignore")
-def choose_columns(path, rows, consecutive, number, names, width, columns, needed, advice):
+def is_of_heights(values):
+    """Whether rows of numbers look like a grid of heights: few rows, whose neighbours are near each other, or which
+    have many columns, all alike, as those of x, y and z are not."""
+    values = numpy.asarray(values, "f8")
+    values = values[numpy.isfinite(values).all(axis=1)]
+    if values.shape[1] < 4 or not 3 < len(values) <= ROWS_OF_GRID * values.shape[1]:
+        return False
+    spread = float(numpy.ptp(numpy.percentile(values, (10, 90))))
+    is_near = numpy.median(abs(numpy.diff(values, axis=1)), axis=0).max() < 0.25 * spread
+    apart, wide = abs(numpy.median(values, axis=0) - numpy.median(values)), values.std(axis=0) / (spread or 1.0)
+    are_alike = apart.max() < 0.6 * spread and 0.15 < wide.min() and wide.max() < 0.8
+    return bool(is_near or are_alike and values.shape[1] > 6)
+
+
+def as_grid(path, source):
+    """The command that makes a grid of heights of a file; source: what numpy reads it by."""
+    target = os.path.splitext(os.path.basename(path))[0] + ".npz"
+    return f"""python3 -c "import numpy; numpy.savez('{target}', z={source})" and then {target}"""
+
+
+@numpy.errstate(all="ignore")
+def choose_columns(path, rows, consecutive, layout, names, width, columns, needed, advice):
     """Finds the columns of x, y and z, or of x and y. Returns a Choice. Raises FileError.
 
     rows         some rows as words; the first so many (consecutive) follow each other in the file
-    number       makes a number of a word: NaN where it is missing, None for text
+    layout       the Layout of lines
     names, width  of the columns; names may be None
     columns      None, or what the user said: names or numbers
     needed       3 or 2
     advice       what a user can do where no choice is sure; None: choose columns
     """
-    search = Search(path, rows, consecutive, number, names, width, needed, advice)
+    search = Search(path, rows, consecutive, layout, names, width, needed, advice)
     if columns:
         search.use_given(columns)
     elif not search.by_names():
@@ -72,21 +97,21 @@ def choose_columns(path, rows, consecutive, number, names, width, columns, neede
     z_name = names[search.indices[-1]] if names and needed == 3 else ""
     is_horizon = any(map(is_seismic, names)) if names else search.has_line_and_trace
     return Choice(
-        search.indices, extras, of_numbers, search.notes, z_name, is_horizon, search.texts
+        search.indices, extras, of_numbers, search.notes, z_name, is_horizon, search.texts, search.angles
     )
 
 
 class Search:
     """The state of choose_columns()."""
 
-    def __init__(self, path, rows, consecutive, number, names, width, needed, advice):
-        self.path, self.names, self.width, self.needed = path, names, width, needed
+    def __init__(self, path, rows, consecutive, layout, names, width, needed, advice):
+        self.path, self.layout, self.names, self.width, self.needed = path, layout, names, width, needed
         self.axes, self.has_line_and_trace, self.has_swapped = "xyz"[:needed], False, False
         self.has_times = False
         self.ids = set()  # columns that are so by their values
         self.can_be_chosen, self.advice = advice is None, advice or advice_on_columns()
         self.first_rows, self.rows = rows[:SHOWN], rows
-        table = [[number(w) for w in row[:width]] + [math.nan] * (width - len(row)) for row in rows]
+        table = [[layout.number(w) for w in row[:width]] + [math.nan] * (width - len(row)) for row in rows]
         text = numpy.array([[value is None for value in row] for row in table], dtype=bool)
         self.read = numpy.array(
             [[math.nan if value is None else value for value in row] for row in table], dtype="f8"
@@ -114,7 +139,7 @@ class Search:
         if self.is_in_lines:
             of_lines = [(words, axis) for words, axis in ((INLINES, "x"), (CROSSLINES, "y"))]
             self.mean({word: Meaning(axis, 8) for words, axis in of_lines for word in words}, letters)
-        self.indices, self.notes, self.texts = None, [], {}
+        self.indices, self.notes, self.texts, self.angles = None, [], {}, "no"
 
     def mean(self, meanings, letters):
         """Gives columns of some names another meaning."""
@@ -161,18 +186,20 @@ class Search:
             self.ask([one for one in readings if one in (best, others[0])], why)
         self.indices = list(best)
 
-    def ask(self, readings, why):
-        """Raises the error that shows readings as options, and the first rows under the columns' numbers."""
+    def ask(self, readings, why, other=""):
+        """Raises the error that shows readings as options, or another command, and the first rows under the columns'
+        numbers."""
         if not self.can_be_chosen:
             raise FileError(f"{self.path}: {why}; {self.advice}")
-        ways = " or ".join(f"{option('columns')} {self.numbered(one)}" for one in readings)
-        shown = [[str(i + 1) for i in range(self.width)]]
-        shown += [self.names] if self.names else []
-        shown += [row[: self.width] + [""] * (self.width - len(row)) for row in self.first_rows]
+        ways = [f"{option('columns')} {self.numbered(one)}" for one in readings] + [other] * bool(other)
+        width = min(self.width, max([MOST_SHOWN, *(max(one) + 1 for one in readings)]))
+        shown = [[str(i + 1) for i in range(width)]]
+        shown += [self.names[:width]] if self.names else []
+        shown += [row[:width] + [""] * (width - len(row)) for row in self.first_rows]
         shown = [[word[:16] for word in row] for row in shown]
         widths = [max(map(len, column)) for column in zip(*shown)]
         lines = ["  ".join(word.rjust(w) for word, w in zip(row, widths)) for row in shown]
-        choose = f"choose {ways}" if readings else self.advice
+        choose = f"choose {' or '.join(ways)}" if ways else self.advice
         raise FileError("\n  ".join([f"{self.path}: {why}; {choose}", *lines]))
 
     # -- names
@@ -272,8 +299,8 @@ class Search:
         if len(usable) < self.needed:
             are = "is" if len(usable) == 1 else "are"
             self.ask([], f"{self.needed} columns of numbers are needed, and there {are} {len(usable)}")
-        if not self.names and len(usable) == self.width > 12:
-            self.ask([], f"{self.width} columns of numbers without names may be a grid of elevations; write it as .asc or .npy")
+        if not self.names and len(usable) == self.width and self.needed == 3:
+            self.ask_for_grid()
         left, reasons = self.without_others(usable)
         self.decide(self.scored(left))
         chosen = self.indices
@@ -301,6 +328,16 @@ class Search:
             f"columns by their values: {''.join(why)}{taken} (see {option('columns')})"
         )
 
+    def ask_for_grid(self):
+        """Asks where rows may be those of a grid."""
+        is_wide, layout = self.width > MOST_COLUMNS, self.layout
+        if is_wide or is_of_heights(self.values):
+            lines = "(line.replace(',', '.') for line in open('{}'))" if layout.decimal_comma else "'{}'"
+            between = f", delimiter={layout.separator!r}" if layout.separator else ""
+            source = f"numpy.loadtxt({lines.format(self.path)}{between})"
+            why = f"{self.width} columns of numbers without names may be a grid of elevations"
+            self.ask([] if is_wide else [(0, 1, 2)], why, as_grid(self.path, source))
+
     def in_their_order(self):
         """Takes columns that are no more than needed as they stand."""
         order = tuple(range(self.width))
@@ -316,6 +353,8 @@ class Search:
                     readings[other] = GOOD
             if self.may_be_latitude(*order):
                 readings = {(1, 0, 2): GOOD, order: GOOD}
+            if len(readings) == 1 and len(self.finite(2)) and abs(self.finite(2)).min() > HIGHEST:
+                self.ask([order, (1, 2, 0)], "the last column is higher than any place, so z may lack or stand first")
         self.decide(readings)
 
     def without_others(self, columns):
@@ -337,12 +376,24 @@ class Search:
             else:
                 break
             reasons[left.pop(0)] = reason
+        for i in left[2:-1] if len(left) > self.needed else ():
+            if self.is_distance(i, *left[:2]):
+                left.remove(i)
+                reasons[i] = "the distance along a line: it grows as x and y go on"
+                break
         if self.needed == 3 and len(left) >= 5:
             for i in self.place_in_grid(left):
                 left.remove(i)
                 reasons[i] = "a line, trace or place in a grid: others follow from it"
                 self.has_line_and_trace = True
         return left, reasons
+
+    def is_distance(self, i, x, y):
+        """Whether a column grows by the way between rows, in metres or kilometres, but where a line begins. With even
+        steps that may be by chance."""
+        grown, way = self.steps(i), numpy.hypot(self.steps(x), self.steps(y))
+        fits = numpy.isclose(grown, way, 0.02, 0.0) | numpy.isclose(1000 * grown, way, 0.02, 0.0)
+        return (fits & (way > 0)).sum() > 5 and fits.mean() > 0.9 and way[fits].std() > 0.05 * way[fits].mean()
 
     def scored(self, columns):
         """{indices: score} of the readings of columns, in a row or with numbers of lines before z."""
@@ -379,7 +430,7 @@ class Search:
         if z:
             heights = abs(self.finite(z[0]))
             found["z spans less"] = spans[2] <= 10 * max(spans[:2])
-            found["z is higher than any place"] = len(heights) > 0 and heights.min() > 1e5
+            found["z is higher than any place"] = len(heights) > 0 and heights.min() > HIGHEST
         return sum(WEIGHTS[what] for what, is_so in found.items() if is_so)
 
     def finite(self, i):
@@ -549,7 +600,7 @@ class Search:
         wide = max(numpy.ptp(self.finite(x)), numpy.ptp(self.finite(y)))
         dated = any(
             re.search(r"\d{4}-\d\d-\d\d|\d:\d\d", word) for row in self.first_rows for word in row)
-        return self.has_times or dated or ys.max() > 90 and wide < 0.1 * numpy.ptp(self.finite(z))
+        return self.has_times or dated or wide < 0.1 * numpy.ptp(self.finite(z))
 
     def is_utm(self, x, y):
         """Whether columns are easting and northing of UTM by their sizes, in metres."""
@@ -585,10 +636,7 @@ class Search:
             wide = max(numpy.ptp(xs), numpy.ptp(ys))
             fine = min(self.decimals[x], self.decimals[y]) >= 4
             if by_name or fine and len(z) and 0 < wide < 0.1 * numpy.ptp(z):
-                self.notes.append(
-                    "x,y look like degrees: project them first to give triangles their true shape"
-                    + ("" if by_name else f"; x is longitude, if it is not: {option('columns')} swaps them")
-                )
+                self.angles = "look like degrees"
         if self.is_utm(y, x) and not self.has_swapped:
             self.notes.append(
                 "x is as large as a northing and y as an easting of UTM; if so, "

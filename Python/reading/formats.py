@@ -10,7 +10,7 @@ import re
 from ..messages import FileError
 from ..paths import is_geodatabase, suffix_of
 
-HEAD = 4096
+HEAD, LONG_HEAD = 4096, 1 << 16
 
 
 @dataclasses.dataclass(frozen=True)
@@ -134,6 +134,25 @@ def is_adcirc(head, path):
     return elements > 0 and nodes > 2 and ids == [1, 2] and all(len(place) == 3 for place in places)
 
 
+def is_gxf(head, path):
+    """Text with the word that a grid of GXF begins with; long comments may stand before."""
+    if head.lstrip()[:1] not in (b"!", b"#"):
+        return False
+    with open(path, "rb") as stream:
+        return re.search(rb"(?m)^#GRID[ \t]*\r?$", stream.read(LONG_HEAD)) is not None
+
+
+def is_segments(head, path):
+    """Text of lines that are marked where they begin, or by the mark at the end of the last one."""
+    if re.match(SEGMENTS, head, re.DOTALL):
+        return True
+    if not numbers_of(head.partition(b"\n")[0]):
+        return False
+    with open(path, "rb") as stream:
+        stream.seek(max(0, os.path.getsize(path) - 99))
+        return re.search(SEGMENT_END + rb"\s*$", stream.read() + b"\n") is not None
+
+
 def is_saga_header(head, path):
     return re.match(rb"NAME\s*=[^\n]*\nDESCRIPTION\s*=.*\nDATAFORMAT", head, re.DOTALL) is not None
 
@@ -152,7 +171,7 @@ def is_of_gdal(what):
 
 TEXT = ".csv .xyz .txt .dat .asc .pts .tsv"
 XML = rb"(\xef\xbb\xbf)?\s*(<\?xml.*?\?>\s*)?(<!--.*?-->\s*)*<VTKFile\b"
-OBJ = rb"(\s*(#|mtllib |o |g |s |usemtl )[^\n]*\n)*\s*v\s+[-+.\d]"
+OBJ = rb"(\s*(#|mtllib |o |g |s |usemtl |vn |vt )[^\n]*\n)*\s*v\s+[-+.\d]"
 
 GEOMETRY = re.compile(
     rb"[^\n]*\n[^\n]*\b(MULTI)?(POINT|LINESTRING|POLYGON)\s*Z?M?\s*\(", re.IGNORECASE
@@ -163,9 +182,11 @@ EARTHVISION = rb"(#[^\n]*\n)*#\s*(Type:\s*scattered data|Field:\s*\d)"
 IESX = rb"(\s*[#!][^\n]*\n)*PROFILE [^\n]*TYPE +\d"
 LANDXML = rb"(\xef\xbb\xbf)?\s*(<\?xml.*?\?>\s*)?(<!--.*?-->\s*)*<LandXML\b"
 PCD = rb"(#[^\n]*\n)*VERSION [.\d]+\s*\nFIELDS"
+ZMAP = rb"(\s*![^\n]*\n)*\s*@[^\n]*,\s*"
 PETREL = rb"(#[^\n]*\n)*\s*VERSION \d+\s+BEGIN HEADER\s"
 # Lines begin with > or ->, or end with 999 999 999.
-SEGMENTS = rb"(#(?! ?@VGMT)[^\n]*\n)*(-?>|FFASCI|([^\n]*\n)*?\s*999(\.0*)?(\s+999(\.0*)?){2}\s*\n)"
+SEGMENT_END = rb"\n[ \t]*999(\.0*)?([ \t]+999(\.0*)?){2}[ \t]*\r?\n"
+SEGMENTS = rb"(#(?! ?@VGMT)[^\n]*\n)*(-?>|FFASCI|[ \t]*999(\.0*)?([ \t]+999(\.0*)?){2}\s*\n|.*?" + SEGMENT_END + b")"
 
 # In the order of asking.
 FORMATS = (
@@ -187,9 +208,12 @@ FORMATS = (
     Format("a PCD file", ".pcd", begins(PCD), "pcd"),
     Format("an ADCIRC mesh", ".14", is_adcirc, "adcirc"),
     Format("a CPS-3 grid", ".cps .cps3", begins(rb"\s*FSASCI\b"), "horizons.read_cps3_grid"),
+    Format("a GXF grid", ".gxf", is_gxf, "gxf.read_grid"),
+    Format("a ZMAP+ grid", ".zmap .dat", begins(ZMAP + rb"GRID\s*,"), "horizons.read_zmap"),
+    Format("ZMAP+ points", ".zmap .dat", begins(ZMAP + rb"DATA\s*,"), "horizons.read_zmap_points"),
     Format("EarthVision data", ".ev", begins(EARTHVISION), "horizons.read_earthvision"),
     Format("Petrel points", "", begins(PETREL), "horizons.read_petrel_points"),
-    Format("lines in segments", ".gmt", begins(SEGMENTS), "horizons.read_segments", "horizons"),
+    Format("lines in segments", ".gmt", is_segments, "horizons.read_segments", "horizons"),
     Format("a raster", ".sgrd .sdat", is_saga_header, "rasters"),
     Format("a vector file", ".csv", is_table_with_geometry, "vectors", "vectors"),
     Format("a vector file", ".gmt", begins(rb"# ?@VGMT"), "vectors", "vectors"),
@@ -203,7 +227,7 @@ FORMATS = (
     ),
     Format(
         "a raster",
-        ".tif .tiff .dem .asc .grd .nc .bag .vrt .img .hgt .flt .bil .dat .zmap",
+        ".tif .tiff .dem .asc .grd .nc .bag .vrt .img .hgt .flt .bil",
         is_of_gdal("raster"),
         "rasters",
     ),
@@ -229,6 +253,11 @@ FOREIGN = tuple(
         (rb"\s*~V", "is a well log, not a LAS file of points"),
         (rb"C?OFF\s", "is an OFF file, which is not read: convert it to .ply"),
         (rb"glTF", "is a glTF file, which is not read: convert it to .ply or .obj"),
+        (rb"[^\n]{0,60}\$[A-Z]{2}(GGA|GLL|RMC|GNS|DBT|DBS|DPT|VTG|GSA|GSV|ZDA|HDT),",
+         "is a log of NMEA sentences: gpsbabel -i nmea -f {path} -o gpx -F track.gpx makes heights of it, which track.gpx "
+         "gives; soundings need a program for surveys, which writes x, y and depth"),
+        (rb"FTP NEW \d|((VER|INF|FTP|TND|PRJ) [^\n]*\n)+(DEV|POS|EC1|ECH|MSG) ",
+         "is a raw file of HYPACK, whose soundings have no places yet: edit it in HYPACK and save it as .xyz"),
     )
 )
 
@@ -243,7 +272,7 @@ def recognise(path):
         head = head.decode("utf-16", "ignore").encode()
     for pattern, words in FOREIGN:
         if pattern.match(head):
-            raise FileError(f"{path}: {words}")
+            raise FileError(f"{path}: {words.replace('{path}', path)}")
     suffix = suffix_of(path)
     named = [kind for kind in FORMATS if suffix in kind.suffixes.split()]
     for kind in FORMATS:

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Formats of horizons that neither GDAL nor VTK reads: CPS-3, EarthVision, Petrel's points with
-attributes, and lines in segments as GMT has them."""
+"""Formats of horizons that neither GDAL nor VTK reads, or reads wrongly: CPS-3, ZMAP+, EarthVision, Petrel's
+points with attributes, and lines in segments as GMT has them."""
 
 import re
 import warnings
@@ -10,6 +10,7 @@ import numpy
 
 from ..clouds import Cloud, add_array, make_lines, make_points
 from .columns import meaning
+from .formats import HEAD
 from ..messages import FileError, Reason, counted
 from ..progress import no_progress, told_lines
 from .rasters import points_of_raster
@@ -17,6 +18,9 @@ from .rasters import points_of_raster
 AT_ONCE = 1 << 22  # bytes
 BLANK = re.compile(rb"\s")
 SEPARATORS = (b">", b"->")
+CPS3_HEAD = re.compile(rb"(\s*(FS|!|->)[^\n]*\n)*")
+ZMAP_HEAD = re.compile(rb"\s*@[^\n]*\n([^@]*)\n\s*@[^\n]*\n")
+MOST_ROUGHNESS = 4  # times that of the numbers in another order
 END_OF_LINE = re.compile(rb"\s*999(\.0*)?(\s+999(\.0*)?){2}\s*")
 
 
@@ -57,36 +61,89 @@ def check_count(path, found, count):
         raise FileError(f"{path}: {count:,} values are announced, {found:,} found")
 
 
-def grid_cloud(path, x, y, z, null, note):
-    """Nodes of a grid as points. x, y, z: arrays of one shape; null and above is no data."""
-    z = numpy.where(z >= null, numpy.nan, z)
+def grid_cloud(path, x, y, z, note):
+    """Nodes of a grid as points. x, y, z: arrays of one shape; NaN is no data."""
     cloud = points_of_raster(path, x, y, z)
     cloud.is_horizon = True
     cloud.notes.append(f"{note}, {z.shape[1]} x {z.shape[0]} nodes")
     return cloud
 
 
+def roughness(z):
+    """How much neighbours in a column of an array differ; 0 where there are too few to say so."""
+    steps = numpy.abs(numpy.diff(z, axis=0))
+    return float(numpy.nanmean(steps)) if min(z.shape) > 9 and not numpy.isnan(steps).all() else 0.0
+
+
+def cloud_of_columns(path, x, y, values, is_null, name):
+    """A grid whose columns go from west to east, each from north to south, as a Cloud. Its points are in the
+    order of y."""
+    check_count(path, len(values), len(x) * len(y))
+    values = numpy.where(is_null(values), numpy.nan, values)
+    as_told, swapped = (roughness(values.reshape(shape)) for shape in ((len(x), len(y)), (len(y), len(x))))
+    if as_told > MOST_ROUGHNESS * swapped:
+        raise FileError(
+            f"{path}: is no {name} as it should be: neighbours in a row differ by {as_told:.4g}, and by {swapped:.4g} "
+            "if the numbers go row by row; its program mixed up rows and columns: write it in another format, as .asc"
+        )
+    z = values.reshape(len(x), len(y)).T
+    z = z[::-1] if y[0] < y[-1] else z
+    return grid_cloud(path, *numpy.meshgrid(x, y), z, f"{name}, columns from north to south")
+
+
 def read_cps3_grid(path, options):
-    """CPS-3 grid: columns from west to east, each from north to south."""
-    head, _, body = read_bytes(path).partition(b"->")
-    words = {}
-    for line in head.splitlines():
+    """CPS-3 grid."""
+    text, words = read_bytes(path), {}
+    head = CPS3_HEAD.match(text)
+    for line in head.group().splitlines():
         key, *values = line.split() or [b""]
         words[key] = [float(v) for v in values if re.fullmatch(rb"[-+]?[\d.]+([eE][-+]?\d+)?", v)]
     try:
         x_min, x_max, y_min, y_max = words[b"FSLIMI"][:4]
         rows, columns = map(int, words[b"FSNROW"][:2])
-        dx = (x_max - x_min) / max(columns - 1, 1)
-        dy = (y_max - y_min) / max(rows - 1, 1)
-        dx, dy = words.get(b"FSXINC", (dx, dy))[:2]
+        steps = (x_max - x_min) / max(columns - 1, 1), (y_max - y_min) / max(rows - 1, 1)
+        dx, dy = words.get(b"FSXINC", steps)[:2]
     except (KeyError, ValueError):
         raise FileError(f"{path}: is damaged: its FSLIMI, FSNROW or FSXINC is missing") from None
-    values = numbers(body.partition(b"\n")[2], options.progress)
-    check_count(path, len(values), rows * columns)
-    null = min((value for value in words[b"FSASCI"] if value >= 1e20), default=1e30)
-    x, y = numpy.meshgrid(x_min + dx * numpy.arange(columns), y_min + dy * numpy.arange(rows))
-    z = values.reshape(columns, rows).T[::-1]
-    return grid_cloud(path, x, y, z, 0.999 * null, "CPS-3 grid, columns from north to south")
+    values = numbers(text[head.end() :], options.progress)
+    null = 0.999 * min((value for value in words[b"FSASCI"] if value >= 1e20), default=1e30)
+    x, y = x_min + dx * numpy.arange(columns), y_min + dy * numpy.arange(rows)
+    return cloud_of_columns(path, x, y, values, lambda z: z >= null, "CPS-3 grid")
+
+
+def read_zmap(path, options):
+    """ZMAP+ grid. GDAL multiplies whole numbers by a power of ten, and refuses rows that go on behind the end
+    of a column."""
+    text = read_bytes(path)
+    by_gdal = b"Created by GDAL" in text[:HEAD]
+    text = re.sub(rb"(?m)^[ \t]*(!|\+[ \t]*[A-Za-z]).*(\n|$)", b"", text)
+    head = ZMAP_HEAD.match(text)
+    try:
+        form, places = ([word.strip() for word in line.split(b",")] for line in head.group(1).splitlines()[:2])
+        width, start, null = int(form[0]), int(form[4]), float(form[1] or form[2])
+        (rows, columns), end = map(int, places[:2]), head.end()
+        x_min, x_max, y_min, y_max = map(float, places[2:6])
+    except (AttributeError, IndexError, ValueError):
+        raise FileError(f"{path}: is damaged: its header does not tell rows, columns and limits") from None
+    body = text[end:]
+    values = numbers(body, options.progress)
+    if len(values) != rows * columns:  # numbers of fixed width may touch
+        lines = [line[start - 1 :].rstrip() for line in body.splitlines()]
+        fields = (line[i : i + width] for line in lines for i in range(0, len(line), width))
+        values = numpy.array(list(floats(fields)))
+    x, y = numpy.linspace(x_min, x_max, columns), numpy.linspace(y_max, y_min, rows)
+    cloud = cloud_of_columns(path, x, y, values, lambda z: numpy.isclose(z, null, 1e-6, 0.0), "ZMAP+ grid")
+    if b"." not in body and form[3].strip(b"0"):
+        cloud.notes.append(
+            f"none of its numbers has a decimal sign, though the header tells {form[3].decode()} decimals: they are read as "
+            "they stand"
+        )
+    if by_gdal:
+        cloud.notes.append(
+            "x and y of the header are taken for the outermost nodes; gdal_translate writes the "
+            "outer edges of pixels there, so the points may be half a step away"
+        )
+    return cloud
 
 
 def read_table(path, names, first, progress, null=None):
@@ -147,6 +204,22 @@ def read_earthvision(path, options):
             elif key.strip() == "Null_value" and words:
                 null = float(words[0])
     return read_table(path, names or ["x", "y", "z"], first, options.progress, null)
+
+
+def read_zmap_points(path, options):
+    """ZMAP+ points or lines: a line of the header for each column, then rows."""
+    columns, marks = [], 0
+    with open(path, encoding="latin-1") as stream:
+        for number, line in enumerate(stream, 1):
+            words = [word.strip() for word in line.split(",")]
+            if line.startswith("@"):
+                marks += 1
+            elif marks == 1 and not line.startswith("!"):
+                columns.append(words)
+            if marks == 2:
+                nulls = [float(words[7]) for words in columns if len(words) > 7 and words[7]]
+                return read_table(path, [words[0] for words in columns], number, options.progress, *nulls[:1])
+    raise FileError(f"{path}: is cut off within its header")
 
 
 def read_petrel_points(path, options):

@@ -25,7 +25,7 @@ NULL = 1e30  # and above
 
 
 def profiles(path, progress):
-    """[(name, type, unit of z, rows of x, y, segment and z)] of a file."""
+    """[(name, type, unit of z, rows of x, y, segment and z)] of a file. Petrel leaves out the EOD at its end."""
     found, is_over = [], False
     with open(path, "rb") as stream:
         for number, line in enumerate(told_lines(stream, progress), 1):
@@ -44,8 +44,8 @@ def profiles(path, progress):
                 shown = line.decode("latin-1").strip()[:40]
                 raise FileError(f"{path}, line {number}: '{shown}' is no row of an IESX profile")
             found[-1][3].append(row)
-    if not is_over:
-        raise FileError(f"{path}: is cut off: its last line, EOD, is missing")
+    if not is_over and not line.endswith(b"\n"):
+        raise FileError(f"{path}: is cut off within its last line")
     if not any(rows for *_, rows in found):
         raise FileError(f"{path}: holds no points")
     return found

@@ -56,7 +56,7 @@ def cloud_of(path, name, header, values):
         c, s, x, y = numpy.cos(angle), numpy.sin(angle), x - x0, y - y0
         x, y = x0 + c * x - s * y, y0 + s * x + c * y
         note += f", turned by {turned:g} degrees"
-    cloud = grid_cloud(path, x, y, values.reshape(x.shape), NULL, note)
+    cloud = grid_cloud(path, x, y, numpy.where(values >= NULL, numpy.nan, values).reshape(x.shape), note)
     if not turned and abs(x[0, -1] - x_max) > 0.01 * dx:
         cloud.notes.append(f"its last x is {x[0, -1]:.9g} by its steps, {x_max:.9g} by its header")
     return cloud

@@ -68,7 +68,7 @@ BESIDE = _words(
     "ground terrain water bed value val pos position posisjon wgs84 total station survey surveyed "
     "zone geografica geograficzna geographique geographische decimale z in du de la le den der "
     "gridded slm snm nmm gnss rtk true average mbsl amsl asl navd ngvd odn lv rt sirgas ed psad "
-    "magna irenet osgb bng cs crs srs seabed seafloor bottom dtm dem dgm dsm mdt bunn fond fondo "
+    "utme utmn magna irenet osgb bng cs crs srs seabed seafloor bottom dtm dem dgm dsm mdt bunn fond fondo "
     "bodem grund uber ueber sobre sur over reduced boven l ii iii iv sjobunn"
 )
 # What a column with such a name is, when it is no coordinate. A name that holds one of the words of
@@ -136,19 +136,26 @@ NO_TABLES = (
     (r"dsaa\b", SURFER_GRID),
     (r"fsasci\b", "a CPS-3 grid"),
     (r"gocad\b", "a GOCAD file"),
-    (r"h\d{4}[a-z].*\n(.*\n)*?[a-z]", "a file of UKOOA P1/90"),
-    (r"[^,\n]*,\s*\d{1,2}-[a-z]{3}-\d{2}.*\n\s*0,\s*0\.0+,", "a Surpac string file, with y before x"),
-    (r"\*?11\d{4}[+-]", "a Leica GSI file"),
-    (r"\d+\n\d+\n(\S+ +\S+ +\S+ *\n){4}(\S+ +\S+ +\S+ +\S+ *\n){4}", "a Leica PTX scan"),
+    (r"h\d{4}[a-z].*\n(.*\n)*?[a-z]", "a file of UKOOA P1/90: awk '/^[^H]/ {print substr($0,47,9), substr($0,56,9), "
+     "substr($0,65,6)}' {path} > points.txt takes x, y and depth out of it"),
+    (r"[^,\n]*,\s*\d{1,2}-[a-z]{3}-\d{2}.*\n\s*0,\s*0\.0+,", "a Surpac string file, with y before x: awk -F, '$1 + 0 > 0 "
+     "{print $3, $2, $4}' {path} > points.txt takes x, y and z out of it"),
+    (r"\*?11\d{4}[+-]", "a Leica GSI file: export x, y and z as text from the instrument or its program"),
+    (r"\d+\n\d+\n(\S+ +\S+ +\S+ *\n){4}(\S+ +\S+ +\S+ +\S+ *\n){4}", "a Leica PTX scan: convert it to .las or "
+     ".ply, by CloudCompare -O {path} -C_EXPORT_FMT PLY -SAVE_CLOUDS"),
     (r"<[?!a-z]", "XML or HTML"),
     (r"[{\[]\s*[\"{\[]", "JSON"),
 )
+# Numbers of fixed width without a blank between, and what looks like them.
+TOUCHING = r"[-+]?\d+\.\d+([-+]\d*\.\d+|\.\d+)+"
+DATE = r"\d{1,2}\.\d{1,2}\.\d{2,4}|\d+(\.\d+){3}"
 COMMA_IN_QUOTES = r"\"\s*[-+]?\d+,\d+\s*\"\s*,"  # "1,5","2,5"
 # What keeps words from being numbers, and what it is.
 BLANK_IN_NUMBER = r"\d[\u00a0\u202f]\d{3}"
 NO_NUMBERS = (
     (
-        r"(?<!\w)\d{1,3}[,.' ]\d{3}[,.' ]\d{3}|\d,\d{3}\.\d|\d\.\d{3},\d|" + BLANK_IN_NUMBER,
+        r"(?<!\w)\d{1,3}(?P<sign>[,.' ])\d{3}(?P=sign)\d{3}|(?<![\d.])\d{1,3},\d{3}\.\d|"
+        r"(?<![\d.,])\d{1,3}\.\d{3},\d+(?![\d.])|" + BLANK_IN_NUMBER,
         "marks between thousands",
     ),
     (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", "degrees, minutes and seconds"),
@@ -175,12 +182,15 @@ NULLS = (
     + (-32768.0, -32767.0, 32767.0, -2147483648.0, 2147483647.0)
     + (1e30, -1e30, 1e20, -1e20, 1e35, 1.70141e38, FLOAT_MAX, -FLOAT_MAX, 3.4e38, -3.4e38)
 )
+# Of rows that have it in each of x, y and z; 999 is IRAP's mark at the end of a line.
+NULL_ROWS = (0.0, 999.0)
 
 # ---- readings of columns ------------------------------------------------------------------------
 
 INLINES, CROSSLINES = _words("inline il iline"), _words("crossline xline xl")
 MOST_STEP_OF_LINES = 4  # between their numbers
 FINNISH = {"p": "y", "i": "x"}  # pohjoinen, itä
+HIGHEST = 1e5  # no place is as high
 # What speaks for a reading of columns as x, y and z by their values, and against it. Some differences of
 # sums are those of cases: "stands first" outweighs a fault of all but the weightiest.
 WEIGHTS = {

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Points of LAS files 1.0 to 1.4 (ASPRS), and of LAZ files where laspy can decode them."""
+"""Points of LAS files 1.0 to 1.4 (ASPRS), and of LAZ files where laspy can decode them: it is a package of Debian 13."""
 
 import os
 import struct
@@ -124,8 +124,9 @@ def records(path, header, part):
         import laspy
     except ImportError:
         raise FileError(
-            f"{path}: is compressed (LAZ), which laspy and lazrs read: pip install laspy lazrs, in a virtual environment "
-            "that sees the packages of the system; or unpack it to .las by laszip, las2las or pdal translate"
+            f"{path}: is compressed (LAZ), which laspy reads: apt-get install python3-laspy python3-laszip (Debian 13), or "
+            "pip install laspy lazrs in a virtual environment that sees the packages of the system; or unpack it: pdal "
+            f"translate {path} {os.path.splitext(path)[0]}.las"
         ) from None
     try:
         with laspy.open(path) as reader:

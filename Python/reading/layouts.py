@@ -10,7 +10,7 @@ import re
 
 from .column_names import is_beside, known_names, meaning, unit_of
 from .known import (
-    BLANK_IN_NUMBER, COMMA_IN_QUOTES, COMMENT_MARKS, ESRI_GRID, MISSING, NO_NUMBERS, NO_TABLES, SURFER_GRID
+    BLANK_IN_NUMBER, COMMA_IN_QUOTES, COMMENT_MARKS, DATE, ESRI_GRID, MISSING, NO_NUMBERS, NO_TABLES, SURFER_GRID, TOUCHING
 )
 from ..messages import FileError
 
@@ -84,7 +84,8 @@ def find_layout(path, lines, needed):
         if re.match(pattern, head):
             lacks = what in (ESRI_GRID, SURFER_GRID) and importlib.util.find_spec("osgeo") is None
             advice = "; install python3-gdal to read it" if lacks else ""
-            raise FileError(f"{path}: is {what}, not a table of points{advice}")
+            what += ", not a table of points" * (":" not in what)
+            raise FileError(f"{path}: is {what.replace('{path}', path)}{advice}")
     best, best_score, most = None, (0, 0), 0
     for layout in LAYOUTS:
         counts = [layout.numbers(line) for line in sample]
@@ -102,11 +103,27 @@ def find_layout(path, lines, needed):
             raise FileError(f"{path}: numbers with {what} cannot be read; export plain decimals")
     if any(re.search(COMMA_IN_QUOTES, line) for line in sample):
         raise FileError(f"{path}: commas stand for decimals and between columns; {SEMICOLONS}")
+    touching = list(filter(None, map(touching_in, sample)))
+    if 2 * len(touching) > len(sample):
+        raise FileError(f"{path}: {are_touching(touching[0])}")
     if most == 0:
         raise FileError(f"{path}: holds text, but no numbers")
     raise FileError(
         f"{path}: no line holds {needed} numbers; the most is {most}. "
         f"{'x, y and z' if needed == 3 else 'x and y'} are needed in columns of their own"
+    )
+
+
+def touching_in(line):
+    """The first word of a line in which numbers touch, or None."""
+    is_so = (word for word in line.split() if re.fullmatch(TOUCHING, word) and not re.fullmatch(DATE, word))
+    return next(is_so, None)
+
+
+def are_touching(word):
+    return (
+        f"numbers of fixed width touch, as {word[:40]}: cut them by their widths, as awk '{{print substr($0,1,10), "
+        "substr($0,11,10), substr($0,21,10)}' for 10 each"
     )
 
 

@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_FLOAT
 
 from ..clouds import coordinates_of, keep_points
-from .known import NULLS
+from .known import NULL_ROWS, NULLS
 from ..messages import Reason, counted, of_reason
 from ..names import option
 from ..progress import share, told_items
@@ -49,9 +49,11 @@ def take_out(cloud, options, ranks=None):
             found &= ~null
             counts[Reason("null value", f"({name} = {value:.9g})")] = number_of(ranks, found)
             null |= found
-    found = zero_rows(*axes, ranks) & ~null
-    counts[Reason("row", "0 0 0")] = number_of(ranks, found)
-    counts, null = {reason: count for reason, count in counts.items() if count}, null | found
+    for value, found in null_rows(*axes, ranks):
+        found &= ~null
+        counts[Reason("row", f"{value:g} {value:g} {value:g}")] = number_of(ranks, found)
+        null |= found
+    counts = {reason: count for reason, count in counts.items() if count}
     progress(0.35)
     if counts and number_of(ranks, ~null):
         if options.keep_nulls:
@@ -227,16 +229,18 @@ def usual_nulls(values, is_place=False, ranks=None):
     ]
 
 
-def zero_rows(x, y, z, ranks=None):
-    """Which rows are 0 0 0, where x,y of the others are all elsewhere."""
-    zero = (x == 0.0) & (y == 0.0) & (z == 0.0)
-    if number_of(ranks, zero) and number_of(ranks, ~zero):
-        near = ~zero
-        for values in (x, y):
-            near &= numpy.abs(values) < max(body(values[~zero], ranks), 1e-300)
-        if number_of(ranks, near):
-            zero[:] = False
-    return zero
+def null_rows(x, y, z, ranks=None):
+    """[(value, (n,) of bool)]: the rows that have it thrice, as 0 0 0, where x,y of the others are all elsewhere."""
+    present = [(value, (x == value) & (y == value) & (z == value)) for value in NULL_ROWS]
+    others, result = ~numpy.logical_or.reduce([found for _, found in present]), []
+    for value, found in present:
+        near = others.copy()
+        if number_of(ranks, found) and number_of(ranks, others):
+            for values in (x, y):
+                near &= numpy.abs(values - value) < max(body(values[others], ranks), 1e-300)
+        if number_of(ranks, found) and not number_of(ranks, near):
+            result.append((value, found))
+    return result
 
 
 def repeated_extremes(z, progress, ranks):

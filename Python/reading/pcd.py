@@ -32,6 +32,7 @@ def read_header(path, stream):
     try:
         counts = list(map(int, words.get("COUNT", ["1"] * len(words["FIELDS"]))))
         names = [name if name != "_" else f"_{i}" for i, name in enumerate(words["FIELDS"])]
+        names = [name.lower() if name in ("X", "Y", "Z") and name.lower() not in names else name for name in names]
         kinds = [f"<{KINDS[kind]}{int(size)}" for kind, size in zip(words["TYPE"], words["SIZE"])]
         shape = [(name, kind, (count,)) for name, kind, count in zip(names, kinds, counts)]
         sizes = [words["POINTS"][0]] if "POINTS" in words else [words["WIDTH"][0], words["HEIGHT"][0]]

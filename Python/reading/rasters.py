@@ -15,7 +15,6 @@ from ..messages import FileError, Reason
 from ..names import option
 from ..paths import suffix_of
 from ..progress import share, told_lines
-from ..projecting import looks_like_degrees, note_on_degrees
 
 # Text of decimals would else become single precision, plain axes x and y be overlooked.
 OPEN_OPTIONS = {
@@ -24,7 +23,7 @@ OPEN_OPTIONS = {
     "netCDF": ["IGNORE_XY_AXIS_NAME_CHECKS=YES"],
 }
 # GDAL takes words for 0 in these, and does not count their numbers.
-TEXT_KINDS = ("AAIGrid", "GRASSASCIIGrid", "GSAG", "ZMap")
+TEXT_KINDS = ("AAIGrid", "GRASSASCIIGrid", "GSAG")
 IN_NUMBERS = b" \t\r\n+-.,*0123456789eEdDnNaAiIfF#"
 HINTS = {
     ".flt": "; is its .hdr beside it?",
@@ -55,8 +54,6 @@ def open_raster(path, options):
     if kind is None:
         hint = HINTS.get(suffix_of(path), "")
         raise FileError(f"{path}: GDAL knows no raster format that this could be{hint}")
-    # What a ZMAP+ file tells are the places of its nodes.
-    gdal.SetConfigOption("ZMAP_PIXEL_IS_POINT", "YES")
     try:
         flags = gdal.OF_RASTER | gdal.OF_VERBOSE_ERROR
         settings = OPEN_OPTIONS.get(kind, [])
@@ -66,6 +63,8 @@ def open_raster(path, options):
             least, most = (float(told.get(f"{end}_RESOLUTION_X", "nan")) for end in ("MIN", "MAX"))
             notes = [f"the resolution varies from {least:g} to {most:g}: the nodes of all refined cells are read"]
             data = gdal.OpenEx(path, flags, [kind], settings + ["MODE=RESAMPLED_GRID"])
+        if "UGRID" in data.GetMetadata().get("NC_GLOBAL#Conventions", ""):
+            raise FileError(f"{path}: is a mesh of UGRID, no raster: QGIS writes its points by Export Mesh Vertices")
         variables = {name.rsplit(":", 1)[-1].strip('"/'): name for name, _ in data.GetSubDatasets()}
         if data.RasterCount and not (options.layer and variables):
             if options.layer:
@@ -75,20 +74,18 @@ def open_raster(path, options):
         notes = [f"elevation: variable {name} (of {', '.join(variables)})"]
         data = gdal.OpenEx(variables[name], flags, [], settings)
         return data, notes if len(variables) > 1 else []
+    except FileError:
+        raise
     except RuntimeError as error:
         raise FileError(f"{path}: cannot be read: {one_line(error)}") from None
 
 
 def body_of(kind, stream):
     """Yields (number, line) of a grid of text, without its header."""
-    marks = 0
+    begun = False
     for number, line in enumerate(stream, 1):
-        if marks > 1 or kind == "GSAG" and number > 5:
-            yield number, line
-        elif kind == "ZMap":
-            marks += line.startswith(b"@")
-        elif kind != "GSAG" and line.strip() and numbers_of(line[:100].split()[0]):
-            marks = 2
+        begun = begun or (number > 5 if kind == "GSAG" else bool(line.strip() and numbers_of(line[:100].split()[0])))
+        if begun:
             yield number, line
 
 
@@ -100,8 +97,7 @@ def check_words(path, kind, nodes, progress):
             if line.translate(None, IN_NUMBERS):
                 raise FileError(f"{path}, band 1, line {number}: holds a word that is no number")
             count += len(line.split())
-    # Numbers of fixed width may touch.
-    if count != nodes and kind != "ZMap":
+    if count != nodes:
         raise FileError(f"{path}, band 1: {nodes:,} numbers are announced, {count:,} found")
     if not line.endswith(b"\n"):
         return ["the last line has no end, so the last number may be cut off"]
@@ -172,11 +168,6 @@ def alpha_of(data, band):
     return next((other for other in others if other.GetColorInterpretation() == alpha), None)
 
 
-def made_by_gdal(path):
-    with open(path, "rb") as stream:
-        return b"Created by GDAL" in stream.read(HEAD)
-
-
 def notes_of_raster(path, data, band, options):
     """What the user must know of how the pixels are taken."""
     gdal = gdal_module()
@@ -199,11 +190,6 @@ def notes_of_raster(path, data, band, options):
         notes.append(f"the pixels are colours ({name}), taken as elevation all the same")
     if band.GetUnitType():
         notes.append(f"elevation in {band.GetUnitType()}, as the file says")
-    if kind == "ZMap" and made_by_gdal(path):
-        notes.append(
-            "x and y of the header are taken for the outermost nodes; gdal_translate writes the "
-            "outer edges of pixels there, so the points may be half a step away"
-        )
     if kind in TEXT_KINDS:
         notes += check_words(
             path, kind, data.RasterXSize * data.RasterYSize, share(options.progress, 0.0, WORDS)
@@ -241,17 +227,12 @@ def read_points(path, options):
         raise FileError(f"{path}: all {len(points):,} pixels are without data")
     lost = len(points) - count
     points = points[:count]
-    is_certain = reference.IsGeographic() if reference else tells_degrees(data)
-    step = min(map(abs, grid.steps[::3])) if grid else 0.0
-    if not options.project and (is_certain or not reference and looks_like_degrees(points, step)):
-        notes.append(note_on_degrees(is_certain))
     cloud = Cloud(make_points(points, copy=False), notes)
     cloud.z_name = name_of_z(band)
-    cloud.is_horizon = data.GetDriver().ShortName == "ZMap"
     if lost:
         cloud.left_out[Reason("pixel", "without data")] = lost
     cloud.crs = reference.ExportToWkt() if reference else None
-    cloud.grid, cloud.frame = grid, frame
+    cloud.grid, cloud.frame, cloud.angles = grid, frame, "are angles" if tells_degrees(data) else ""
     return cloud
 
 

@@ -23,7 +23,7 @@ from ..selecting import NothingChosen, Selection, as_option, none_chosen
 from . import NAMES_IN_COLUMNS, check_use
 from .formats import FORMATS, recognise
 from .known import NULLS
-from .nulls import usual_nulls, zero_rows
+from .nulls import null_rows, usual_nulls
 from .unpacking import STANDARD_INPUT, is_plain, named, unpacked
 from .upwards import notes_on_range
 
@@ -152,10 +152,10 @@ def check_nulls(path, points):
                 f"{path}: {name} = {value:.9g}, far from other values, looks like a null value: "
                 f"{advice}--keep-nulls keeps them"
             )
-    if zero_rows(*axes).any():
+    for value, _ in null_rows(*axes):
         raise FileError(
-            f"{path}: points 0 0 0 apart from all others look like null values: --keep-nulls keeps "
-            "them"
+            f"{path}: points {value:g} {value:g} {value:g} apart from all others look like null values: --keep-nulls "
+            "keeps them"
         )
 
 

@@ -19,6 +19,7 @@ from ..clouds import WHOLE, Cloud, Part, add_array, make_points
 from .columns import advice_on_columns, choose_columns
 from .known import COMMENT_MARKS, SUMMARY
 from .layouts import (
+    are_touching,
     check_marks,
     check_names,
     doubtful_marks,
@@ -27,9 +28,12 @@ from .layouts import (
     find_names,
     is_comment,
     is_data,
+    known_axes,
+    touching_in,
 )
 from ..messages import FileError, Reason, counted
 from ..progress import no_progress, told_items
+from ..projecting import note_on_degrees
 from ..selecting import MOST_VALUES, WordReader
 from ..names import option
 
@@ -39,6 +43,9 @@ TAIL = 50  # lines at the end of a block among which summaries are looked for
 CHUNK = 1000  # lines that are tried at once where a block is not all numbers
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED = 3  # that many lines of other kinds are named
+# Over parts of a file.
+SUMMED = ("count", "comments", "repeated", "ragged", "summaries", "skipped", "skipped_lines", "uneven")
+MOST_UNEVEN = 0.2  # lines of numbers that are left out, as a share of rows
 
 
 class BadLine(FileError):
@@ -149,7 +156,7 @@ class Table:
     texts            {index: name} of the columns of text
     of_numbers       indices of the columns that hold more numbers than text
     first            index of the first line of data
-    z_name, is_horizon  see Choice
+    z_name, is_horizon, angles  see Choice
     advice           what a user can do where columns are wrong; None: choose others
     has_summaries    whether lines that begin with "Total" or such are no data
     sees_summaries   whether there are such at the start or at the end of the first block
@@ -179,12 +186,12 @@ class Table:
             before = [lines[number - 1] for number, _ in preamble]
             check_names(path, self.layout, before, rows[:400], self.names, self.width, self.advice)
         chosen = choose_columns(
-            path, rows, consecutive, self.layout.number, self.names, self.width, columns, needed,
+            path, rows, consecutive, self.layout, self.names, self.width, columns, needed,
             advice,
         )
         self.indices, self.extras = chosen.indices, chosen.extras
         self.notes, self.z_name = chosen.notes, chosen.z_name
-        self.is_horizon = chosen.is_horizon
+        self.is_horizon, self.angles = chosen.is_horizon, chosen.angles
         self.of_numbers, self.texts = chosen.of_numbers, chosen.texts
         check_marks(path, rows, self.of_numbers)
         if needed == 3:
@@ -206,7 +213,7 @@ class Table:
             if is_comment(line):
                 head.append(line.strip().lstrip("#%/!*> "))
                 comments += 1
-            elif self.layout.numbers(line) >= self.needed:
+            elif self.is_like(line) and not known_axes(self.layout.words(line)) >= set("xyz"):  # as x,y,z,0,1
                 break
             elif line.strip():
                 head.append(line.strip())
@@ -229,7 +236,10 @@ class Table:
 
     def bad_line(self, number, line, why, advice=""):
         """The error for a line that is no row."""
-        if self.can_skip and not (advice and self.is_like(line)):
+        touching = touching_in(line)
+        if touching:
+            why, advice = are_touching(touching), ""
+        elif self.can_skip and not (advice and self.is_like(line)):
             advice = f"{option('skip_bad_lines')} leaves out such lines"
         return BadLine(f"{self.path}, line {number}: {why}" + (advice and "; " + advice))
 
@@ -306,7 +316,7 @@ class Parser:
         self.words = {index: WordReader() for index in table.texts}
         self.used = list(table.indices) + list(table.extras)
         self.parts, self.numbers, self.starts = [], [], []
-        self.count = self.line = self.comments = self.repeated = 0
+        self.count = self.line = self.comments = self.repeated = self.uneven = 0
         self.after_blank = True
         self.before = None  # lines before this part of the file, once a message needs their number
         self.ragged = []  # the first line with more words than others, and their number
@@ -348,6 +358,7 @@ class Parser:
     def skip(self, i, line):
         """Leaves out a line of another kind."""
         self.skipped += 1
+        self.uneven += self.table.is_like(line)
         if len(self.skipped_lines) < NAMED:
             self.skipped_lines.append([self.number(i), line.strip()])
 
@@ -544,28 +555,26 @@ class Parser:
     def facts(self):
         """What told() tells of lines, as plain values that can be added to those of other parts."""
         return {
-            "comments": self.comments,
-            "repeated": self.repeated,
-            "ragged": self.ragged,
-            "summaries": self.summaries,
-            "skipped": self.skipped,
-            "skipped_lines": self.skipped_lines,
+            **{name: getattr(self, name) for name in SUMMED},
             "no_numbers": {str(i): [found] for i, found in self.no_numbers.items()},
         }
 
     def take_facts(self, facts):
         """Takes the facts of the whole file as its own."""
-        self.comments, self.repeated = facts["comments"], facts["repeated"]
-        self.ragged, self.summaries = facts["ragged"], facts["summaries"]
-        self.skipped, self.skipped_lines = facts["skipped"], facts["skipped_lines"]
+        vars(self).update({name: facts[name] for name in SUMMED})
         self.no_numbers = {
             int(i): [sum(count for count, *_ in found), *found[0][1:]]
             for i, found in facts["no_numbers"].items()
         }
 
     def told(self):
-        """Notes, once all lines are read."""
+        """Notes, once all lines are read. Raises FileError where many rows have other numbers of columns."""
         table = self.table
+        if self.uneven > MOST_UNEVEN * self.count:
+            raise FileError(
+                f"{table.path}: {self.uneven:,} lines of numbers have other columns than {self.count:,} rows: blanks do not "
+                "part the columns of this table; export it as .csv"
+            )
         notes, comments = table.notes, self.comments + table.comments
         seen = [f"separated by {table.layout}"]
         for count, what in ((table.headers, "header"), (comments, "comment")):
@@ -664,7 +673,7 @@ def read_text(path, options):
     )
     table = parser.table
     cloud = Cloud(None, notes, lines=numbers)
-    cloud.z_name, cloud.is_horizon = table.z_name, table.is_horizon
+    cloud.z_name, cloud.is_horizon, cloud.angles = table.z_name, table.is_horizon, table.angles
     cloud.words = parser.take_words()
     if options.no_data is not None:
         keep = rows[:, 2] != options.no_data
@@ -709,6 +718,8 @@ class TextSlices:
         self.parser.take_facts(facts)
         cloud.notes += self.parser.told()
         cloud.z_name, cloud.is_horizon = table.z_name, table.is_horizon
+        if table.angles != "no":
+            cloud.notes.append(note_on_degrees(table.angles))
         if table.extras:
             cloud.notes.append(f"left out: {', '.join(table.extras.values())}")
 

@@ -72,7 +72,9 @@ def unzipped(path, folder, progress):
     read = read or [name for name in names if suffix_of(name) == ".txt"]
     if len(read) != 1:
         shown = ", ".join(read[:20]) or ", ".join(names[:20]) or "nothing"
-        raise FileError(f"{path}: is an archive that holds {shown}: unpack it, and name the one to read")
+        alike = read[:20] if len(set(map(suffix_of, read))) == 1 else ["FILE"]
+        way = f": unzip {path} -d unpacked, and read {' '.join('unpacked/' + name for name in alike)}" if names else ""
+        raise FileError(f"{path}: is an archive that holds {shown}{way}")
     return os.path.join(folder, read[0])
 
 

@@ -14,7 +14,6 @@ from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError, Reason
 from ..names import option
 from ..progress import share, told_items
-from ..projecting import note_on_degrees
 from ..selecting import words_of
 
 OPEN_OPTIONS = {
@@ -22,6 +21,9 @@ OPEN_OPTIONS = {
     "GML": ["WRITE_GFS=NO"],  # nothing beside the user's file
 }
 
+
+# Layers of GPX that have the same vertices, as points and as lines.
+POINTS_OF_LINES = (("track_points", "tracks"), ("route_points", "routes"))
 
 # Attributes of elevations of points and contours, as ArcGIS names them.
 GIVEN_BY_TOOLS = ("grid_code", "gridcode", "rastervalu", "contour")
@@ -46,7 +48,7 @@ def open_file(path):
         raise FileError(f"{path}: cannot be read: {one_line(error)}") from None
 
 
-def open_layer(path, data, wanted):
+def open_layer(path, data, wanted, as_lines):
     """(layer, notes). A drawing is one layer to GDAL; its own layers are chosen by an attribute."""
     from osgeo import ogr
 
@@ -65,7 +67,8 @@ def open_layer(path, data, wanted):
             if layer.GetGeomType() != ogr.wkbNone and layer.GetFeatureCount() != 0
         ]
     names = [layer.GetName() for layer in layers]
-    name = choose_layer(path, wanted, names, "layers with geometry")
+    twice = [pair[not as_lines] for pair in POINTS_OF_LINES if set(pair) <= set(names) and not wanted]
+    name = choose_layer(path, wanted, [name for name in names if name not in twice], "layers with geometry")
     notes = [f"layer {name} (of {', '.join(names)})"] if len(names) > 1 else []
     return layers[names.index(name)], notes
 
@@ -177,6 +180,8 @@ class Layer:
                 raise FileError(f"{self.path}: has no attribute {columns[2]}; attributes: {names}")
             return columns[2]
         named = [name for name in self.fields if meaning(name).axis == "z"]
+        # A time of a clock, or an altitudeMode, is none.
+        named = [name for name in named if meaning(name).rank < 4 or self.numbers(name) is not None]
         # Those that tools give are doubtful names, so they count last.
         named = named or [name for name in self.fields if name.lower() in GIVEN_BY_TOOLS]
         named = [name for name in named if any(v is not None for v in self.fields[name])]
@@ -203,11 +208,11 @@ def are_angles(layer):
     return (numpy.abs(layer.coordinates()[:, :2]) <= (540.0, 90.0)).all()
 
 
-def read_layer(path, wanted, columns, progress, project=True):
+def read_layer(path, wanted, columns, progress, as_lines=False):
     """(Layer with its elevations, notes, crs)."""
     with quiet():
         data = open_file(path)
-        found, notes = open_layer(path, data, wanted)
+        found, notes = open_layer(path, data, wanted, as_lines)
         layer = Layer(path, found, data.GetDriver().ShortName, share(progress, 0.0, 0.8))
         reference = found.GetSpatialRef()
         notes.insert(0, f"vectors: {data.GetDriver().LongName}")
@@ -217,8 +222,6 @@ def read_layer(path, wanted, columns, progress, project=True):
             # GDAL takes GeoJSON that names no system for degrees.
             notes.append(f"x,y are no angles, so it is not in {reference.GetName()}; see {option('crs')}")
             reference = None
-        if reference and reference.IsGeographic() and not project:
-            notes.append(note_on_degrees(True))
         crs = reference.ExportToWkt() if reference else None
     progress(0.85)
     notes += layer.set_heights(columns)
@@ -232,9 +235,7 @@ def read_points(path, options):
 
     Takes about 20 seconds for a million features.
     """
-    layer, notes, crs = read_layer(
-        path, options.layer, options.columns, options.progress, options.project
-    )
+    layer, notes, crs = read_layer(path, options.layer, options.columns, options.progress)
     parts = [points[:-1] if kind == "ring" else points for kind, points in layer.parts]
     coordinates = numpy.concatenate(parts)
     options.progress(0.95)
@@ -266,7 +267,7 @@ def read_points(path, options):
 
 def read_lines(path, singular, progress):
     """Lines and polygons with their holes, as vtkPolyData with lines and the field array CRS."""
-    layer, _, crs = read_layer(path, None, None, progress)
+    layer, _, crs = read_layer(path, None, None, progress, as_lines=True)
     names, parts, count = [], [], collections.Counter()
     for feature, (kind, points) in zip(layer.ids, layer.parts):
         if kind != "point":

@@ -143,6 +143,14 @@ def grid_of(result, step=None, like=None, progress=None):
             f"at most {MOST_PIXELS:,} are made: use a larger step"
         )
     z, error = interpolated(result.surface, frame, near, progress)
+    if not numpy.isfinite(z).any() and like is not None:
+        west, east, south, north = result.surface.GetBounds()[:4]
+        x, y = (ends.ravel()[[0, -1]] for ends in frame.centres())
+        name = "like" if hasattr(like, "frame") else like
+        raise ElevationSurfaceError(
+            f"no pixel of {name} has its centre in the surface: it is from x,y {x.min():.7g}, {y.min():.7g} to "
+            f"{x.max():.7g}, {y.max():.7g}, the surface from {west:.7g}, {south:.7g} to {east:.7g}, {north:.7g}"
+        )
     if not numpy.isfinite(z).any():
         raise ElevationSurfaceError(
             f"no pixel of {words} has its centre in the surface: use a smaller step"

@@ -78,6 +78,17 @@ class Degrees(Program):
         array = group = data = None
         self.assertTrue([note for note in read(self.path("a.nc")).notes if "are angles" in note])
 
+    def test_a_mesh_of_ugrid_is_called_by_its_name(self):
+        data = gdal.GetDriverByName("netCDF").CreateMultiDimensional(self.path("m.nc"))
+        group = data.GetRootGroup()
+        group.CreateAttribute("Conventions", [], gdal.ExtendedDataType.CreateString()).Write("CF-1.8 UGRID-1.0")
+        ends = [group.CreateDimension(name, None, None, count) for name, count in (("edges", 5), ("two", 2))]
+        nodes = group.CreateMDArray("edge_nodes", ends, gdal.ExtendedDataType.Create(gdal.GDT_Int32))
+        nodes.Write(numpy.arange(10, dtype="i4").reshape(5, 2))
+        nodes = group = data = None
+        with self.assertRaisesRegex(FileError, "is a mesh of UGRID, no raster"):
+            read(self.path("m.nc"))
+
     def test_metres_are_not_called_degrees(self):
         for name, driver, place in (
             ("a.asc", "AAIGrid", (30.0, 2.0, 0.0, 60.0, 0.0, -2.0)), ("b.asc", "AAIGrid", (500000.0, 0.5, 0.0, 60.0, 0.0, -0.5)),

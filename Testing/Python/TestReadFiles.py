@@ -55,7 +55,7 @@ class Files(unittest.TestCase):
         files = sorted(set(os.listdir(FOLDER)) - {TABLE})
         self.assertEqual(sorted({name for name, *_ in rows_of_table()}), files)
         for name in files:
-            self.assertLess(os.path.getsize(os.path.join(FOLDER, name)), 2000, name)
+            self.assertLess(os.path.getsize(os.path.join(FOLDER, name)), 10_000, name)
 
 
 if __name__ == "__main__":

@@ -83,6 +83,7 @@ class Formats(InFolder):
         self.assert_rows(cloud, [(605835.5, 6073657.0, 1850.55), (605860.5, 6073657.0, -1851.25), (1.5, 2.5, -99999.25)])
         self.assertEqual(cloud.left_out, {"rows without data": 1})
         self.assertEqual(self.array(cloud, "Segment"), [1, 1, 2])
+        self.assert_rows(self.read(IESX[:-4]), coordinates(cloud))  # as Petrel writes it
         self.assert_rows(self.read(IESX, layer="Base"), [(1.5, 2.5, -99999.25)])
         self.assertTrue(any("times by their name" in note for note in cloud.notes))
 
@@ -124,7 +125,7 @@ class Formats(InFolder):
             ("a.gri", irap()[:50], "cut off within the header"),
             ("a.gri", irap()[:-9], "cut off or damaged behind byte"),
             ("a.gri", irap(z=Z)[:100] + irap()[120:], "6 values are announced"),
-            ("a.dat", IESX[:-4], "EOD, is missing"),
+            ("a.dat", IESX[:-20], "cut off within its last line"),
             ("a.dat", IESX.replace("E+06", "E+0x"), "line 3: '6.0583550"),
             ("a.dat", IESX.replace("TYPE 1", "TYPE 9"), "of type 9"),
             ("a.dat", "PROFILE a TYPE 1 4\nEOD\n", "holds no points"),

@@ -19,6 +19,14 @@ IRAP = "-996 2 10.0 5.0\n1000.5 1020.5 200.25 205.25\n3 0.0 1000.5 200.25\n0 0 0
 IRAP += "0 1 2 100\n9999900.0000 102\n"
 CPS3 = 'FSASCI 0 1 "Computed" 0 0.1E+31 0\nFSATTR 0 0\nFSLIMI 1000.5 1020.5 200.25 205.25 0 102\n'
 CPS3 += "FSNROW 2 3\nFSXINC 10.0 5.0\n->Depth map\n100 0\n0.1E+31 1 102\n2\n"
+# Whole numbers, in rows that go on behind the end of a column.
+ZMAP = "! by hand, @home\n@depth, GRID, 4\n9, 1E+30, , 7, 1\n2, 3, 1000.5, 1020.5, 200.25, 205.25\n0, 0, 0\n@\n"
+ZMAP += "      100        0   1E+030        1\n      102        2\n"
+ZMAP_TOUCHING = ZMAP[: ZMAP.index("      100")].replace("9, 1E", "4, 1E") + " 100   01E30   1\n 102   2\n"
+GXF = "! by hand\n#POINTS\n3\n#ROWS\n2\n#PTSEPARATION\n10\n#RWSEPARATION\n5\n#XORIGIN\n1000.5\n#YORIGIN\n200.25\n"
+GXF += "#DUMMY\n1e30\n##XMAX\n7\n#GRID\n0 1 2\n100 1e30\n102\n"
+ZMAP_POINTS = "!\n@FREE POINT , DATA, 80, 1\nX (EASTING), 1, 1, 1, 1, 20,, 1.0E+30,,, 4, 0\nY (NORTHING), 2, 2, 1, 21, 40,, 1.0E+30\n"
+ZMAP_POINTS += "Z VALUE, 3, 3, 1, 41, 60,, 1.0E+30,,, 4, 0\n@\n" + "".join(f" {x} {y} {z}\n" for x, y, z in KNOWN) + "1 2 1E+30\n"
 EARTHVISION = "# Type: scattered data\n# Field: 1 x\n# Field: 2 y\n# Field: 3 z meters\n# a\n"
 EARTHVISION += "# Field: 4 column integer\n# Field: 5 row integer\n# Null_value: 0.1e31\n# End:\n"
 EARTHVISION += "".join(
@@ -103,6 +111,14 @@ class Horizons(InFolder):
         for name, content, rows, left_out in (
             ("irap grid", IRAP, KNOWN, 1),
             ("cps-3 grid", CPS3, KNOWN, 1),
+            ("cps-3 grid", CPS3.replace("->Depth map\n", ""), KNOWN, 1),
+            ("zmap+", ZMAP, KNOWN, 1),
+            ("zmap+, touching", ZMAP_TOUCHING, KNOWN, 1),
+            ("zmap+ with a remark", ZMAP.replace("@\n", "@\n+ Grid data starts after this line\n"), KNOWN, 1),
+            ("zmap+ points", ZMAP_POINTS, KNOWN, 1),
+            ("gxf", GXF, KNOWN, 1),
+            ("gxf from the north", GXF.replace("0 1 2\n100 1e30\n102", "100 1e30 102 0 1 2").replace("#DUM", "#SENSE\n-2\n#DUM"), KNOWN, 1),
+            ("gxf as OpenWorks writes it", "! a\n" * 2000 + GXF.replace("\n10\n", '\n"10"\n'), KNOWN, 1),
             ("earthvision", EARTHVISION, KNOWN, 1),
             ("petrel", PETREL, KNOWN, 0),
             ("gocad", SURFACE.replace("Depth", "Elevation"), CORNERS, 0),
@@ -123,6 +139,20 @@ class Horizons(InFolder):
                         got = sorted(map(tuple, coordinates(cloud).tolist()))
                         self.assertEqual(got, sorted(rows))
                     self.assertEqual(sum(cloud.left_out.values()), left_out)
+
+    def test_whole_numbers_of_a_zmap_file_are_as_they_stand(self):
+        cloud = self.read(ZMAP, "a.zmap")
+        self.assertTrue(any("tells 7 decimals: they are read as they stand" in note for note in cloud.notes))
+        self.assertEqual(cloud.points.GetPoint(0), (1000.5, 205.25, 100.0))
+        decimals = self.read(ZMAP.replace("      100", "    100.5"), "a.zmap")
+        self.assertFalse(any("as they stand" in note for note in decimals.notes))
+        doubtful = self.read("! Created by GDAL.\n" + ZMAP, "a.zmap")
+        self.assertTrue(any("half a step away" in note for note in doubtful.notes))
+
+    def test_a_turned_gxf_grid_is_turned_as_an_irap_grid(self):
+        turned = self.read(GXF.replace("#DUMMY", "#ROTATION\n30\n#DUMMY"), "a.gxf", keep_nulls=True)
+        expected = self.read(IRAP.replace("3 0.0 1000.5 200.25", "3 30.0 1000.5 200.25"), "a.irap", keep_nulls=True)
+        numpy.testing.assert_array_equal(coordinates(turned), coordinates(expected))
 
     def test_a_turned_irap_grid_is_placed_by_its_angle(self):
         text = IRAP.replace("3 0.0 1000.5 200.25", "3 30.0 1000.5 200.25")
@@ -190,6 +220,13 @@ class Horizons(InFolder):
             ("its FSLIMI, FSNROW or FSXINC", CPS3[:60]),
             ("6 values are announced, 5 found", CPS3[:-2]),
             ("6 values are announced, 2 found", CPS3.replace("0.1E+31 1 102", "spoil 1 102")),
+            ("6 values are announced, 5 found", ZMAP[:-3]),
+            ("does not tell rows, columns and limits", ZMAP.replace("2, 3, 1000.5", "2, 1000.5")),
+            ("cut off within its header", ZMAP_POINTS[:80]),
+            ("6 values are announced, 5 found", GXF[:-4]),
+            ("tell POINTS, ROWS, XORIGIN", GXF.replace("#ROWS\n2\n", "")),
+            ("SENSE is 4, which is not read: gdal_translate", GXF.replace("#DUMMY", "#SENSE\n4\n#DUMMY")),
+            ("packed, which is not read: gdal_translate", GXF.replace("#DUMMY", "#GTYPE\n3\n#DUMMY")),
             ("does not name x, y and z", EARTHVISION.replace("3 z meters", "3 code")),
             (", line 11: is no row of x, y, z", EARTHVISION.replace("1010.5", "spoil", 1)),
             ("its END HEADER is missing", PETREL[: PETREL.index("END HEADER")]),

@@ -116,6 +116,8 @@ class Nulls(unittest.TestCase):
         cloud = taken(rows)
         self.assertEqual(cloud.left_out, {"rows 0 0 0": 5})
         self.assertEqual(cloud.points.GetNumberOfPoints(), len(rows) - 5)
+        rows[20] = 999.0  # IRAP's mark at the end of a line
+        self.assertEqual(taken(rows).left_out, {"rows 0 0 0": 5, "rows 999 999 999": 1})
         local = terrain() - (500000, 4000000, 0)
         local[0] = 0.0
         self.assertEqual(taken(local).left_out, {})

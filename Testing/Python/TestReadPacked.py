@@ -139,7 +139,8 @@ class Archives(InFolder):
             reading.read(self.folder)
 
     def test_what_cannot_be_decided_is_asked_and_damage_is_told(self):
-        self.assert_refused("holds a.xyz, b.xyz: unpack it", zipped(**{"a.xyz": self.TEXT, "b.xyz": self.TEXT}), "a.zip")
+        self.assert_refused(("holds a.xyz, b.xyz: unzip ", "a.zip -d unpacked, and read unpacked/a.xyz unpacked/b.xyz"),
+                            zipped(**{"a.xyz": self.TEXT, "b.xyz": self.TEXT}), "a.zip")
         self.assert_refused("holds nothing", zipped(), "a.zip")
         self.assert_refused("holds a.jpg", zipped(**{"a.jpg": "a"}), "a.zip")
         whole = zipped(**{"a.xyz": self.TEXT})

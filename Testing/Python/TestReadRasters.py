@@ -82,11 +82,6 @@ BY_HAND = {
     "binary6.grd": surfer6(2, 3, [v for row in reversed(ROWS) for v in row]),
     "surfer7.grd": surfer7(2, 3, [v for row in reversed(ROWS) for v in row]),
     "grass.txt": "north: 42.5\nsouth: 27.5\neast: 13\nwest: 9\nrows: 3\ncols: 2\n" + TEXT,
-    "zmap.dat": (
-        "! made by hand\n@depth, GRID, 3\n15, 1E+30, , 4, 1\n3, 2, 10.0, 12.0, 30.0, 40.0\n"
-        "0.0, 0.0, 0.0\n@\n"
-        f"{0:15.4f}{10:15.4f}{20:15.4f}\n{1:15.4f}{11:15.4f}{21:15.4f}\n"
-    ),
 }
 
 
@@ -319,14 +314,6 @@ class Pixels(InFolder):
         with self.assertRaisesRegex(reading.FileError, "header of a SAGA grid; .*s.sdat is missing"):
             reading.read(self.path("s.sgrd"))
 
-    def test_places_of_a_zmap_file_by_gdal_are_doubtful(self):
-        source = gdal.Open(raster(self.path("a.tif")))
-        gdal.GetDriverByName("ZMap").CreateCopy(self.path("a.dat"), source)
-        cloud = reading.read(self.path("a.dat"))
-        self.assertTrue(any("half a step away" in note for note in cloud.notes))
-        notes = self.read(BY_HAND["zmap.dat"], "b.dat").notes
-        self.assertFalse(any("half a step" in note for note in notes))
-
     def test_colours_are_told(self):
         path = self.tif(z=[Z, Z, Z], no_data=None, kind=gdal.GDT_Byte, PHOTOMETRIC="RGB")
         self.assertTrue(any("are colours (red)" in note for note in reading.read(path).notes))
@@ -433,7 +420,6 @@ class Damage(InFolder):
             ("cannot be read", "a.grd", BY_HAND["surfer7.grd"][:60]),
             ("band 1", "a.grd", BY_HAND["surfer7.grd"][:-8]),
             ("band 1", "a.grd", BY_HAND["binary6.grd"][:-4]),
-            ("band 1", "a.dat", BY_HAND["zmap.dat"][:-20]),
             ("band 1", "b.dem", dem[:2048]),
             ("band 1", "b.dem", dem[: 2048 + 150]),
             ("", "a.nc", b"CDF\1" + b"\0" * 40),

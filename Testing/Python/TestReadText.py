@@ -17,6 +17,7 @@ from vtkelevationsurface.clouds import ReadOptions
 from vtkelevationsurface.reading.column_names import meaning
 from vtkelevationsurface.messages import FileError
 from vtkelevationsurface.reading.nulls import take_out
+from vtkelevationsurface.projecting import notes_on_degrees
 from vtkelevationsurface.reading.text import BLOCK, read_table, read_text
 from vtkelevationsurface.reading.upwards import notes_on_up
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -145,7 +146,6 @@ BARE = (
     ("time x y z", " ", "gps x y z", "x = 2, y = 3, z = 4"),
     ("x y z amplitude", " ", "x y z amp", "first 3 of 4"),
     ("code x y z", ",", "code x y z", "x = 2"),
-    ("lon lat z id", ",", "lon lat z id", "look like degrees"),
 )
 
 
@@ -191,6 +191,7 @@ class Tables(unittest.TestCase):
 
     def read(self, content, **options):
         cloud = read_text(self.file(content), ReadOptions(**options))
+        cloud.notes += notes_on_degrees(cloud)
         cloud.notes += notes_on_up(cloud, options.get("depth", False))
         return cloud
 
@@ -409,7 +410,7 @@ class Doubts(Tables):
         self.assertEqual(list(cloud.lines), [2, 3, 4])
         self.assertIn("1 header line", cloud.notes[0])
         error = self.refusal("500000.25 4000000.25-9999.00\n500001.25 4000000.25 12.00\n")
-        self.assertIn("line 1: 2 columns found where other lines have 3", error)
+        self.assertIn("line 1: numbers of fixed width touch, as 4000000.25-9999.00", error)
 
     def test_comments_do_not_hide_the_names_and_separators_may_end_lines(self):
         self.assert_coordinates(self.read("# z y x\n# made by hand\n1 2 3\n4 5 7\n"),

@@ -133,6 +133,18 @@ class Points(Vectors):
                 self.assert_rows(cloud, degrees)
                 self.assertTrue(any("x,y are angles" in note for note in cloud.notes))
 
+    def test_tracks_of_gpx_are_points_or_lines_as_is_asked(self):
+        rows = [(7.5, 50.25, 100.5), (7.75, 50.5, 200.25), (8.0, 50.0, 300.0)]
+        points = "".join(
+            f'<trkpt lat="{y}" lon="{x}"><ele>{z}</ele><time>2026-05-0{i}T10:00:00Z</time></trkpt>' for i, (x, y, z) in enumerate(rows, 1)
+        )
+        gpx = f'<gpx version="1.1" xmlns="http://www.topografix.com/GPX/1/1"><trk><trkseg>{points}</trkseg></trk></gpx>'
+        cloud = self.read(gpx, "a.gpx")
+        self.assert_rows(cloud, rows)
+        self.assertFalse([note for note in cloud.notes if "time" in note], cloud.notes)
+        lines = reading.read_faults(self.path("a.gpx"))
+        self.assertEqual((lines.GetNumberOfCells(), lines.GetCell(0).GetNumberOfPoints()), (1, 3))
+
     def test_z_comes_from_an_attribute_where_the_points_are_flat(self):
         heights = [row[2] for row in MAP]
         for name, flat in (("HOEHE", True), ("z", True), ("elevation_m", True), ("Cota", True),

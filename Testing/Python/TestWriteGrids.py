@@ -178,6 +178,9 @@ class OnPixels(Program):
         other = dem(self.path("other.tif"), whole, crs=25833)
         with self.assertRaisesRegex(ElevationSurfaceError, "other.tif: its coordinate reference system"):
             filled.to_grid(like=other)
+        self.file("far.asc", "ncols 2\nnrows 2\nxllcorner 9\nyllcorner 47\ncellsize 0.1\n1 2\n3 4\n")
+        with self.assertRaisesRegex(ElevationSurfaceError, "far.asc has its centre in the surface: it is from x,y 9.05, 47.05 to"):
+            filled.to_grid(like=self.path("far.asc"))
         with self.assertRaisesRegex(ElevationSurfaceError, "is no raster"):
             filled.to_grid(like=self.path(self.file("a.xyz", "0 0 1\n1 0 1\n0 1 2\n3 5 2\n")))
 
