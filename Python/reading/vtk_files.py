@@ -217,6 +217,12 @@ def vertices_of_text(path, word, progress, once=True):
     return found[numpy.sort(firsts)]
 
 
+def dimensions_of(grid):
+    """Columns, rows and layers of a grid of any kind and VTK."""
+    dimensions = [0, 0, 0]
+    grid.GetDimensions(dimensions)
+    return dimensions
+
 
 def points_of_grid(path, grid, ids=None):
     """A flat grid with one elevation for each node -> its nodes as points."""
@@ -229,7 +235,7 @@ def points_of_grid(path, grid, ids=None):
                 break
     if scalars is None or scalars.GetNumberOfComponents() != 1:
         raise FileError(f"{path}: holds no point array with one elevation for each node")
-    columns, rows, layers = grid.GetDimensions()
+    columns, rows, layers = dimensions_of(grid)
     if layers != 1:
         raise FileError(f"{path}: is a grid of {layers} layers; one in the x,y plane is needed")
     x, y = places_of_image(path, grid) if isinstance(grid, vtkImageData) else places_of(grid)
@@ -259,14 +265,14 @@ def places_of_image(path, grid):
     steps = [[matrix.GetElement(k, axis) * spacing[axis] for k in range(3)] for axis in (0, 1)]
     if steps[0][2] or steps[1][2]:
         raise FileError(f"{path}: is an image that leans; one in the x,y plane is needed")
-    first, (columns, rows, _) = grid.GetPoint(0), grid.GetDimensions()
+    first, (columns, rows, _) = grid.GetPoint(0), dimensions_of(grid)
     across, up = numpy.meshgrid(numpy.arange(columns), numpy.arange(rows))
     return [first[k] + steps[0][k] * across + steps[1][k] * up for k in (0, 1)]
 
 
 def with_hidden_nodes(data):
     """A point set; of a flat structured grid, nodes of which all cells are blanked are marked, too."""
-    if not isinstance(data, vtkStructuredGrid) or data.GetDimensions()[2] != 1:
+    if not isinstance(data, vtkStructuredGrid) or dimensions_of(data)[2] != 1:
         return data
     hidden, mark = hidden_nodes(data).ravel(), vtkDataSetAttributes.HIDDENPOINT
     if (hidden == marked_points(data, mark)).all():
@@ -283,7 +289,7 @@ def with_hidden_nodes(data):
 
 def hidden_nodes(grid):
     """(rows, columns) of bool: the nodes that are blanked, or of which all cells are."""
-    columns, rows, _ = grid.GetDimensions()
+    columns, rows, _ = dimensions_of(grid)
     hidden = marked_points(grid, vtkDataSetAttributes.HIDDENPOINT).reshape(rows, columns)
     ghosts = grid.GetCellData().GetArray(vtkDataSetAttributes.GhostArrayName())
     if ghosts is not None and rows > 1 and columns > 1:

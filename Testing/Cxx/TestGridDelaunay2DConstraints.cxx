@@ -164,7 +164,8 @@ void TestPointsAreAdded()
       output->GetFieldData()->GetArray("NumberOfConstraintCrossings")->GetTuple1(0) == 2 &&
       output->GetFieldData()->GetArray("NumberOfAddedPoints")->GetTuple1(0) == 6,
     "crossings and added points are counted");
-  Check(input->GetNumberOfPoints() == 81 && input->GetPointData()->GetScalars()->GetNumberOfTuples() == 81 &&
+  Check(input->GetNumberOfPoints() == 81 &&
+      input->GetPointData()->GetScalars()->GetNumberOfTuples() == 81 &&
       input->GetPoints() != output->GetPoints(),
     "the input is not written");
   Check(output->GetPoints()->GetDataType() == VTK_DOUBLE, "a third is no float");

@@ -67,6 +67,14 @@ def checks(section, there):
 HULL = area(reconstruct(XYZ, trim=False, fill=False).surface)
 
 
+def clean_points():
+    """A vtkStaticCleanPolyData that keeps points without cells, as that of VTK 9.1 does."""
+    clean = vtkStaticCleanPolyData()
+    if hasattr(clean, "RemoveUnusedPointsOff"):
+        clean.RemoveUnusedPointsOff()
+    return clean
+
+
 def names():
     """What the code of the tables may use."""
     transform = vtkTransform()
@@ -75,7 +83,7 @@ def names():
         "points": data(), "lines": data(Lines=CORNERS[:2]), "ring": data(Polys=CORNERS),
         "surface": reconstruct(XYZ, fill=False).surface, "transform": transform, "spacing": 2.6,
         "read": read, "reconstruct": reconstruct, "vtkTransformFilter": vtkTransformFilter,
-        "vtkDelaunay2D": vtkDelaunay2D, "vtkStaticCleanPolyData": vtkStaticCleanPolyData, "vtkFillHolesFilter": vtkFillHolesFilter,
+        "vtkDelaunay2D": vtkDelaunay2D, "vtkStaticCleanPolyData": clean_points, "vtkFillHolesFilter": vtkFillHolesFilter,
         "vtkGridDelaunay2D": vtkGridDelaunay2D, "vtkFillElevationHoles": vtkFillElevationHoles,
     }
 
