@@ -123,7 +123,7 @@ double Quantile(std::vector<double>& values, double part)
   return *at;
 }
 
-/** Tells why most points are without a triangle, and advises a limit. */
+/** Explains why most points are without a triangle, and advises a limit. */
 void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   elevation::DelaunayOptions options, const elevation::ConstrainedTriangulation& constrained,
   const Progress& progress, std::vector<elevation::Message>& warnings)
@@ -163,7 +163,7 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   warnings.back() = elevation::AdviceOnLimit(limit, effect);
 }
 
-/** Tells why there is no triangle, or why most points are without one. */
+/** Explains why there is no triangle, or why most points are without one. */
 void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
   const elevation::DelaunayOptions& options, const elevation::ConstrainedTriangulation& constrained,
   const Progress& progress, std::vector<elevation::Message>& warnings)
@@ -319,18 +319,18 @@ int vtkGridDelaunay2D::RequestData(
     vtkPolyData* const draped = this->DrapeConstraints ? block.Second : nullptr;
     vtkPolyData* const source = draped ? nullptr : block.Second;
     const double split = draped ? 0.7 : 1.0;
-    const double told = source ? 0.95 : split;
+    const double advised = source ? 0.95 : split;
     // Little, as a limit seldom needs advice.
-    const double triangulated = this->MaximumEdgeLength > 0.0 ? told - 0.09 : told;
+    const double triangulated = this->MaximumEdgeLength > 0.0 ? advised - 0.09 : advised;
     elevation::ConstrainedTriangulation constrained = TriangulateWith(
       source, points.View, options, SubProgress(progress, 0.0, triangulated), block.Warnings);
     elevation::Triangulation& triangulation = constrained.Result;
     elevation::NameHidden(elevation::GhostsOf(block.Input->GetPointData()), triangulation);
     elevation::WarnOfWall(elevation::SampleOf(points.View), block.Warnings);
-    WarnOfMissing(source, points.View, options, constrained, SubProgress(progress, triangulated, told),
-      block.Warnings);
+    WarnOfMissing(source, points.View, options, constrained,
+      SubProgress(progress, triangulated, advised), block.Warnings);
     elevation::PassPoints(
-      block.Input, source, constrained.Added, SubProgress(progress, told, split), output);
+      block.Input, source, constrained.Added, SubProgress(progress, advised, split), output);
     output->GetFieldData()->PassData(block.Input->GetFieldData());
     output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles),
       elevation::ResolveNumberOfThreads(this->NumberOfThreads)));

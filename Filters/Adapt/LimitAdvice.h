@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * What is told where a triangulation has no triangle, or a MaximumEdgeLength leaves few. Private to
- * the module.
+ * Explains why a triangulation has no triangle, and advises a MaximumEdgeLength where the given one
+ * leaves few. Private to the module.
  */
 #ifndef LimitAdvice_h
 #define LimitAdvice_h

@@ -80,7 +80,7 @@ void AddedLines::Read()
   });
 }
 
-/** What one look at each part tells: where points are, and which are near lines. */
+/** Looks at each part once: where points are, and which are near lines. */
 void AddedLines::ListNear(std::vector<Message>& warnings)
 {
   Box box;

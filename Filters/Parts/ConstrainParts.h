@@ -4,17 +4,17 @@
  * @file
  * Lines that become edges of a surface in parts (Engine.h). Private to the module.
  *
- * In: parts with their points, and all lines on all ranks. Out: parts with the points that lines add,
- * and, when all is triangulated, what becomes of triangles that lines cross.
+ * In: parts with their points, and all lines on all ranks. Out: parts with the points that lines
+ * add, and, when all is triangulated, what becomes of triangles that lines cross.
  *
  * The steps, around passes 2 to 5 of TriangulateParts.h:
  *   1. Each part lists its points that are on lines, or nearly so. All ranks get these, and cut the
- *      lines by them, all alike. So all know the points that the lines add, and each part gets those
- *      of its cell.
- *   2. Each part tells which pieces of the lines are edges of its triangles.
- *   3. The triangles that meet a piece that is no edge yet go to the first part, which recovers these
- *      pieces together. What has changed comes back to the parts that had it; it counts whenever a
- *      part is read. The corners of all these triangles may be asked for.
+ *      lines by them, all alike. So all know the points that the lines add, and each part gets
+ *      those of its cell.
+ *   2. Each part lists the pieces of the lines that are edges of its triangles.
+ *   3. The triangles that meet a piece that is not an edge yet go to the first part, which recovers
+ *      these pieces together. What has changed comes back to the parts that had it; it counts
+ *      whenever a part is read. The corners of all these triangles may be asked for.
  *
  * Cost: a part in files is read once in step 1, once in step 2, and once more in step 3 if it has a
  * triangle there. In memory are the lines and their pieces, the points near them, and in step 3 the

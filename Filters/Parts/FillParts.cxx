@@ -70,7 +70,7 @@ void FillParts::WithPart(int part, const Progress& progress, const Visit& visit)
 
 /*
  * A part is looked at once. The points on its border are kept meanwhile, as which of them are on
- * that of the surface is known only when all ranks have told their edges.
+ * that of the surface is known only when all ranks have sent their edges.
  */
 void FillParts::FindHoles(int partOfRims)
 {
@@ -138,8 +138,8 @@ void FillParts::FindHoles(int partOfRims)
 }
 
 /**
- * A long triangle tells the points of a region how far the next line is, up to half of its height away
- * (Holes::Gaps).
+ * Finds from a long triangle how far the next line is from the points of a region, up to half of
+ * its height away (Holes::Gaps).
  */
 void FillParts::FindReaches()
 {

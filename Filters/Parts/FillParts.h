@@ -10,8 +10,8 @@
  * reports.
  *
  * The passes, each of which all ranks do at the same time:
- *   1. What is on the borders of parts tells all ranks the border of the surface, and they find the
- *      same holes (Holes.h).
+ *   1. All ranks find the border of the surface from the borders of the parts, and so the same
+ *      holes (Holes.h).
  *   2. The lattice of all points is looked for, each counted once.
  *   3. Each hole goes to a group of holes that are filled together. In memory a rank has one group:
  *      the largest hole goes first, to the rank with least work so far. In files a part has some:

@@ -325,7 +325,7 @@ void ReconstructParts::Trim(const Progress& progress)
 {
   if (this->Work->All().Triangles == 0)
   {
-    return; // that has been told
+    return; // a warning has said so
   }
   std::vector<Message> warnings;
   this->Do(true, [&]() {

@@ -19,7 +19,7 @@ namespace
 enum BoxOfTrim
 {
   NearTriangles, // of all parts, at the part with most; it takes them at once
-  Back           // what became of a part's own
+  Back           // a part's own triangles, trimmed
 };
 } // namespace
 
@@ -81,7 +81,9 @@ CodedError TrimParts::Refusal() const
                      : MakeError<sentences::OutlineNotInPieces>();
 }
 
-/** The part, whose triangles are read. In memory the step finds it as it was left by the last one. */
+/**
+ * The part, whose triangles are read. In memory the step finds it as it was left by the last one.
+ */
 template <typename Step>
 void TrimParts::WithPart(int part, const Progress& progress, const Step& step)
 {
@@ -145,7 +147,10 @@ void TrimParts::Read()
   }
 }
 
-/** Pass 1, with a margin of an outline. The near triangles wait here until all ranks know which part has most of them. */
+/**
+ * Pass 1, with a margin of an outline. The near triangles wait here until all ranks know which part
+ * has most of them.
+ */
 void TrimParts::FindNear(int margin)
 {
   this->Margin = margin;
@@ -181,7 +186,7 @@ void TrimParts::FindNear(int margin)
   this->InnerPoints = sums[1];
 }
 
-/** Pass 2. @return false on all ranks if the near triangles do not tell what to keep */
+/** Pass 2. @return false on all ranks if the near triangles do not decide what to keep */
 bool TrimParts::TrimNear()
 {
   const Ranks& all = this->Crew.All();

@@ -27,7 +27,7 @@ namespace elevation
 
 namespace
 {
-constexpr char IsNear = 2; // neither kept nor outward: what comes back tells
+constexpr char IsNear = 2; // neither kept nor outward until it comes back
 }
 
 void TrimmedPart::Read()
@@ -170,8 +170,8 @@ vtkIdType TrimmedPart::CountOfSide(int side) const
 }
 
 /**
- * Finds which of the new points this part has, if not in its near part, and adds the others; and which
- * of the far points on the boundary.
+ * Finds which of the new points this part has, if not in its near part, and adds the others; and
+ * which of the far points on the boundary.
  */
 void TrimmedPart::FindOwn(const Progress& progress)
 {

@@ -42,7 +42,7 @@ public:
    */
   bool Sweep(const std::vector<Point2>& points, const Rings& rings, double numberOfAll, int threads,
     const Progress& progress);
-  /** The same without a boundary: the near triangles tell the outline. See FindPartOfOutline() */
+  /** The same without a boundary: the near triangles decide the outline. See FindPartOfOutline() */
   bool SweepForOutline(int margin, const TrimOptions& options, const Progress& progress);
   std::int64_t CountOfInnerPoints() const { return this->Outline.NumberOfInnerPoints; }
   vtkIdType CountOfNear() const { return static_cast<vtkIdType>(this->Swept.Near.size()); }

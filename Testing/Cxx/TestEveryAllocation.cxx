@@ -181,7 +181,7 @@ bool IsEmpty(vtkPolyDataAlgorithm* filter)
   return isEmpty;
 }
 
-/** What became of a run in which a piece was refused. */
+/** How a run ended in which a piece was refused. */
 struct Outcome
 {
   long Asked = 0, Left = 0;

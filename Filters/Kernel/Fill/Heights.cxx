@@ -34,7 +34,9 @@ constexpr std::size_t MostCentersWithPointsInside = 1000;
 /** Centres closer together than this, in spacings, add nothing but rounding. */
 constexpr double LeastDistance = 0.02;
 
-/** Places where the methods are tried, and places that suffice with moved points at reduced size. */
+/**
+ * Places where the methods are tried, and places that suffice with moved points at reduced size.
+ */
 constexpr int NumberOfPlaces = 32;
 constexpr int NumberOfPlacesOfLargeHoles = 4;
 constexpr int EnoughPlaces = 4;
@@ -366,7 +368,9 @@ void Heights::MakeCandidates(
   this->IsCandidate[0] = this->IsByTrials || !this->HasSpline();
 }
 
-/** Tries the candidates beside the hole: at its size and, where it does not fit, at smaller ones. */
+/**
+ * Tries the candidates beside the hole: at its size and, where it does not fit, at smaller ones.
+ */
 void Heights::TryBeside(Trials& trials, const Progress& progress) const
 {
   const bool isLarge = this->Harmonic && this->Harmonic->IsLarge();
@@ -554,7 +558,7 @@ Heights::RimSlopes Heights::MeasureSlopes(const Values& values, double unit) con
 }
 
 /**
- * Scales values of new points back and keeps them within the bounds that Heights.h tells.
+ * Scales values of new points back and keeps them within the bounds described in Heights.h.
  * @param[in] scaled  values at the boundary, (value - middle) / unit
  */
 void Heights::Bound(const std::vector<double>& scaled, const Values& values, double middle,

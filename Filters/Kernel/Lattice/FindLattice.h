@@ -102,8 +102,9 @@ Error GivenLatticeUnfit();
 
 /**
  * @name The steps of the search, for a cloud in parts.
- * Each part is sampled; the samples are added up; each part tells its points in the fullest place
- * of the sum, which together are fitted, if MayBeOfLattice(). This gives the lattice of the whole.
+ * Each part is sampled; the samples are added up; each part lists its points in the fullest place
+ * of the sum, and the lattice is fitted to these, if MayBeOfLattice(). It is that of the whole
+ * cloud.
  * @{
  */
 /** @param[out] notFinite  ids of points with a non-finite coordinate, increasing */

@@ -144,7 +144,7 @@ struct Rings
 
 /**
  * The components of a mesh (with Twins) that are connected by edges. The triangles of a component
- * are on two sides; each edge tells whether it leads to the other side.
+ * are on two sides; each edge knows whether it leads to the other side.
  */
 struct Components
 {

@@ -134,7 +134,7 @@ public:
       },
       SubProgress(progress, 0.1, 0.4));
     const Progress sweeping = SubProgress(progress, 0.4, 1.0);
-    std::size_t told = 0;
+    std::size_t nextReport = 0;
     for (std::size_t first = 0; first < this->Events.size();)
     {
       std::size_t last = first + 1;
@@ -148,10 +148,10 @@ public:
         return false;
       }
       first = last;
-      if (first >= told)
+      if (first >= nextReport)
       {
         Report(sweeping, static_cast<double>(first) / this->Events.size());
-        told = first + 4096;
+        nextReport = first + 4096;
       }
     }
     this->MakeHoles();

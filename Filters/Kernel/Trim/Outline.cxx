@@ -55,8 +55,8 @@ enum Flag : char
 };
 
 /**
- * In whole numbers, so that a sum does not depend on the order. Shares above 1 count as 1, and those
- * below 0, of needles whose area rounding has turned, as 0.
+ * In whole numbers, so that a sum does not depend on the order. Shares above 1 count as 1, and
+ * those below 0, of needles whose area rounding has turned, as 0.
  */
 constexpr std::int64_t Whole = std::int64_t(1) << 30;
 std::int64_t ToWhole(double share)
@@ -164,7 +164,9 @@ Index LongestEdge(const Mesh& mesh, Index t)
   return longest;
 }
 
-/** Makes slivers surface that lean with their longest edge on it, and those that then do. Linear. */
+/**
+ * Makes slivers surface that lean with their longest edge on it, and those that then do. Linear.
+ */
 void RestoreSlivers(const Mesh& mesh, const std::vector<Index>& slivers, std::vector<char>& keep,
   const Progress& progress)
 {
@@ -506,7 +508,7 @@ struct BorderOfMesh
  * @param[in]     near       the corners at the border of the surface found so far
  * @param[in]     dropSmall  whether to drop small pieces
  * @param[in,out] result     in: a Flag for each triangle; out: Outside or Surface, and the rings
- * @return false if the triangles are a part of a mesh that does not tell which pieces are small
+ * @return false if the triangles are a part of a mesh, too small to decide which pieces are small
  */
 template <typename SpacingOfTriangle>
 bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
@@ -625,7 +627,7 @@ public:
     }
   }
 
-  /** @return nothing only if the triangles are a part of a mesh that does not tell the outline */
+  /** @return nothing only if the triangles are a part of a mesh, too small to find the outline */
   std::optional<ExtractedBoundary> Run(const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
@@ -638,8 +640,8 @@ public:
     this->KeepCertainTriangles(SubProgress(progress, 0.15, 0.2));
     std::vector<Index> doubtful = this->FindDoubtful(SubProgress(progress, 0.2, 0.32));
     Report(progress, 0.32);
-    // How long the next steps take depends on how many are doubtful. Where these are few, no step has
-    // so large a share that progress jumps.
+    // How long the next steps take depends on how many are doubtful. Where these are few, no step
+    // has so large a share that progress jumps.
     const double share =
       std::clamp(20.0 * static_cast<double>(doubtful.size()) / list.Count, 0.6, 1.0);
     const double scaled = 0.32 + (this->IsAutomatic ? 0.25 * share : 0.0);
@@ -849,7 +851,7 @@ private:
 
   /**
    * Finds the spacings at the corners of triangles.
-   * @return false if the triangles are a part of a mesh that does not tell one
+   * @return false if the triangles are a part of a mesh, too small to find one
    */
   bool FindSpacingsOf(
     const std::vector<Index>& triangles, const Neighbors& neighbors, const Progress& progress)

@@ -90,7 +90,7 @@ TEST(Mesh, RefusesAnEdgeInWhicheverOrderItsTrianglesCome)
   }
 }
 
-TEST(FindComponents, TellsComponentsAndSides)
+TEST(FindComponents, FindsComponentsAndSides)
 {
   // Two pieces that touch in a point, and one apart. The sides: left and right of x = 2.
   const Mesh mesh = Draw({ "#### ##", "## # ##", "#### ##", "    #  " });

@@ -442,7 +442,7 @@ TEST(Pieces, OfALatticeAreTogetherTheTriangulationOfItsNodes)
   EXPECT_GT(found, 200);
 }
 
-TEST(Pieces, TellWhenPointsAreNotOnTheLattice)
+TEST(Pieces, ReportWhenPointsAreNotOnTheLattice)
 {
   std::mt19937_64 random(96);
   const Cloud cloud = TurnedLattice(random, 30, 0.8);
