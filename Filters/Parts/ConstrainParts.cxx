@@ -48,7 +48,7 @@ public:
   void ShareNear();
   void Cut();
   void AddPoints();
-  LinesOfParts Result() const;
+  SharedLines Result() const;
 
 private:
   Progress Fraction(double begin, double end) const
@@ -212,9 +212,9 @@ void AddedLines::AddPoints()
   });
 }
 
-LinesOfParts AddedLines::Result() const
+SharedLines AddedLines::Result() const
 {
-  LinesOfParts lines;
+  SharedLines lines;
   const Index near = static_cast<Index>(this->Near.Count());
   const PointsOfDataSet places = ViewOf(this->Near);
   const auto numberOf = [&](Index id) {
@@ -264,7 +264,7 @@ void ForEachTriangle(
  * The pieces that are edges of no part's triangles; the same on all ranks.
  * @param[out] extents  of the triangles of the parts of this rank
  */
-std::vector<std::size_t> ListMissing(PartStore& store, const LinesOfParts& lines,
+std::vector<std::size_t> ListMissing(PartStore& store, const SharedLines& lines,
   const Progress& progress, std::map<int, Box>& extents)
 {
   std::vector<vtkIdType> isEdge(lines.Pieces.size(), 0);
@@ -343,7 +343,7 @@ void SendMeeting(
 
 /** Recovers the pieces. @return what has become of the triangles of each part */
 ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
-  const LinesOfParts& lines, const std::vector<std::size_t>& missing, const Progress& progress)
+  const SharedLines& lines, const std::vector<std::size_t>& missing, const Progress& progress)
 {
   std::map<GlobalId, Point2> corners;
   for (const SentTriangle& triangle : sent)
@@ -402,7 +402,7 @@ ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
 }
 } // namespace
 
-LinesOfParts AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
+SharedLines AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
   const DelaunayOptions& options, const Progress& progress, std::vector<Message>& warnings)
 {
   AddedLines lines(store, source, plane, options, progress);
@@ -411,12 +411,12 @@ LinesOfParts AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
   lines.ShareNear();
   lines.Cut();
   lines.AddPoints();
-  LinesOfParts result;
+  SharedLines result;
   store.Crew.All().Agree([&]() { result = lines.Result(); });
   return result;
 }
 
-bool RecoverLines(PartStore& store, const LinesOfParts& lines, const Progress& progress)
+bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& progress)
 {
   Engine& crew = store.Crew;
   std::map<int, Box> extents;

@@ -36,7 +36,7 @@ namespace elevation
 {
 
 /** The lines as all ranks know them. */
-struct LinesOfParts
+struct SharedLines
 {
   std::vector<std::array<GlobalId, 2>> Pieces; ///< numbers of their ends, the lower first
   std::vector<Ends> Places;                    ///< of the ends
@@ -50,14 +50,14 @@ struct LinesOfParts
  * @param[out] warnings  as of CheckLines()
  * @throws Error on all ranks, as on one; Aborted
  */
-LinesOfParts AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
+SharedLines AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
   const DelaunayOptions& options, const Progress& progress, std::vector<Message>& warnings);
 
 /**
  * Steps 2 and 3, on all ranks.
  * @return whether triangles have changed; then points of other parts have to be asked for anew
  */
-bool RecoverLines(PartStore& store, const LinesOfParts& lines, const Progress& progress);
+bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& progress);
 
 } // namespace elevation
 

@@ -76,7 +76,7 @@ void FillParts::FindHoles(int partOfRims)
 {
   this->PartOfRims = partOfRims;
   std::vector<KnownPart> own(this->Crew.EndOwn() - this->Crew.FirstOwn());
-  EdgesOfParts edges;
+  PartEdges edges;
   Parts borders;
   this->Crew.ForEach(this->Fraction(0.0, 0.18), [&](int part, const Progress& progress) {
     this->WithPart(part, progress, [&](FilledPart& one, const Progress& reading) {

@@ -138,7 +138,7 @@ private:
   std::unique_ptr<Engine> GroupCrew; // whose parts they are
   SurroundedHoles Around;            // of the group that is worked on
   vtkIdType NewTriangles = 0;        // of this rank until all are filled
-  std::map<RegionOfPart, vtkIdType> LongTriangles; // of this rank's parts, in each region
+  std::map<PartRegion, vtkIdType> LongTriangles; // of this rank's parts, in each region
   bool AreMarked = true;             // whether any part has others' points
 };
 

@@ -67,7 +67,7 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
   this->Store->CheckCounts();
   this->Total.Points = this->Store->Part.Bases.back();
   // Lines keep to no lattice.
-  LinesOfParts lines;
+  SharedLines lines;
   if (constraints)
   {
     WarnOfLattice(this->Options, warnings);

@@ -93,7 +93,7 @@ bool TrimmedPart::SweepForOutline(int margin, const TrimOptions& options, const 
   extraction.Grid = options.Grid;
   extraction.NumberOfThreads = options.NumberOfThreads;
   extraction.Monitor = progress;
-  const bool isProven = FindPartOfOutline(this->List, margin, extraction, this->Outline);
+  const bool isProven = FindOutlinePart(this->List, margin, extraction, this->Outline);
   this->Swept.Near = std::move(this->Outline.Triangles);
   this->Swept.Border = std::move(this->Outline.Border);
   this->Swept.IsOutward.assign(static_cast<std::size_t>(this->List.Count), 0);

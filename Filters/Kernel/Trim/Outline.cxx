@@ -605,7 +605,7 @@ public:
   }
 
   /** For a part of a mesh. @param[in] numbers  of the ids of points, in the measured triangles */
-  OutlineSearch(MeasuredTriangles measured, const ExtractOptions& options, MeshOfParts&& mesh,
+  OutlineSearch(MeasuredTriangles measured, const ExtractOptions& options, OutlineMesh&& mesh,
     const std::vector<Index>& numbers)
     : OutlineSearch(std::move(measured), options)
   {
@@ -695,8 +695,8 @@ public:
     return std::move(this->Result);
   }
 
-  /** FindPartOfOutline() */
-  PartOfOutline FindPart(int margin, const Progress& progress)
+  /** FindOutlinePart() */
+  OutlinePart FindPart(int margin, const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
     const IdSet& border = this->Border.Vertices;
@@ -793,7 +793,7 @@ private:
   }
 
   /** What is around the border and some vertices, for FindPart(). */
-  PartOfOutline PartNear(
+  OutlinePart PartNear(
     const IdSet& vertices, int margin, const std::vector<Known>& states, const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
@@ -803,7 +803,7 @@ private:
     Report(progress, 0.4);
     near.Add(vertices, both);
     this->Widen(around, Progress(), near);
-    PartOfOutline part;
+    OutlinePart part;
     part.Triangles = TrianglesAt(list, near, SubProgress(progress, 0.7, 0.9));
     for (const Index t : part.Triangles)
     {
@@ -1153,10 +1153,10 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
   return *OutlineSearch(std::move(measured), options).Run(options.Monitor);
 }
 
-bool FindPartOfOutline(
-  const TriangleList& list, int margin, const ExtractOptions& options, PartOfOutline& part)
+bool FindOutlinePart(
+  const TriangleList& list, int margin, const ExtractOptions& options, OutlinePart& part)
 {
-  part = PartOfOutline();
+  part = OutlinePart();
   part.Spacings.assign(list.Points.Count, std::numeric_limits<double>::quiet_NaN());
   MeasuredTriangles measured;
   if (list.Count == 0)
@@ -1174,8 +1174,8 @@ bool FindPartOfOutline(
   return true;
 }
 
-std::optional<ExtractedBoundary> FindOutlineOfParts(
-  const TriangleList& list, MeshOfParts&& mesh, const ExtractOptions& options)
+std::optional<ExtractedBoundary> FindSharedOutline(
+  const TriangleList& list, OutlineMesh&& mesh, const ExtractOptions& options)
 {
   MeasuredTriangles measured;
   if (list.Count == 0 ||

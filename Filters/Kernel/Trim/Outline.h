@@ -61,7 +61,7 @@ enum class Known : char
 };
 
 /** The triangles of a part of a mesh that decide, with those of other parts, the outline of all. */
-struct PartOfOutline
+struct OutlinePart
 {
   std::vector<Index> Triangles;         ///< increasing; all others are surface
   std::vector<Known> States;            ///< one per triangle
@@ -70,8 +70,8 @@ struct PartOfOutline
   std::int64_t NumberOfInnerPoints = 0; ///< corners that are not at the border of the part
 };
 
-/** What FindOutlineOfParts() needs to know of the mesh. */
-struct MeshOfParts
+/** What FindSharedOutline() needs to know of the mesh. */
+struct OutlineMesh
 {
   const std::vector<Known>& States;    ///< one per triangle of the list
   const std::vector<double>& Spacings; ///< one per point of the list; NaN: not known
@@ -93,17 +93,17 @@ struct MeshOfParts
  * @return false if the sweep fails: the triangles are not proven to be part of a mesh
  * @throws Aborted, std::bad_alloc
  */
-bool FindPartOfOutline(
-  const TriangleList& list, int margin, const ExtractOptions& options, PartOfOutline& part);
+bool FindOutlinePart(
+  const TriangleList& list, int margin, const ExtractOptions& options, OutlinePart& part);
 
 /**
- * ExtractBoundary() for the triangles that FindPartOfOutline() has taken of all parts of a mesh.
+ * ExtractBoundary() for the triangles that FindOutlinePart() has taken of all parts of a mesh.
  * @return nothing if the sweep fails, or these triangles do not decide the outline: the margin is
  *         too small, there are points whose scale is not 1, or pieces that look too small
  * @throws Aborted, std::bad_alloc
  */
-std::optional<ExtractedBoundary> FindOutlineOfParts(
-  const TriangleList& list, MeshOfParts&& mesh, const ExtractOptions& options);
+std::optional<ExtractedBoundary> FindSharedOutline(
+  const TriangleList& list, OutlineMesh&& mesh, const ExtractOptions& options);
 
 /** ExtractBoundary() for measured triangles, at least one. */
 ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& options);

@@ -578,9 +578,9 @@ Trimmed SplitAlong(
 }
 
 std::optional<Trimmed> TrimNearOutline(
-  const TriangleList& triangles, MeshOfParts&& mesh, const TrimOptions& options)
+  const TriangleList& triangles, OutlineMesh&& mesh, const TrimOptions& options)
 {
-  std::optional<ExtractedBoundary> found = FindOutlineOfParts(
+  std::optional<ExtractedBoundary> found = FindSharedOutline(
     triangles, std::move(mesh), ExtractionOf(options, SubProgress(options.Monitor, 0.0, 0.95)));
   if (!found || found->Vertices.Count() == 0)
   {

@@ -141,13 +141,13 @@ Trimmed SplitAlong(
   const TriangleList& triangles, const BoundaryLines& lines, const TrimOptions& options);
 
 /**
- * Trim() along the extracted outline of a mesh, for the triangles that FindPartOfOutline() has taken
+ * Trim() along the extracted outline of a mesh, for the triangles that FindOutlinePart() has taken
  * of all its parts. The other triangles are inside.
- * @return nothing where FindOutlineOfParts() returns nothing, or no triangle is surface
+ * @return nothing where FindSharedOutline() returns nothing, or no triangle is surface
  * @throws Aborted; std::bad_alloc
  */
 std::optional<Trimmed> TrimNearOutline(
-  const TriangleList& triangles, MeshOfParts&& mesh, const TrimOptions& options);
+  const TriangleList& triangles, OutlineMesh&& mesh, const TrimOptions& options);
 
 } // namespace elevation
 
