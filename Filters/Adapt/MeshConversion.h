@@ -22,7 +22,7 @@ namespace elevation
 {
 
 /** Points of a data set as the kernel reads them; Owner keeps the memory alive. */
-struct PointsOfDataSet
+struct DataSetPoints
 {
   PointView View;
   vtkSmartPointer<vtkDataArray> Owner;
@@ -40,7 +40,7 @@ vtkSmartPointer<vtkDataArray> WithoutHidden(
  * place.
  * @throws Error when there are more points than the kernel's Index holds.
  */
-PointsOfDataSet ViewPoints(vtkPointSet* input);
+DataSetPoints ViewPoints(vtkPointSet* input);
 
 /**
  * Checks that every point (cell) array has as many tuples as there are points (cells): filters rely
@@ -59,10 +59,10 @@ void CheckArrays(vtkPolyData* input, const std::string& owner = "");
 vtkSmartPointer<vtkPolyData> WithoutHiddenCells(vtkPolyData* input);
 
 /** Triangles of a polydata as the kernel reads them; Points and Converted hold the memory. */
-struct TrianglesOfDataSet
+struct DataSetTriangles
 {
   TriangleList View;
-  PointsOfDataSet Points;
+  DataSetPoints Points;
   Buffer<Index> Converted; ///< ids, where they are not of 32 bits; those are viewed in place
 };
 
@@ -73,13 +73,13 @@ struct TrianglesOfDataSet
  * @throws Error naming the cell when it is not a triangle or its cell array is invalid; also when
  *         there are triangle strips. The kernel checks that points exist.
  */
-TrianglesOfDataSet ViewTriangles(vtkPolyData* input);
+DataSetTriangles ViewTriangles(vtkPolyData* input);
 
 /** The triangles as a mesh. @throws Error as ViewTriangles() and MeshOf() */
 void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress = Progress(), int threads = 1);
 
 /** A line or polygon: its point ids, which all exist, and their number. */
-struct LineOfDataSet
+struct DataSetLine
 {
   const vtkIdType* Ids;
   vtkIdType Size;
@@ -94,7 +94,7 @@ struct LineOfDataSet
  *         there are triangle strips, or more point ids than an Index can count
  */
 void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& progress,
-  const std::function<void(const LineOfDataSet&)>& visit);
+  const std::function<void(const DataSetLine&)>& visit);
 
 /** Data sets in one, as vtkAppendPolyData; a single one itself. @throws Error at invalid cells */
 vtkSmartPointer<vtkPolyData> Append(const std::vector<vtkSmartPointer<vtkPolyData>>& parts);

@@ -50,7 +50,7 @@ void MakeReport(
 std::vector<Message> WarningsOf(const FillResult& patches);
 
 /** How many holes are filled. */
-vtkIdType CountOfFilled(const FillResult& patches);
+vtkIdType CountFilled(const FillResult& patches);
 
 /** Adds the counts to the field data of all outputs. */
 void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& outputs);

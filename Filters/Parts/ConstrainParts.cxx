@@ -63,7 +63,7 @@ private:
   const Cuts& Plane;
   const DelaunayOptions& Options;
   const Progress& Monitor;
-  PointsOfDataSet SourcePoints;
+  DataSetPoints SourcePoints;
   ConstraintLines Given;
   PointTable Near; // those of this rank; then of all ranks, by their ids
   std::vector<PlaceInPart> PlacesOfNear, PlacesOfAdded;
@@ -216,7 +216,7 @@ SharedLines AddedLines::Result() const
 {
   SharedLines lines;
   const Index near = static_cast<Index>(this->Near.Count());
-  const PointsOfDataSet places = ViewOf(this->Near);
+  const DataSetPoints places = ViewOf(this->Near);
   const auto numberOf = [&](Index id) {
     const PlaceInPart& at = id < near ? this->PlacesOfNear[id] : this->PlacesOfAdded[id - near];
     return this->Store.FirstOf(at.Part) + at.Place;

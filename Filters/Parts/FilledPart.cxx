@@ -103,7 +103,7 @@ vtkIdType FilledPart::CountOfOwn() const
 
 PointView FilledPart::OwnPoints(Buffer<double>& kept) const
 {
-  const PointsOfDataSet points = ViewPoints(this->Input);
+  const DataSetPoints points = ViewPoints(this->Input);
   const std::vector<char> areOthers = this->AreOthers();
   for (Index i = 0; i < points.View.Count; ++i)
   {

@@ -82,7 +82,7 @@ private:
 };
 
 /** The positions, in place unless some are hidden: these have none. */
-PointsOfDataSet ViewOf(const PointTable& rows);
+DataSetPoints ViewOf(const PointTable& rows);
 
 } // namespace elevation
 

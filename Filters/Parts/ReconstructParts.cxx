@@ -489,7 +489,7 @@ ReconstructParts::Counts ReconstructParts::All() const
   if (this->Filled)
   {
     counts.Holes = this->Filled->Result().Found.Count();
-    counts.FilledHoles = CountOfFilled(this->Filled->Result());
+    counts.FilledHoles = CountFilled(this->Filled->Result());
     counts.FilledTriangles = this->Filled->CountOfNewTriangles() +
       (this->Trimmed ? counts.TrimmedTriangles : counts.Triangles);
   }

@@ -192,7 +192,7 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
     steps = StepsOfGiven(options.GivenLattice);
     const Progress looking = ranks.Watched(SubProgress(progress, 0.0, 0.0));
     forEachRows([&](const PointTable& rows) {
-      const PointsOfDataSet points = ViewOf(rows);
+      const DataSetPoints points = ViewOf(rows);
       const PointView& view = points.View;
       const Extent extent = FindExtent(view, threads, looking, [](Index, const Point2&) {});
       own.Join(extent);

@@ -175,10 +175,10 @@ double QuantileOfAll(const Ranks& ranks, const std::vector<double>& values, doub
 } // namespace
 
 void MeasureAll(
-  Engine& engine, int box, const Progress& progress, const SurfacePart& part, EffectOfLimit& effect)
+  Engine& engine, int box, const Progress& progress, const SurfacePart& part, LimitEffect& effect)
 {
   const Ranks& ranks = engine.All();
-  LengthsOfEdges lengths;
+  EdgeMeasures lengths;
   ranks.Agree([&]() {
     lengths = MeasureEdges(
       part.Result.Triangles, part.Own.Count() + part.Others.Count(),

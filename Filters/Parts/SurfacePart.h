@@ -74,7 +74,7 @@ void AppendTriangles(const std::vector<GlobalTriangle>& triangles, GlobalId firs
  * @param[in] box  of each part, in which nothing is
  */
 void MeasureAll(Engine& engine, int box, const Progress& progress, const SurfacePart& part,
-  EffectOfLimit& effect);
+  LimitEffect& effect);
 
 /** Brings the points of other parts into the order of their ids, only those that are corners. */
 void KeepCorners(SurfacePart& part);

@@ -230,7 +230,7 @@ void TriangulateParts::LimitEdges(const Progress& progress)
       [&](vtkIdType place) { return !std::binary_search(covered.begin(), covered.end(), place); });
   });
   this->Everybody.Sum(sums);
-  EffectOfLimit& effect = this->Total.Effect;
+  LimitEffect& effect = this->Total.Effect;
   this->Total.Triangles = sums[0];
   effect.Vertices = this->Store->Part.Bases.back() - this->Total.Duplicates -
     this->Total.NotFinite - this->Total.Hidden;

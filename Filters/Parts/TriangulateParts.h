@@ -85,7 +85,7 @@ public:
     vtkIdType Duplicates = 0, NotFinite = 0, Hidden = 0;
     vtkIdType Settled = 0;   ///< triangles, also those with an edge above MaximumEdgeLength
     vtkIdType Triangles = 0; ///< without these
-    EffectOfLimit Effect; ///< if there is a limit; the lengths of edges for parts in memory alone
+    LimitEffect Effect; ///< if there is a limit; the lengths of edges for parts in memory alone
     std::int64_t Crossings = 0; ///< of the constraints
     bool LatticeFound = false;
     Lattice Steps; ///< if found

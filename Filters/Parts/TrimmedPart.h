@@ -69,7 +69,7 @@ private:
   TrimmedSide SideOf(int side, const Progress& progress) const;
 
   const vtkSmartPointer<vtkPolyData> Input;
-  TrianglesOfDataSet Triangles;
+  DataSetTriangles Triangles;
   std::vector<Index> Sources; // of the triangles, if some were left out
   TriangleList List;
   SweptAlongRings Swept;

@@ -141,7 +141,7 @@ std::vector<Corners> AllAtOnce(
   PointView points;
   points.Double = cloud.front().data();
   points.Count = static_cast<Index>(cloud.size());
-  const PointsOfDataSet own = source ? ViewPoints(source) : PointsOfDataSet();
+  const DataSetPoints own = source ? ViewPoints(source) : DataSetPoints();
   const ConstrainedTriangulation all = TriangulateConstrained(
     points, source ? ToLines(source, own, Progress()) : ConstraintLines(), options);
   return ByPlaces(all.Result.Triangles, [&](Index i) {
@@ -700,7 +700,7 @@ void CheckTrimming(const Ranks& ranks)
       {
         vtkNew<vtkPolyData> kept;
         trimmed.Parts->Write(part, Progress(), kept, nullptr);
-        TrianglesOfDataSet ofPart = ViewTriangles(kept);
+        DataSetTriangles ofPart = ViewTriangles(kept);
         Buffer<Index> corners;
         std::for_each(ofPart.View.Corners, ofPart.View.CornersOf(ofPart.View.Count),
           [&corners](Index corner) { corners.Append(corner); });
