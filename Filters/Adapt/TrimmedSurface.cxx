@@ -190,7 +190,7 @@ void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBounda
   {
     return;
   }
-  std::unordered_map<Point2, double, HashOfPoint> elevations;
+  std::unordered_map<Point2, double, PointHash> elevations;
   for (std::size_t i = 0; i < lines.Elevations.size(); ++i)
   {
     elevations.emplace(lines.Points.Places[i], lines.Elevations[i]);

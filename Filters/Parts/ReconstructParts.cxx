@@ -256,7 +256,7 @@ void ReconstructParts::Check() const
   if (options.GivenLattice.IsSet() && options.UseLattice == LatticeMode::Automatic &&
     !this->Constraints)
   {
-    StepsOfGiven(options.GivenLattice);
+    CheckedSteps(options.GivenLattice);
   }
   if (options.MaximumElevationError > 0.0)
   {

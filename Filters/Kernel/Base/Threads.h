@@ -94,11 +94,11 @@ public:
 
   Round(Clock::time_point end, bool isAlone)
     : End(end)
-    , LastWork(WorkOfThread() + (isAlone ? 1 << 20 : 1 << 23))
+    , LastWork(CountThreadWork() + (isAlone ? 1 << 20 : 1 << 23))
   {
   }
   /** For the thread that made it. */
-  bool IsOver() const { return WorkOfThread() >= this->LastWork || Clock::now() >= this->End; }
+  bool IsOver() const { return CountThreadWork() >= this->LastWork || Clock::now() >= this->End; }
 
 private:
   const Clock::time_point End;

@@ -229,7 +229,7 @@ public:
     return std::move(this->Result);
   }
 
-  /** See NeedsOfHoles(). */
+  /** See FindHoleNeeds(). */
   std::vector<HoleNeed> PlanAndReturnNeeds()
   {
     this->PlanAll();
@@ -541,7 +541,7 @@ HoleReport MeasureHole(const Mesh& mesh, const Holes& holes, Index hole, const F
   return report;
 }
 
-std::vector<HoleNeed> NeedsOfHoles(const Mesh& mesh, const PointView& points, const Holes& holes,
+std::vector<HoleNeed> FindHoleNeeds(const Mesh& mesh, const PointView& points, const Holes& holes,
   const FillOptions& options, const WholeSurface& whole)
 {
   return HoleFilling(mesh, points, holes, options, whole).PlanAndReturnNeeds();
@@ -561,8 +561,8 @@ void CheckEffort(
       largest = std::max(largest, need.Area);
     }
   }
-  const double room = options.MemoryOfHole / BytesPerPoint;
-  if (options.MemoryOfHole > 0.0 && ofOne > room)
+  const double room = options.HoleMemory / BytesPerPoint;
+  if (options.HoleMemory > 0.0 && ofOne > room)
   {
     throw MakeError<sentences::HoleTooLarge>(CountToText(ofOne), ToGigabytes(ofOne),
       ToGigabytes(room), RoundedUp(SpacingOfPoints(largest, room)));

@@ -468,7 +468,7 @@ private:
 };
 } // namespace
 
-Mesh MeshOfBorder(const std::vector<BorderEdge>& border, const PointView& points,
+Mesh MakeBorderMesh(const std::vector<BorderEdge>& border, const PointView& points,
   const Progress& progress, std::vector<Index>& ids)
 {
   Mesh mesh;
@@ -516,11 +516,11 @@ Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
   return holes;
 }
 
-Holes FindHolesOfBorder(
+Holes FindBorderHoles(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
 {
   std::vector<Index> ids;
-  const Mesh mesh = MeshOfBorder(border, points, SubProgress(progress, 0.0, 0.2), ids);
+  const Mesh mesh = MakeBorderMesh(border, points, SubProgress(progress, 0.0, 0.2), ids);
   Holes holes = FindHoles(mesh, 0, SubProgress(progress, 0.2, 1.0));
   for (Index& vertex : holes.Walks.Vertices)
   {
@@ -533,7 +533,7 @@ bool CoversOnce(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
 {
   std::vector<Index> ids;
-  const Mesh mesh = MeshOfBorder(border, points, SubProgress(progress, 0.0, 0.5), ids);
+  const Mesh mesh = MakeBorderMesh(border, points, SubProgress(progress, 0.0, 0.5), ids);
   Holes holes;
   holes.Walks = TraceBorder(mesh, SubProgress(progress, 0.5, 0.75));
   StartAtLowest(mesh, holes.Walks);

@@ -133,14 +133,14 @@ Holes FindHoles(const Mesh& mesh, Index firstCell = 0, const Progress& progress 
  * @throws Error if the border does not prove that no place is covered twice; Aborted;
  *         std::bad_alloc
  */
-Holes FindHolesOfBorder(
+Holes FindBorderHoles(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress);
 
 /**
  * A mesh in which half-edge 3i is border edge i, and nothing else is meaningful.
  * @param[out] ids  of its points
  */
-Mesh MeshOfBorder(const std::vector<BorderEdge>& border, const PointView& points,
+Mesh MakeBorderMesh(const std::vector<BorderEdge>& border, const PointView& points,
   const Progress& progress, std::vector<Index>& ids);
 
 /**

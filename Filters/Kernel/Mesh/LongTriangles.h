@@ -60,7 +60,7 @@ double LargestHeight(const Mesh& mesh, Index triangle);
  * inner edges.
  * @param[in]     border    edges of long triangles, which are on their left
  * @param[in]     regionOf  of each edge, counted from 0
- * @param[in,out] holes     from FindHolesOfBorder()
+ * @param[in,out] holes     from FindBorderHoles()
  */
 void AddRegionsOfBorder(const std::vector<BorderEdge>& border, const std::vector<Index>& regionOf,
   const PointView& points, Holes& holes, const Progress& progress = Progress());

@@ -135,7 +135,7 @@ private:
       ++bits;
     }
     const auto bitOf = [=](const Point2& p) {
-      return static_cast<Index>(HashOfPoint()(p) >> (64 - bits));
+      return static_cast<Index>(PointHash()(p) >> (64 - bits));
     };
     IdSet sieve(Index(1) << bits);
     for (const auto& entry : this->VertexAt)
@@ -266,8 +266,8 @@ private:
     std::sort(this->Located.begin(), this->Located.end(), [&](const Place& a, const Place& b) {
       const Point2& p = this->Points[a.Point];
       const Point2& q = this->Points[b.Point];
-      const std::uint64_t mixedP = HashOfPoint()(p);
-      const std::uint64_t mixedQ = HashOfPoint()(q);
+      const std::uint64_t mixedP = PointHash()(p);
+      const std::uint64_t mixedQ = PointHash()(q);
       return std::tie(mixedP, p.X, p.Y) < std::tie(mixedQ, q.X, q.Y);
     });
     // Weights in the triangles before they are cut.
@@ -891,7 +891,7 @@ private:
   const Following Follow;
   InsertedRings& Result;
   MeshCutter Cutter;
-  std::unordered_map<Point2, Index, HashOfPoint> VertexAt;
+  std::unordered_map<Point2, Index, PointHash> VertexAt;
   std::vector<Place> Located;
   std::unordered_map<Index, std::vector<Index>> Waiting; ///< by triangle: indices in Located
   std::vector<Point2> OutsidePoints;

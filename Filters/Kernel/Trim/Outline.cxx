@@ -38,7 +38,7 @@ constexpr double LeastHeight = 0.1;
 
 /** The parts of triangles with equal values of flagOf(t), connected by edges. */
 template <typename FlagOf>
-Components PartsOfFlags(const Mesh& mesh, FlagOf&& flagOf, const Progress& progress)
+Components FindFlagParts(const Mesh& mesh, FlagOf&& flagOf, const Progress& progress)
 {
   return FindComponents(mesh, progress, [&](Index h) {
     return flagOf(Mesh::Triangle(h)) == flagOf(Mesh::Triangle(mesh.Twin(h))) ? 0 : -1;
@@ -98,7 +98,7 @@ template <typename ShareOf>
 void CloseSmallLakes(
   const Mesh& mesh, ShareOf&& shareOf, std::vector<char>& keep, const Progress& progress)
 {
-  const Components parts = PartsOfFlags(
+  const Components parts = FindFlagParts(
     mesh, [&](Index t) { return keep[t] == Surface; }, SubProgress(progress, 0.0, 0.6));
   std::vector<Opening> openings(parts.Count());
   const auto isOpen = [&](Index t) { return keep[t] != Surface; };
@@ -124,7 +124,7 @@ template <typename ShareOf>
 void CloseSmallBays(
   const Mesh& mesh, ShareOf&& shareOf, std::vector<char>& keep, const Progress& progress)
 {
-  const Components parts = PartsOfFlags(
+  const Components parts = FindFlagParts(
     mesh, [&](Index t) { return keep[t]; }, SubProgress(progress, 0.0, 0.5));
   std::vector<Opening> openings(parts.Count());
   const auto isOpen = [&](Index t) { return keep[t] == Bay; };
@@ -244,10 +244,10 @@ void DropSlivers(
 std::vector<Index> DropSmallPieces(
   const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
 {
-  const Components parts = PartsOfFlags(
+  const Components parts = FindFlagParts(
     mesh, [&](Index t) { return keep[t]; }, SubProgress(progress, 0.0, 0.5));
   // More triangles than so few vertices can form.
-  constexpr Index many = 3 * NeighborOfSpacing + 1;
+  constexpr Index many = 3 * SpacingNeighbor + 1;
   std::vector<Index> sizes(parts.Count(), 0);
   std::vector<char> goesOn(parts.Count(), 0);
   const Index count = mesh.NumberOfTriangles();
@@ -281,7 +281,7 @@ std::vector<Index> DropSmallPieces(
   {
     const auto last = std::find_if(first, corners.end(),
       [&](const std::pair<Index, Index>& corner) { return corner.first != first->first; });
-    const bool isFew = last - first <= NeighborOfSpacing;
+    const bool isFew = last - first <= SpacingNeighbor;
     for (auto corner = first; isFew && goesOn[first->first] && corner != last; ++corner)
     {
       unknown.push_back(corner->second);
@@ -519,7 +519,7 @@ bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
   std::vector<char>& keep = result.IsSurface;
   const auto isSliverOver = [&](Index t, double length) {
     const double spacing = SpacingOf(measured.ShortSpacings, list.CornersOf(t));
-    return 2.0 * list.ShareOfSquare(t, spacing) * spacing < LeastHeight * length;
+    return 2.0 * list.SquareShare(t, spacing) * spacing < LeastHeight * length;
   };
   // Slivers have two corners at the border, or at flat triangles with a corner there. Then the mesh
   // includes all their neighbours.
@@ -552,7 +552,7 @@ bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
     // and their spacings are not known.
     const auto shareOf = [&](Index i) {
       const Index t = mesh.Triangles[i];
-      return keep[t] == Surface ? 0.0 : list.ShareOfSquare(t, spacingOf(t));
+      return keep[t] == Surface ? 0.0 : list.SquareShare(t, spacingOf(t));
     };
     const auto isSliver = [&](Index h) {
       const Index t = mesh.Triangles[Mesh::Triangle(h)];
@@ -666,7 +666,7 @@ public:
     const auto middle = doubtful.insert(doubtful.end(), outside.begin(), outside.end());
     std::inplace_merge(doubtful.begin(), middle, doubtful.end());
     doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
-    if (!this->FindSpacingsOf(doubtful, neighbors, SubProgress(progress, scaled, decided - 0.03)))
+    if (!this->FindCornerSpacings(doubtful, neighbors, SubProgress(progress, scaled, decided - 0.03)))
     {
       return std::nullopt;
     }
@@ -853,7 +853,7 @@ private:
    * Finds the spacings at the corners of triangles.
    * @return false if the triangles are a part of a mesh, too small to find one
    */
-  bool FindSpacingsOf(
+  bool FindCornerSpacings(
     const std::vector<Index>& triangles, const Neighbors& neighbors, const Progress& progress)
   {
     Report(progress, 0.0);
@@ -948,7 +948,7 @@ private:
     });
     const auto shareOf = [&](Index t) {
       const double spacing = SpacingOf(this->Measured.ShortSpacings, list.CornersOf(t));
-      return list.ShareOfSquare(t, SmallGroup * this->Tolerance * spacing);
+      return list.SquareShare(t, SmallGroup * this->Tolerance * spacing);
     };
     const std::vector<Index> others = DropSmallGroups(
       list, this->Border.Vertices, inGroups, shareOf, keep, SubProgress(progress, 0.2, 1.0));
@@ -1073,7 +1073,7 @@ private:
 
   /**
    * Finds what is left out, and if it is much, the tolerance that would keep it.
-   * @return false as FindSpacingsOf()
+   * @return false as FindCornerSpacings()
    */
   bool MeasureLoss(const Neighbors& neighbors, const Progress& progress)
   {
@@ -1084,7 +1084,7 @@ private:
     for (auto t = keep.begin(); (t = std::find(t, keep.end(), char(Outside))) != keep.end(); ++t)
     {
       outward.push_back(static_cast<Index>(t - keep.begin()));
-      area += list.ShareOfSquare(outward.back(), 1.0);
+      area += list.SquareShare(outward.back(), 1.0);
     }
     const IdSet leftOut = CornersLeftOut(list, outward, keep, SubProgress(progress, 0.0, 0.6));
     this->Result.NumberOfPointsLeftOut = leftOut.Count();
@@ -1097,7 +1097,7 @@ private:
     {
       return true;
     }
-    if (!this->FindSpacingsOf(outward, neighbors, SubProgress(progress, 0.6, 1.0)))
+    if (!this->FindCornerSpacings(outward, neighbors, SubProgress(progress, 0.6, 1.0)))
     {
       return false;
     }
@@ -1126,7 +1126,7 @@ private:
         needed = ratio;
       }
       missing.RemoveAll(list.CornersOf(t));
-      area -= list.ShareOfSquare(t, 1.0);
+      area -= list.SquareShare(t, 1.0);
     }
     // A little more, for what is rounded on the way to the user and back.
     return 1.01 * needed;

@@ -495,7 +495,7 @@ private:
                            : this->LengthOf(h) / this->Units[t];
       }
       this->Parts.Open(
-        part, this->List.ShareOfSquare(this->Partial.Triangles[t], this->Units[t]), border);
+        part, this->List.SquareShare(this->Partial.Triangles[t], this->Units[t]), border);
     }
   }
 

@@ -80,8 +80,8 @@ TEST(TriangleList, TheShareOfASquareIsTheSameForAnyFirstCorner)
   const TriangleList list = surface.List();
   for (Index t = 0; t < list.Count; t += 3)
   {
-    const double share = list.ShareOfSquare(t, 0.3);
-    ASSERT_EQ(list.ShareOfSquare(t + 1, 0.3), share);
-    ASSERT_EQ(list.ShareOfSquare(t + 2, 0.3), share);
+    const double share = list.SquareShare(t, 0.3);
+    ASSERT_EQ(list.SquareShare(t + 1, 0.3), share);
+    ASSERT_EQ(list.SquareShare(t + 2, 0.3), share);
   }
 }

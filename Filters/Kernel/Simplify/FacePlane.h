@@ -4,8 +4,8 @@
  * @file
  * An upper bound of the vertical distance of a point from a triangle's plane.
  */
-#ifndef elevation_Simplify_PlaneOfFace_h
-#define elevation_Simplify_PlaneOfFace_h
+#ifndef elevation_Simplify_FacePlane_h
+#define elevation_Simplify_FacePlane_h
 
 #include "Kernel/Base/Base.h"
 
@@ -20,10 +20,10 @@ namespace elevation
  * Adds to the distance what rounding may have taken from it, for any finite numbers. There is no bound,
  * infinity or not a number, where the triangle is too thin for one, or coordinates differ too much in size.
  */
-class PlaneOfFace
+class FacePlane
 {
 public:
-  PlaneOfFace(const Point2& a, double az, const Point2& b, double bz, const Point2& c, double cz)
+  FacePlane(const Point2& a, double az, const Point2& b, double bz, const Point2& c, double cz)
     : A(a)
     , Az(az)
   {
