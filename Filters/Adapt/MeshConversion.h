@@ -29,15 +29,15 @@ struct DataSetPoints
 };
 
 /**
- * Coordinates in which points with the mark of hidden ones are NaN, so that nothing uses them; the array
- * itself if there is none. @param[in] marks  nullptr: none
+ * Coordinates in which points with the mark of hidden ones are NaN, so that nothing uses them; the
+ * array itself if there is none. @param[in] marks  nullptr: none
  */
 vtkSmartPointer<vtkDataArray> WithoutHidden(
   vtkDataArray* coordinates, vtkUnsignedCharArray* marks);
 
 /**
- * Views float and double points in place; any other type is converted to double. Hidden points have no
- * place.
+ * Views float and double points in place; any other type is converted to double. Hidden points have
+ * no place.
  * @throws Error when there are more points than the kernel's Index holds.
  */
 DataSetPoints ViewPoints(vtkPointSet* input);
@@ -53,8 +53,8 @@ void CheckPointArrays(vtkPointSet* input, const std::string& owner = "");
 void CheckArrays(vtkPolyData* input, const std::string& owner = "");
 
 /**
- * A data set without cells that are marked as hidden or have a point that is, as VTK takes them; itself
- * if there is none. @throws Error as CheckArrays() where there are marks of hidden ones
+ * A data set without cells that are marked as hidden or have a point that is, as VTK takes them;
+ * itself if there is none. @throws Error as CheckArrays() where there are marks of hidden ones
  */
 vtkSmartPointer<vtkPolyData> WithoutHiddenCells(vtkPolyData* input);
 
@@ -169,9 +169,9 @@ struct NewValues
  * Passes all arrays of the input, extended by new tuples with the values of valuesOf(input array,
  * output array, progress), normals at unit length. A tuple without a value gets NaN, 0 or an empty
  * string; in arrays of ids, -1 in place of 0 (the largest number of an unsigned type). Original ids
- * (UsedPoints.h) have no values there. Ghost flags are 0. Global ids go on after the largest; where their type has no such number, they are treated
- * as other values, and no longer marked as global ids. Without new tuples, the input's own arrays
- * are passed.
+ * (UsedPoints.h) have no values there. Ghost flags are 0. Global ids go on after the largest; where
+ * their type has no such number, they are treated as other values, and no longer marked as global
+ * ids. Without new tuples, the input's own arrays are passed.
  */
 void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSetAttributes* output,
   const Progress& progress,

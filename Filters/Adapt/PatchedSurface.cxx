@@ -176,7 +176,8 @@ Index NextHole(vtkPolyData* input)
 namespace
 {
 /**
- * What filling has said of tuples of the input before, in the array of this name and type, or one value.
+ * What filling has said of tuples of the input before, in the array of this name and type, or one
+ * value.
  * @param[in] sourceOf  the tuple of the input that tuple i is
  */
 template <typename Array, typename Value, typename SourceOf>

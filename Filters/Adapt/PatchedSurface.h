@@ -35,7 +35,9 @@ std::vector<Values> AttributesOf(vtkPointData* pointData);
 /** Whether the output has float points, so that new points must be rounded to float. */
 bool HasFloatPoints(vtkPolyData* input);
 
-/** The number of the next hole: those filled before have lower ones, in the array HoleId of cells. */
+/**
+ * The number of the next hole: those filled before have lower ones, in the array HoleId of cells.
+ */
 Index NextHole(vtkPolyData* input);
 
 /** Output 0. */

@@ -17,8 +17,8 @@ const std::vector<std::string>& NamesOfBoxes()
   return names;
 }
 
-// Points that came twice go; so counts are known only when all are there. In files none can come twice
-// where ids are places, and nothing is read.
+// Points that came twice go; so counts are known only when all are there. In files none can come
+// twice where ids are places, and nothing is read.
 void PartStore::Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const Progress& progress)
 {
   this->Part.Own = PointTable(this->Part.Kinds);

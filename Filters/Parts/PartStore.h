@@ -8,9 +8,9 @@
  * In: packed rows of points, and what the passes of TriangulateParts.h find. Out: a part as
  * SurfacePart, its own points alone, or whole.
  *
- * In memory a rank has at most one part, which is there all the time. In files nothing of a part is in
- * memory between the steps: what comes for it lies in its boxes (Engine.h), and is put together anew
- * whenever it is asked for. The boxes:
+ * In memory a rank has at most one part, which is there all the time. In files nothing of a part is
+ * in memory between the steps: what comes for it lies in its boxes (Engine.h), and is put together
+ * anew whenever it is asked for. The boxes:
  *
  *   box        what is in it                          written by           read by
  *   OwnPoints  rows of points                         pass 1, lines        2, 6, for output
@@ -144,8 +144,8 @@ public:
   void ForgetOthers(int part);
 
   /**
-   * Does a step with a whole part: own points, triangles of its cell and of seams as lines have changed
-   * them, and the corners that these have in other parts; without a limit of edges.
+   * Does a step with a whole part: own points, triangles of its cell and of seams as lines have
+   * changed them, and the corners that these have in other parts; without a limit of edges.
    */
   template <typename Step>
   void WithWhole(int part, const Progress& progress, const Step& step)

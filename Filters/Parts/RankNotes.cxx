@@ -96,8 +96,8 @@ void RankNotes::TakeFailures(int failures)
 }
 
 /*
- * Nobody goes on before the notes of all have come, so each rank has at most one note of another that
- * belongs to a later meeting, and takes that there.
+ * Nobody goes on before the notes of all have come, so each rank has at most one note of another
+ * that belongs to a later meeting, and takes that there.
  */
 void RankNotes::Meet(
   std::chrono::milliseconds patience, const std::function<void(const std::vector<int>&)>& late)

@@ -128,8 +128,8 @@ void SurroundedHoles::Surround(const Parts& parts, const SharedHoles& all, const
 }
 
 /**
- * Of holes from the first that is a region, by the points of the surrounding: what is inside. All of
- * their triangles are there, so the rim begins with the same edge; other regions may be cut off.
+ * Of holes from the first that is a region, by the points of the surrounding: what is inside. All
+ * of their triangles are there, so the rim begins with the same edge; other regions may be cut off.
  */
 void SurroundedHoles::ListRegions(Index first, Holes& holes) const
 {

@@ -83,7 +83,9 @@ struct SurroundedHoles
   /** Joins what parts have around the holes. */
   void Surround(const Parts& parts, const SharedHoles& all, const Progress& progress);
   std::vector<HoleNeed> Needs(const SharedHoles& all, const Progress& progress) const;
-  /** Takes regions without room out of Numbers. @return the holes that need more than their boxes */
+  /**
+   * Takes regions without room out of Numbers. @return the holes that need more than their boxes
+   */
   std::vector<Index> Fill(const SharedHoles& all, const Progress& progress);
   /** Keeps only those points of the surrounding that patches have. */
   void KeepCorners();

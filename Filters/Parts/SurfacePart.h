@@ -55,8 +55,8 @@ struct SurfacePart
 };
 
 /**
- * Brings the own points into the order of their ids, which decides among duplicates. Points of the same
- * id are the same, and count once.
+ * Brings the own points into the order of their ids, which decides among duplicates. Points of the
+ * same id are the same, and count once.
  * @throws Error if they are in different places
  */
 void SortOwn(SurfacePart& part);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 /*
- * The passes in their order; 2 and 3 are those of SettleParts.h. What they leave for each other lies in
- * the boxes of parts (PartStore.h), whether these are files or in memory.
+ * The passes in their order; 2 and 3 are those of SettleParts.h. What they leave for each other
+ * lies in the boxes of parts (PartStore.h), whether these are files or in memory.
  */
 #include "TriangulateParts.h"
 
@@ -170,9 +170,9 @@ void TriangulateParts::FetchOthers()
 }
 
 /**
- * Leaves out triangles with a longer edge, and counts the vertices without one. Whether a point that
- * another part has asked for is such a vertex is known when all parts have said where they have
- * triangles.
+ * Leaves out triangles with a longer edge, and counts the vertices without one. Whether a point
+ * that another part has asked for is such a vertex is known when all parts have said where they
+ * have triangles.
  */
 void TriangulateParts::LimitEdges(const Progress& progress)
 {

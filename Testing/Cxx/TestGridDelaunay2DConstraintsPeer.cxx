@@ -26,7 +26,9 @@
 
 namespace
 {
-/** A lattice of size x size; some points moved off their nodes, so that no two circles are equal. */
+/**
+ * A lattice of size x size; some points moved off their nodes, so that no two circles are equal.
+ */
 vtkSmartPointer<vtkPolyData> MakeInput(int size, double shift)
 {
   vtkNew<vtkPoints> points;

@@ -148,7 +148,9 @@ void TestNearestCorner()
     "global ids stay global ids");
 }
 
-/** Checks that triangles, which come behind other cells, have the data of those they are part of. */
+/**
+ * Checks that triangles, which come behind other cells, have the data of those they are part of.
+ */
 void CheckCells(vtkPolyData* output, vtkIdType others)
 {
   vtkCellData* data = output->GetCellData();

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Surface -> filled surface: holes reported as filled are closed by patches that fit, others are left
- * alone for the reason that is reported, counts agree, and elevations are within bounds. Regions of long
- * triangles are replaced by patches, or keep their triangles; those without room are not listed.
+ * Surface -> filled surface: holes reported as filled are closed by patches that fit, others are
+ * left alone for the reason that is reported, counts agree, and elevations are within bounds.
+ * Regions of long triangles are replaced by patches, or keep their triangles; those without room
+ * are not listed.
  */
 #include "FuzzSurface.h"
 

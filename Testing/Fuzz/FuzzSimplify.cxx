@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Points, lines and an elevation error -> mesh of few points: every other point is within the error,
- * lines are edges, all else is Delaunay where that is asked for; threads change nothing, and where there
- * are no lines the order of points does not either.
+ * Points, lines and an elevation error -> mesh of few points: every other point is within the
+ * error, lines are edges, all else is Delaunay where that is asked for; threads change nothing, and
+ * where there are no lines the order of points does not either.
  */
 #include "ConstrainedMesh.h"
 #include "FuzzLines.h"

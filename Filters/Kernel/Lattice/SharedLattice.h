@@ -17,7 +17,9 @@
 namespace elevation
 {
 
-/** Thrown where points do not fit a lattice after all: they are triangulated by their coordinates. */
+/**
+ * Thrown where points do not fit a lattice after all: they are triangulated by their coordinates.
+ */
 struct NotOnLattice
 {
 };

@@ -17,7 +17,9 @@ namespace elevation
 
 namespace
 {
-/** Of a gap, per distance from the point that has it: ten times the growth of spacings (Patch.h). */
+/**
+ * Of a gap, per distance from the point that has it: ten times the growth of spacings (Patch.h).
+ */
 constexpr double DecayOfGaps = 2.0;
 
 /** One run; the members carry data between its passes. */
@@ -143,7 +145,9 @@ private:
     this->WalkRegions.push_back(region);
   }
 
-  /** Whether edge ab is lower than edge cd: by origin, then, at pinched vertices, by destination. */
+  /**
+   * Whether edge ab is lower than edge cd: by origin, then, at pinched vertices, by destination.
+   */
   bool IsLowerEdge(Index a, Index b, Index c, Index d) const
   {
     const IsLowerPoint isLower{ this->Surface };

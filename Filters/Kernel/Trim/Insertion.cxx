@@ -312,8 +312,8 @@ private:
   }
 
   /**
-   * Whether a triangle is so thin that within reach of an edge its elevations differ from those of the
-   * edge by more than rounding. A point that the edge is moved to then takes those of the edge.
+   * Whether a triangle is so thin that within reach of an edge its elevations differ from those of
+   * the edge by more than rounding. A point that the edge is moved to then takes those of the edge.
    */
   bool IsThin(Index t, Index on) const
   {
@@ -359,7 +359,10 @@ private:
     return parts;
   }
 
-  /** After a cut at a located point, hands the points that wait in the parts to those that hold them. */
+  /**
+   * After a cut at a located point, hands the points that wait in the parts to those that hold
+   * them.
+   */
   void Redistribute(Index done, const std::vector<Index>& parts)
   {
     std::vector<Index> moving;

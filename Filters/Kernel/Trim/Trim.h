@@ -95,8 +95,8 @@ struct Trimmed
   Index NumberOfRecoveredEdges = 0; ///< edges of the boundary that were missing
   Index NumberOfPointsLeftOut = 0;  ///< as in ExtractedBoundary; 0 with InwardNormal
   /**
-   * Of lines: that rings are there more than once. Of an extracted boundary that leaves out much: what,
-   * and what would keep it. Else none.
+   * Of lines: that rings are there more than once. Of an extracted boundary that leaves out much:
+   * what, and what would keep it. Else none.
    */
   Message Warning;
 };
@@ -113,8 +113,8 @@ Trimmed Trim(
   const TriangleList& triangles, const BoundaryLines* boundary, const TrimOptions& options);
 
 /**
- * Trim() along a boundary, for the triangles that SweepAlongRings() has found near it in all parts of a
- * mesh. They are proven, and the boundary may enclose none of them.
+ * Trim() along a boundary, for the triangles that SweepAlongRings() has found near it in all parts
+ * of a mesh. They are proven, and the boundary may enclose none of them.
  * @param[in] border  of the mesh
  */
 Trimmed TrimNear(const TriangleList& triangles, const BoundaryLines& boundary,

@@ -1115,7 +1115,8 @@ TEST(ExtractBoundary, DoesNotDependOnTheOrderOfAnyMesh)
 TEST(ExtractBoundary, RingsBeginAtOneOfTwoVerticesAtTheLowestPlaceByTheNextOnes)
 {
   // A triangle in a triangle, and the land between them slit open from corner to corner: vertices
-  // 0 and 7 are at the lowest place. From 7 the ring goes on inwards, to the lower of the next ones.
+  // 0 and 7 are at the lowest place. From 7 the ring goes on inwards, to the lower of the next
+  // ones.
   const std::vector<Point2> points{ { 0, -4 }, { 4, 4 }, { -4, 4 }, { 0, -1 }, { 1, 1 }, { -1, 1 },
     { 0, -1 }, { 0, -4 } };
   const std::vector<Index> triangles{ 0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4, 2, 7, 6, 2, 6, 5 };
