@@ -15,8 +15,7 @@
 namespace elevation
 {
 
-ConstraintLines ToLines(
-  vtkPolyData* source, const DataSetPoints& points, const Progress& progress)
+ConstraintLines ToLines(vtkPolyData* source, const DataSetPoints& points, const Progress& progress)
 {
   ConstraintLines lines;
   lines.Points = points.View;

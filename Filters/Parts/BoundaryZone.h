@@ -99,7 +99,7 @@ private:
   std::vector<Index> FirstTriangles; // of each part, and the number of all
   std::unique_ptr<CommonPoints> Common;
   vtkSmartPointer<vtkPolyData> Whole;
-  DataSetTriangles Triangles;   // of the whole
+  DataSetTriangles Triangles;     // of the whole
   vtkNew<vtkPolyData> Points;     // of the whole, and those inserted
   std::vector<BorderEdge> Border; // of the mesh, if a boundary is given
   Trimmed Sides;

@@ -264,8 +264,8 @@ void ForEachTriangle(
  * The pieces that are edges of no part's triangles; the same on all ranks.
  * @param[out] extents  of the triangles of the parts of this rank
  */
-std::vector<std::size_t> ListMissing(PartStore& store, const SharedLines& lines,
-  const Progress& progress, std::map<int, Box>& extents)
+std::vector<std::size_t> ListMissing(
+  PartStore& store, const SharedLines& lines, const Progress& progress, std::map<int, Box>& extents)
 {
   std::vector<vtkIdType> isEdge(lines.Pieces.size(), 0);
   std::map<std::array<GlobalId, 2>, std::size_t> pieces;

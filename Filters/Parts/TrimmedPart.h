@@ -73,7 +73,7 @@ private:
   std::vector<Index> Sources; // of the triangles, if some were left out
   TriangleList List;
   SweptAlongRings Swept;
-  OutlinePart Outline;   // without a boundary; its triangles and border are those of Swept
+  OutlinePart Outline;     // without a boundary; its triangles and border are those of Swept
   std::vector<Index> Sent; // points of the near part
   TrimmedZone Back;
   std::vector<Index> Places;        // of the new points, among those of the output

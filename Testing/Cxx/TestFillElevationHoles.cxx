@@ -609,7 +609,8 @@ void TestSurfacesThatPass()
   vtkNew<vtkPolyData> empty;
   fill->SetInputData(empty);
   fill->Update();
-  Check(!observer->GetWarning() && !observer->GetError(), "another filter has warned of an empty input");
+  Check(!observer->GetWarning() && !observer->GetError(),
+    "another filter has warned of an empty input");
   Check(fill->GetOutput()->GetNumberOfPoints() == 0, "and empty output");
   observer->Clear();
 

@@ -975,8 +975,9 @@ void WriteReliability(
 
 void PrintReliability(const Reliability& errors)
 {
-  std::printf("%-28s within one %.1f %%, two %.1f %%; within one by thirds from the rim %.1f, %.1f, "
-              "%.1f %%; unknown %zu\n",
+  std::printf(
+    "%-28s within one %.1f %%, two %.1f %%; within one by thirds from the rim %.1f, %.1f, "
+    "%.1f %%; unknown %zu\n",
     "  FilledError", 100.0 * errors.Share(4), 100.0 * errors.Share(8), 100.0 * errors.Share(4, 0),
     100.0 * errors.Share(4, 1), 100.0 * errors.Share(4, 2), errors.Unknown);
 }

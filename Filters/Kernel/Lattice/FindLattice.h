@@ -56,7 +56,7 @@ constexpr double MaximumNodesPerPoint = 64.0;
 /** What the search needs of a cloud, or of a part of it; the box is that of its finite points. */
 struct LatticeSample : Box
 {
-  double CloudSize = 0.0;    ///< points of the whole cloud, also those that are not finite
+  double CloudSize = 0.0;     ///< points of the whole cloud, also those that are not finite
   double Count = 0.0;         ///< finite points
   std::vector<Point2> Points; ///< the sample, distinct and sorted
 

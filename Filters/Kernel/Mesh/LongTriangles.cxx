@@ -326,7 +326,7 @@ private:
   Index FirstRegion = 0; ///< its number as a hole
   Index NumberOfRegions = 0;
   Index FirstWalk = 0;
-  std::vector<Index> WalkRegions; ///< one a walk from FirstWalk on, counted from FirstRegion
+  std::vector<Index> WalkRegions;  ///< one a walk from FirstWalk on, counted from FirstRegion
   std::vector<char> OnBorder;      ///< one a vertex: 1 on the border of a region
 };
 } // namespace

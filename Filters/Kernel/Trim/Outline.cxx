@@ -666,7 +666,8 @@ public:
     const auto middle = doubtful.insert(doubtful.end(), outside.begin(), outside.end());
     std::inplace_merge(doubtful.begin(), middle, doubtful.end());
     doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
-    if (!this->FindCornerSpacings(doubtful, neighbors, SubProgress(progress, scaled, decided - 0.03)))
+    if (!this->FindCornerSpacings(
+          doubtful, neighbors, SubProgress(progress, scaled, decided - 0.03)))
     {
       return std::nullopt;
     }
