@@ -6,7 +6,7 @@
  *
  * A hole is an empty region that the surface encloses. The outer boundary of a component is never a
  * hole. A component that lies inside a hole, an island, stays, and the ring around it is filled.
- * Voids that triangles with long edges bridge are no holes: see OpenEdgeLength, which opens them.
+ * Voids that triangles with long edges bridge are not holes: see OpenEdgeLength, which opens them.
  *
  * @par Input:
  * A vtkPolyData of triangles, an elevation surface from any source, of one or more components. x,y
@@ -34,7 +34,7 @@
  * threads or ranks. Holes that stay open are listed, with the reason.
  *
  * Errors leave empty outputs, fail the request (but in ParaView), set GetErrorCode() and name the
- * property, cell or array: an input that is no elevation surface is
+ * property, cell or array: an input that is not an elevation surface is
  * refused. An abort also leaves empty output, which counts as up to date: call Modified() to start
  * again. A composite input gives outputs of the same structure, each block filled on its own.
  *
@@ -166,8 +166,8 @@ public:
    *   input, however far apart lines are.
    * - MaximumHoleSize, MaximumHoleEdges and MaximumNumberOfInsertedPoints apply as to holes. A
    *   region that is not filled keeps its triangles.
-   * - A region that has no room for a new point, as slivers along the outer border, is no hole: it
-   *   keeps its triangles, and is not listed or counted. (Limits are checked first, so a region
+   * - A region that has no room for a new point, as slivers along the outer border, is not a hole:
+   *   it keeps its triangles, and is not listed or counted. (Limits are checked first, so a region
    *   beyond them is listed anyway.)
    *
    * Cost: one more pass over the triangles.

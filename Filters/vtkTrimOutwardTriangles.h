@@ -163,7 +163,7 @@ public:
   vtkBooleanMacro(RecoverBoundary, bool);
   ///@}
 
-  /** What becomes of an edge of the given boundary that is no edge of the mesh. */
+  /** What becomes of an edge of the given boundary that is not an edge of the mesh. */
   enum BoundaryEdgesType
   {
     FOLLOW_SURFACE = 0, ///< it is split where it crosses edges of the mesh
@@ -173,8 +173,8 @@ public:
 
   ///@{
   /**
-   * What becomes of an edge of the given boundary that is no edge of the mesh: a BoundaryEdgesType,
-   * to which other numbers are clamped.
+   * What becomes of an edge of the given boundary that is not an edge of the mesh: a
+   * BoundaryEdgesType, to which other numbers are clamped.
    * - FOLLOW_SURFACE (default): the edge gets a point wherever it crosses an edge of the mesh, with
    *   z and point data of that place. So the triangles on both sides together are the surface that
    *   was there, cut. There are as many more points as edges are crossed.

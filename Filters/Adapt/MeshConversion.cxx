@@ -278,7 +278,7 @@ bool AreMultiplesOfThree(vtkDataArray* offsets, vtkIdType count)
   return i > count;
 }
 
-/** What a message about a corner that is no point says. */
+/** What a message about a corner that is not a point says. */
 struct NoPoint
 {
   vtkIdType FirstCell;

@@ -20,7 +20,7 @@
 namespace elevation
 {
 
-/** @throws Error if it is no vtkAlgorithm::DesiredOutputPrecision */
+/** @throws Error if it is not a vtkAlgorithm::DesiredOutputPrecision */
 void CheckPrecision(int precision);
 
 /**

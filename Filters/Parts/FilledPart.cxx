@@ -170,7 +170,7 @@ vtkIdType FilledPart::LargestId() const
   return largest;
 }
 
-/** The input and the corners of others; of points that parts have in common, one is no ghost. */
+/** The input and the corners of others; of points that parts have in common, one is not a ghost. */
 vtkSmartPointer<vtkPolyData> FilledPart::WithCorners(bool areMarked, const Progress& progress) const
 {
   auto data = vtkSmartPointer<vtkPolyData>::New();

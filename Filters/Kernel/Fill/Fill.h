@@ -12,7 +12,7 @@
  * Where a hole is a region of long triangles, the patch replaces them; of a region that is not
  * filled, the caller keeps them. They are no evidence: elevations are found from the other ones,
  * and the points inside the region. A region whose patch would have no new point has no room: it
- * stays as it is and is no hole.
+ * stays as it is and is not a hole.
  *
  * Guarantees: a patch is constrained Delaunay, lies inside its hole and covers it exactly; its
  * boundary edges are those of the hole, none is split. The rest of the surface stays as it is.

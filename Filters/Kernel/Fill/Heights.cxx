@@ -56,7 +56,7 @@ constexpr double SlopeLimit = 3.0;
 
 /**
  * An edge is steep from so many median slopes of edges at the boundary on. With 5 LiDAR scans lose,
- * with 8 only cliffs and outliers are found. Points that steep edges cut off are no centres of
+ * with 8 only cliffs and outliers are found. Points that steep edges cut off are not centres of
  * splines if they are less than this part of what all edges join.
  */
 constexpr double SteepEdge = 6.0;
@@ -233,7 +233,7 @@ void Heights::CollectSlopes(const VertexStars& stars)
 
 /**
  * Which of the known points stand apart: parts of the boundary and its ring that only steep edges
- * join to the rest, and that are small beside it.
+ * join to the rest, and that are small compared with it.
  */
 std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& values) const
 {

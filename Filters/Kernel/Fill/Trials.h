@@ -435,7 +435,7 @@ private:
   std::size_t FirstProbe = 0; ///< probes come last
   std::vector<Point2> Points;
   std::vector<Point2> Normalized;
-  std::vector<std::size_t> Order;   ///< around the hole, of those that are no probes
+  std::vector<std::size_t> Order;   ///< around the hole, of those that are not probes
   std::vector<Index> PlaceOfCenter; ///< index in Points of each centre
   std::vector<Index> Probes;        ///< numbers of new vertices
   std::vector<double> Moved;        ///< values where the points are moved to

@@ -353,7 +353,7 @@ private:
   /** Marks holes in which a vertex here lies inside an edge or coincides with another vertex. */
   void MarkContacts(const Point2& p, std::size_t last)
   {
-    // One vertex seen from different empty regions is no contact.
+    // One vertex seen from different empty regions is not a contact.
     const auto vertexAt = [&](const Segment& segment) {
       const Index origin = this->Surface.Origin(segment.HalfEdge);
       return this->Surface.PointOf(origin) == p ? origin

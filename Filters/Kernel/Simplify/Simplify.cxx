@@ -245,7 +245,7 @@ Buffer<Index> TrianglesOf(
   return corners;
 }
 
-/** Lists all points that are no vertices. @param[in] mesh  nullptr: there are no triangles */
+/** Lists all points that are not vertices. @param[in] mesh  nullptr: there are no triangles */
 void ListUnused(Index count, const PlacedPoints& placed, const GreedyInsertion* mesh,
   const Progress& progress, Triangulation& result)
 {

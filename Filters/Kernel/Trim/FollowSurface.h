@@ -50,7 +50,7 @@ struct FollowedSegment
 
   Segment Ends;               ///< vertices
   std::vector<Index> Between; ///< the vertices of the chain between the ends, from A to B
-  bool IsMissing = false;     ///< whether the segment was no chain of edges
+  bool IsMissing = false;     ///< whether the segment was not a chain of edges
 };
 
 /**

@@ -194,7 +194,7 @@ public:
     for (std::size_t i = this->Parts.size(); i-- > 0;)
     {
       const JoiningPart& part = this->Parts[i];
-      // Of a part that is no surface, only what comes before its last join.
+      // Of a part that is not a surface, only what comes before its last join.
       surface[i] = !isTop(part) ? surface[part.Parent] : hasSurface ? part.Surface : 1.0;
       sums[i] = !isTop(part) ? part.Integral + sums[part.Parent] : hasSurface ? part.Best : 0.0;
     }

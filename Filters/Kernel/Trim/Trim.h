@@ -42,7 +42,7 @@ enum class OutwardTest
   InwardNormal ///< the published test; see ApplyInwardNormalTest()
 };
 
-/** What becomes of an edge of the boundary that is no edge of the mesh. */
+/** What becomes of an edge of the boundary that is not an edge of the mesh. */
 enum class BoundaryEdges
 {
   FollowSurface, ///< it is split where it crosses edges of the mesh, so that the surface stays as it is
