@@ -561,8 +561,8 @@ void CheckEffort(
       largest = std::max(largest, need.Area);
     }
   }
-  const double room = options.HoleMemory / BytesPerPoint;
-  if (options.HoleMemory > 0.0 && ofOne > room)
+  const double room = options.MemoryOfHole / BytesPerPoint;
+  if (options.MemoryOfHole > 0.0 && ofOne > room)
   {
     throw MakeError<sentences::HoleTooLarge>(CountToText(ofOne), ToGigabytes(ofOne),
       ToGigabytes(room), RoundedUp(SpacingOfPoints(largest, room)));
