@@ -66,7 +66,7 @@ private:
   DataSetPoints SourcePoints;
   ConstraintLines Given;
   PointTable Near; // those of this rank; then of all ranks, by their ids
-  std::vector<PlaceInPart> PlacesOfNear, PlacesOfAdded;
+  std::vector<PlaceInPart> NearPlaces, AddedPlaces;
   vtkIdType LargestId = -1;
   LinePieces Pieces;
 };
@@ -101,12 +101,12 @@ void AddedLines::ListNear(std::vector<Message>& warnings)
       const Bytes packed = rows.Pack(std::vector<vtkIdType>(near.begin(), near.end()));
       this->Near.Unpack(&packed, 1);
       std::transform(
-        near.begin(), near.end(), std::back_inserter(this->PlacesOfNear), [part](Index place) {
+        near.begin(), near.end(), std::back_inserter(this->NearPlaces), [part](Index place) {
           return PlaceInPart{ part, place };
         });
     });
   });
-  box = BoxOfAll(this->All, box);
+  box = JoinBoxes(this->All, box);
   this->All.Agree([&]() { CheckLines(this->Given, box, warnings); });
 }
 
@@ -119,7 +119,7 @@ void AddedLines::ShareNear()
     std::vector<vtkIdType> all(this->Near.Count());
     std::iota(all.begin(), all.end(), vtkIdType(0));
     std::generate(packed.begin(), packed.end(), [&]() { return this->Near.Pack(all); });
-    for (const PlaceInPart& at : this->PlacesOfNear)
+    for (const PlaceInPart& at : this->NearPlaces)
     {
       places.insert(places.end(), { at.Part, at.Place });
     }
@@ -137,10 +137,10 @@ void AddedLines::ShareNear()
     std::sort(order.begin(), order.end(),
       [this](vtkIdType a, vtkIdType b) { return this->Near.Ids[a] < this->Near.Ids[b]; });
     this->Near.Choose(order);
-    this->PlacesOfNear.clear();
+    this->NearPlaces.clear();
     for (const vtkIdType i : order)
     {
-      this->PlacesOfNear.push_back({ static_cast<int>(places[2 * i]), places[2 * i + 1] });
+      this->NearPlaces.push_back({ static_cast<int>(places[2 * i]), places[2 * i + 1] });
     }
   });
 }
@@ -197,8 +197,8 @@ void AddedLines::AddPoints()
     for (const AddedPoint& point : this->Pieces.Added)
     {
       const int owner = this->Plane.OwnerOf(point.Position);
-      added[owner].push_back(ofNear + static_cast<vtkIdType>(this->PlacesOfAdded.size()));
-      this->PlacesOfAdded.push_back({ owner, counts[owner]++ });
+      added[owner].push_back(ofNear + static_cast<vtkIdType>(this->AddedPlaces.size()));
+      this->AddedPlaces.push_back({ owner, counts[owner]++ });
     }
     for (const auto& ofPart : added)
     {
@@ -208,7 +208,7 @@ void AddedLines::AddPoints()
       }
     }
     std::partial_sum(counts.begin(), counts.end(), common.Bases.begin() + 1);
-    this->Store.FirstIdOfLines = this->LargestId + 1;
+    this->Store.FirstLineId = this->LargestId + 1;
   });
 }
 
@@ -218,7 +218,7 @@ SharedLines AddedLines::Result() const
   const Index near = static_cast<Index>(this->Near.Count());
   const DataSetPoints places = ViewOf(this->Near);
   const auto numberOf = [&](Index id) {
-    const PlaceInPart& at = id < near ? this->PlacesOfNear[id] : this->PlacesOfAdded[id - near];
+    const PlaceInPart& at = id < near ? this->NearPlaces[id] : this->AddedPlaces[id - near];
     return this->Store.FirstOf(at.Part) + at.Place;
   };
   const auto placeOf = [&](Index id) {

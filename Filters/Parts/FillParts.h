@@ -118,7 +118,7 @@ private:
   void Surround(const std::vector<char>& areWaiting, const Progress& progress);
   SurroundedHoles& HolesOf(int group, const Progress& progress);
   template <typename Value>
-  void ShareOfHoles(std::vector<Value>& values) const;
+  void ShareHoleValues(std::vector<Value>& values) const;
   void FindQuotas(const Progress& progress);
   bool FillGroup(int group, const Progress& progress, std::vector<vtkIdType>& beyond);
   void FillAll();
@@ -127,7 +127,7 @@ private:
   const SurfaceParts::MakePart Make;
   Engine Crew; // of the parts
   const Ranks& All;
-  int PartOfRims = 0;
+  int RimsPart = 0;
   Parts OwnRims;       // if this rank has that part: points of its parts
   FilledPart InMemory; // the part of this rank, in memory
   std::vector<KnownPart> Known;

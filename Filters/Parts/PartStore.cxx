@@ -254,7 +254,7 @@ SurfacePart PartStore::TakeWhole(int part, const Progress& progress)
   SurfacePart taken =
     this->Crew.IsInFiles() ? this->ReadWhole(part, progress) : std::move(this->Part);
   taken.AddedPoints = static_cast<Index>(std::count_if(taken.Own.Ids.begin(), taken.Own.Ids.end(),
-    [this](vtkIdType id) { return id >= this->FirstIdOfLines; }));
+    [this](vtkIdType id) { return id >= this->FirstLineId; }));
   return taken;
 }
 

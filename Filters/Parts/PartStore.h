@@ -93,9 +93,9 @@ public:
    */
   void Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const Progress& progress);
 
-  /** Adds packed points of lines, with ids from FirstIdOfLines on; Part.Bases has to count them. */
+  /** Adds packed points of lines, with ids from FirstLineId on; Part.Bases has to count them. */
   void AddOwn(int part, Bytes&& rows);
-  vtkIdType FirstIdOfLines = std::numeric_limits<vtkIdType>::max(); ///< above all others
+  vtkIdType FirstLineId = std::numeric_limits<vtkIdType>::max(); ///< above all others
 
   GlobalId FirstOf(int part) const { return this->Part.Bases[part]; }
   GlobalId EndOf(int part) const { return this->Part.Bases[part + 1]; }

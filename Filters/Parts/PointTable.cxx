@@ -173,13 +173,13 @@ PointTable::PointTable(const std::vector<ArrayKind>& kinds)
   }
   const auto marks = std::find_if(this->Arrays.begin(), this->Arrays.end(),
     [](const auto& array) { return IsGhostArray(array); });
-  this->PlaceOfMarks = marks - this->Arrays.begin();
+  this->MarksIndex = marks - this->Arrays.begin();
 }
 
 vtkUnsignedCharArray* PointTable::Marks() const
 {
-  return this->PlaceOfMarks < this->Arrays.size()
-    ? vtkUnsignedCharArray::SafeDownCast(this->Arrays[this->PlaceOfMarks])
+  return this->MarksIndex < this->Arrays.size()
+    ? vtkUnsignedCharArray::SafeDownCast(this->Arrays[this->MarksIndex])
     : nullptr;
 }
 

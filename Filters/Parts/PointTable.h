@@ -78,7 +78,7 @@ public:
 
 private:
   void View(vtkPointData* data);
-  std::size_t PlaceOfMarks = 0; // among the arrays; their number: there are none
+  std::size_t MarksIndex = 0; // among the arrays; their number: there are none
 };
 
 /** The positions, in place unless some are hidden: these have none. */

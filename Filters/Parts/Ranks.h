@@ -152,7 +152,7 @@ bool IsOnAny(const Ranks& ranks, bool isOnThis);
 std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& ranks);
 
 /** The box of the boxes of all ranks. */
-Box BoxOfAll(const Ranks& ranks, const Box& own);
+Box JoinBoxes(const Ranks& ranks, const Box& own);
 
 } // namespace elevation
 

@@ -97,7 +97,7 @@ void ReconstructParts::Close()
   this->Constraints = this->Boundary = nullptr;
   this->NumberOfParts = 0;
   this->Gone.clear();
-  this->IsLost = this->IsOfAll = false;
+  this->IsLost = this->IsOnAllRanks = false;
 }
 
 void ReconstructParts::CheckIsComplete() const
@@ -113,7 +113,7 @@ template <typename Step>
 void ReconstructParts::Do(bool withAll, const Step& step)
 {
   this->CheckIsComplete();
-  this->IsOfAll = withAll;
+  this->IsOnAllRanks = withAll;
   this->IsLost = true;
   step();
   this->IsLost = false;
@@ -194,7 +194,7 @@ void ReconstructParts::Begin(int count)
   {
     throw CodedError(*this->Refusal);
   }
-  this->IsOfAll = true;
+  this->IsOnAllRanks = true;
   try
   {
     vtkDataObject *constraints = nullptr, *boundary = nullptr;
@@ -458,7 +458,7 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
   {
     output->Initialize();
     rims->Initialize();
-    if (isReporting || !this->IsOfAll || this->Everybody->Own() == 0)
+    if (isReporting || !this->IsOnAllRanks || this->Everybody->Own() == 0)
     {
       this->ReportError(error);
     }

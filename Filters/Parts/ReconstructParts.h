@@ -147,7 +147,7 @@ private:
   std::unique_ptr<TrimParts> Trimmed;
   std::unique_ptr<FillParts> Filled;
   bool IsLost = false;                 // whether points are
-  bool IsOfAll = false;                // whether all ranks have thrown what was thrown last
+  bool IsOnAllRanks = false;           // whether all ranks have thrown what was thrown last
   std::unique_ptr<CodedError> Refusal; // to begin
   vtkMTimeType TimeOfRefusal = 0;
   int RefusedParts = 0;

@@ -66,7 +66,7 @@ std::vector<Point2> CollectPoints(const Ranks& ranks, const std::vector<Point2>&
 NodeBox Joined(const Ranks& ranks, const NodeBox& own)
 {
   NodeBox box;
-  static_cast<Box&>(box) = BoxOfAll(ranks, own);
+  static_cast<Box&>(box) = JoinBoxes(ranks, own);
   return box;
 }
 
@@ -211,7 +211,7 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
       throw BesideGivenLattice(beside[0], place, steps, tolerance);
     }
   });
-  const Box box = BoxOfAll(ranks, own);
+  const Box box = JoinBoxes(ranks, own);
   if (box.Low.X > box.High.X)
   {
     return false;

@@ -176,13 +176,12 @@ void TrimParts::FindNear(int margin)
       sums[1] += static_cast<vtkIdType>(own.CountOfInnerPoints());
     });
   });
-  this->NearOfParts = this->Crew.All().Collect(near);
-  this->Home =
-    static_cast<int>(std::max_element(this->NearOfParts.begin(), this->NearOfParts.end()) -
-      this->NearOfParts.begin());
+  this->NearCounts = this->Crew.All().Collect(near);
+  this->Home = static_cast<int>(
+    std::max_element(this->NearCounts.begin(), this->NearCounts.end()) - this->NearCounts.begin());
   this->Crew.All().Sum(sums);
   this->Kept = sums[0];
-  this->Extent = BoxOfAll(this->Crew.All(), extent);
+  this->Extent = JoinBoxes(this->Crew.All(), extent);
   this->InnerPoints = sums[1];
 }
 
@@ -234,7 +233,7 @@ void TrimParts::SendBack(const BoundaryZone& zone)
   auto back = backs.begin();
   for (int part = 0; part < this->Crew.CountOfParts(); ++part)
   {
-    if (this->NearOfParts[part] >= 0)
+    if (this->NearCounts[part] >= 0)
     {
       const TrimmedZone taken = std::move(*back++);
       this->Crew.Send(part, Back, taken.Pack());

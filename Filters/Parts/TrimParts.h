@@ -102,7 +102,7 @@ private:
   int Margin = 0;        // of an outline
   std::unique_ptr<TrimmedPart> InMemory;
   std::vector<Bytes> NearParts;       // of this rank, until they are sent
-  std::vector<vtkIdType> NearOfParts; // triangles of each part, and 1; -1 if it has no points
+  std::vector<vtkIdType> NearCounts;  // triangles of each part, and 1; -1 if it has no points
   int Home = 0;                       // the part with most of them
   vtkIdType InnerPoints = 0;          // of all parts
   Box Extent;                         // of all triangles, where none is kept but near ones
