@@ -89,7 +89,7 @@ set(es_kernel_headers_Bins
 set(es_kernel_headers_Grow
   Grow Growth)
 set(es_kernel_headers_Simplify
-  PlaneOfFace)
+  FacePlane)
 set(es_kernel_headers_Triangulate)
 set(es_kernel_headers_Constrain)
 set(es_kernel_headers_Cells

@@ -123,7 +123,7 @@ int vtkFillElevationHoles::RequestData(
     if (ranks.Own() == 0) // all ranks know them
     {
       this->NumberOfHoles += patches.Found.Count();
-      this->NumberOfFilledHoles += CountOfFilled(patches);
+      this->NumberOfFilledHoles += CountFilled(patches);
     }
     return true;
   };
@@ -134,7 +134,7 @@ int vtkFillElevationHoles::RequestData(
     FillOptions options = elevation::OptionsOf(this);
     elevation::CheckOptions(options, this->OpenEdgeLength);
     elevation::CheckArrays(input);
-    const elevation::PointsOfDataSet points = elevation::ViewPoints(input);
+    const elevation::DataSetPoints points = elevation::ViewPoints(input);
     const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
     Mesh mesh;
     elevation::ToMesh(input, mesh, SubProgress(progress, 0.0, 0.15));
@@ -174,7 +174,7 @@ int vtkFillElevationHoles::RequestData(
     Report(progress, 1.0);
     // Added last, as an abort or an error leaves no counts.
     this->NumberOfHoles += patches.Found.Count();
-    this->NumberOfFilledHoles += CountOfFilled(patches);
+    this->NumberOfFilledHoles += CountFilled(patches);
   });
 }
 

@@ -6,18 +6,18 @@
  *
  * A hole is an empty region that the surface encloses. The outer boundary of a component is never a
  * hole. A component that lies inside a hole, an island, stays, and the ring around it is filled.
- * Voids that triangles with long edges bridge are no holes: see OpenEdgeLength, which opens them.
+ * Voids that triangles with long edges bridge are not holes: see OpenEdgeLength, which opens them.
  *
  * @par Input:
- * A vtkPolyData of triangles, an elevation surface from any source, of one or more components. x,y is
- * the plane of projection, z the elevation. Cells that are marked as hidden (vtkGhostType), or have a
- * point that is, are none, and count in no message.
+ * A vtkPolyData of triangles, an elevation surface from any source, of one or more components. x,y
+ * is the plane of projection, z the elevation. Cells that are marked as hidden (vtkGhostType), or
+ * have a point that is, are none, and count in no message.
  *
  * @par Outputs:
  * - 0, the surface: the points and cells of the input first, with their ids, then the new points and
  *   triangles, counter-clockwise seen from +z. Point arrays FilledPoint (vtkUnsignedCharArray, 1 for
  *   new points) and FilledError (vtkDoubleArray, the standard error of z of new points, 0 for points
- *   of the input, NaN where nothing tells it); cell array HoleId (vtkIdTypeArray, -1 for cells of
+ *   of the input, NaN where it is unknown); cell array HoleId (vtkIdTypeArray, -1 for cells of
  *   the input). Other point arrays: see InterpolatePointData. Where the input has been filled before,
  *   its arrays of these names stay, and holes have the numbers after the largest of its triangles.
  * - 1, the report: one closed line for each hole, filled or not, its rim, counter-clockwise. Cell data
@@ -28,13 +28,13 @@
  * Field data of both: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
  * @par Guarantees:
- * A patch covers its hole exactly and overlaps nothing; every boundary edge gets its second triangle
- * and no edge a third one; patches are constrained Delaunay. New points and triangles do not depend
- * on the order of the input's points and cells, only their ids do; nor on the number of threads or
- * ranks. Holes that stay open are listed, with the reason.
+ * A patch covers its hole exactly and overlaps nothing; every boundary edge gets its second
+ * triangle and no edge a third one; patches are constrained Delaunay. New points and triangles do
+ * not depend on the order of the input's points and cells, only their ids do; nor on the number of
+ * threads or ranks. Holes that stay open are listed, with the reason.
  *
  * Errors leave empty outputs, fail the request (but in ParaView), set GetErrorCode() and name the
- * property, cell or array: an input that is no elevation surface is
+ * property, cell or array: an input that is not an elevation surface is
  * refused. An abort also leaves empty output, which counts as up to date: call Modified() to start
  * again. A composite input gives outputs of the same structure, each block filled on its own.
  *
@@ -80,7 +80,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
   ///@}
 
-  /** What became of a hole: the values of the array Status of output 1. */
+  /** How a hole was treated: the values of the array Status of output 1. */
   enum HoleStatusType
   {
     FILLED = 0,         ///< all of it, with a patch
@@ -158,17 +158,17 @@ public:
    *   hole; edges that are kept inside are then those between nodes. Without Spacing, the default
    *   is the mean length of all edges of a region, on its rim and inside, that are not long (if
    *   there are none: OpenEdgeLength). In a region of lines, which has more such edges inside
-   *   than on its rim, each of them counts as at least a tenth of the gap beside it: where lines are
-   *   more than ten times as far apart as their points, as contour lines are, the spacing follows
-   *   the gaps. As in holes, points are graded where lengths differ more
+   *   than on its rim, each of them counts as at least a tenth of the gap beside it: where lines
+   *   are more than ten times as far apart as their points, as contour lines are, the spacing
+   *   follows the gaps. As in holes, points are graded where lengths differ more
    *   than threefold, long edges of the rim included: they become sparser away from lines and
    *   towards a border with long edges. So their number stays in proportion to the points of the
    *   input, however far apart lines are.
    * - MaximumHoleSize, MaximumHoleEdges and MaximumNumberOfInsertedPoints apply as to holes. A
    *   region that is not filled keeps its triangles.
-   * - A region that has no room for a new point, as slivers along the outer border, is no hole: it
-   *   keeps its triangles, and is not listed or counted. (Limits are checked first, so a region beyond them
-   *   is listed anyway.)
+   * - A region that has no room for a new point, as slivers along the outer border, is not a hole:
+   *   it keeps its triangles, and is not listed or counted. (Limits are checked first, so a region
+   *   beyond them is listed anyway.)
    *
    * Cost: one more pass over the triangles.
    */
@@ -217,10 +217,10 @@ public:
   ///@{
   /**
    * Whether to fill holes that a boundary given to vtkTrimOutwardTriangles has cut out: a lake, an
-   * island, a building. Such a hole has an edge, of its rim or of an island, between two points that
-   * are 1 in the input's point array OnBoundary, which that filter makes; so a gap in the data that the
-   * boundary touches at two neighbouring points counts, too. Off (default): they stay open,
-   * with status CUT_OUT.
+   * island, a building. Such a hole has an edge, of its rim or of an island, between two points
+   * that are 1 in the input's point array OnBoundary, which that filter makes; so a gap in the data
+   * that the boundary touches at two neighbouring points counts, too. Off (default): they stay
+   * open, with status CUT_OUT.
    */
   vtkSetMacro(FillCutOuts, bool);
   vtkGetMacro(FillCutOuts, bool);
@@ -306,8 +306,8 @@ public:
   ///@{
   /**
    * The processes that make one surface together where each asks for its piece of as many pieces as
-   * there are processes. More pieces are an error. All of them have to update, so where the input or
-   * a property changes on one, call Modified() on all: else this one waits for ever
+   * there are processes. More pieces are an error. All of them have to update, so where the input
+   * or a property changes on one, call Modified() on all: else this one waits for ever
    * (and reports RankWaits once, after a minute).
    * Default: the global controller when the filter is made. nullptr: this process alone.
    */
@@ -324,11 +324,11 @@ public:
    * name and a value. A message begins with the row ("error" or "warning", its code). Then come
    * ("text", the sentence with its values in braces, {points}, and with properties as
    * {property:Spacing}); in a composite ("block", the name of the block); and a row for each value.
-   * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent, whose
-   * text has the same for people, are invoked. Codes, besides those of data that are invalid, which
-   * are "Words": NothingToFill, HoleNotFilled and RegionNotFilled (with a reason: BordersTouch,
-   * SizeOutOfRange, MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall, PointsCoincide),
-   * MoreHolesNotFilled, BordersMeet, TooManyPointsToFill, TooManyPointsByDefault,
+   * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent,
+   * whose text has the same for people, are invoked. Codes, besides those of data that are invalid,
+   * which are "Words": NothingToFill, HoleNotFilled and RegionNotFilled (with a reason:
+   * BordersTouch, SizeOutOfRange, MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall,
+   * PointsCoincide), MoreHolesNotFilled, BordersMeet, TooManyPointsToFill, TooManyPointsByDefault,
    * InvalidOpenEdgeLength, InvalidHoleSize, InvalidHoleEdges, InvalidSpacing,
    * InvalidInsertedPoints, InvalidExpectedPoints, InvalidThreads, InvalidPrecision, FoldsInSingle,
    * EdgeLengthRenamed, ArraysLeftOut, OnOneRank (with a reason: PartsDoNotFit), RankWaits,

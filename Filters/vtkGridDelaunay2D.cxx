@@ -68,7 +68,7 @@ using elevation::Progress;
 using elevation::ReportStep;
 
 /** The lines of a source, checked to be where the points are; @a own must outlive them. */
-ConstraintLines LinesOf(vtkPolyData* source, const elevation::PointsOfDataSet& own,
+ConstraintLines LinesOf(vtkPolyData* source, const elevation::DataSetPoints& own,
   const elevation::PointView& points, int threads, const Progress& progress,
   std::vector<elevation::Message>& warnings)
 {
@@ -94,7 +94,7 @@ elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
   }
   elevation::CheckPointArrays(source, "The constraints'");
   elevation::WarnOfLattice(options, warnings);
-  const elevation::PointsOfDataSet own = elevation::ViewPoints(source);
+  const elevation::DataSetPoints own = elevation::ViewPoints(source);
   const ConstraintLines lines = LinesOf(
     source, own, points, options.NumberOfThreads, SubProgress(progress, 0.0, 0.02), warnings);
   options.Monitor = SubProgress(progress, 0.02, 1.0);
@@ -123,7 +123,7 @@ double Quantile(std::vector<double>& values, double part)
   return *at;
 }
 
-/** Tells why most points are without a triangle, and advises a limit. */
+/** Explains why most points are without a triangle, and advises a limit. */
 void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   elevation::DelaunayOptions options, const elevation::ConstrainedTriangulation& constrained,
   const Progress& progress, std::vector<elevation::Message>& warnings)
@@ -134,7 +134,7 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
     return;
   }
   const std::size_t ids = points.Count + constrained.Added.size();
-  elevation::EffectOfLimit effect;
+  elevation::LimitEffect effect;
   effect.Vertices = static_cast<vtkIdType>(ids - found.UnusedPoints.size());
   effect.Missing =
     effect.Vertices - CountInTriangles(found.Triangles, ids, SubProgress(progress, 0.0, 0.05));
@@ -151,7 +151,7 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   const auto placeOf = [&](Index id) {
     return id < points.Count ? points.At(id) : full.Added[id - points.Count].Position;
   };
-  elevation::LengthsOfEdges lengths =
+  elevation::EdgeMeasures lengths =
     elevation::MeasureEdges(full.Result.Triangles, ids, placeOf, SubProgress(progress, 0.7, 1.0));
   std::vector<double>& limits = lengths.Limits;
   limits.erase(std::remove(limits.begin(), limits.end(), std::numeric_limits<double>::infinity()),
@@ -163,7 +163,7 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   warnings.back() = elevation::AdviceOnLimit(limit, effect);
 }
 
-/** Tells why there is no triangle, or why most points are without one. */
+/** Explains why there is no triangle, or why most points are without one. */
 void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
   const elevation::DelaunayOptions& options, const elevation::ConstrainedTriangulation& constrained,
   const Progress& progress, std::vector<elevation::Message>& warnings)
@@ -196,7 +196,7 @@ elevation::ConstrainedTriangulation TriangulateSpread(
   parts.Add(block.Input, options.Monitor);
   parts.Triangulate(block.Outputs.empty() ? 0 : 1, block.Second, options, block.Warnings);
   const elevation::TriangulateParts::Totals& all = parts.All();
-  elevation::WarnOfLeft("point", parts.LeftOut(), block.Warnings);
+  elevation::WarnOfLeftOut("point", parts.LeftOut(), block.Warnings);
   std::vector<std::array<double, 3>> sample;
   ranks.Agree([&] {
     if (block.Input)
@@ -315,22 +315,22 @@ int vtkGridDelaunay2D::RequestData(
     elevation::Report(progress, 0.0);
     elevation::CheckOptions(options);
     elevation::CheckPointArrays(block.Input);
-    const elevation::PointsOfDataSet points = elevation::ViewPoints(block.Input);
+    const elevation::DataSetPoints points = elevation::ViewPoints(block.Input);
     vtkPolyData* const draped = this->DrapeConstraints ? block.Second : nullptr;
     vtkPolyData* const source = draped ? nullptr : block.Second;
     const double split = draped ? 0.7 : 1.0;
-    const double told = source ? 0.95 : split;
+    const double advised = source ? 0.95 : split;
     // Little, as a limit seldom needs advice.
-    const double triangulated = this->MaximumEdgeLength > 0.0 ? told - 0.09 : told;
+    const double triangulated = this->MaximumEdgeLength > 0.0 ? advised - 0.09 : advised;
     elevation::ConstrainedTriangulation constrained = TriangulateWith(
       source, points.View, options, SubProgress(progress, 0.0, triangulated), block.Warnings);
     elevation::Triangulation& triangulation = constrained.Result;
     elevation::NameHidden(elevation::GhostsOf(block.Input->GetPointData()), triangulation);
     elevation::WarnOfWall(elevation::SampleOf(points.View), block.Warnings);
-    WarnOfMissing(source, points.View, options, constrained, SubProgress(progress, triangulated, told),
-      block.Warnings);
+    WarnOfMissing(source, points.View, options, constrained,
+      SubProgress(progress, triangulated, advised), block.Warnings);
     elevation::PassPoints(
-      block.Input, source, constrained.Added, SubProgress(progress, told, split), output);
+      block.Input, source, constrained.Added, SubProgress(progress, advised, split), output);
     output->GetFieldData()->PassData(block.Input->GetFieldData());
     output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles),
       elevation::ResolveNumberOfThreads(this->NumberOfThreads)));

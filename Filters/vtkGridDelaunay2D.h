@@ -8,13 +8,13 @@
  *
  * @par Inputs:
  * - 0: a vtkPointSet (float or double), whose cells are ignored.
- * - 1, optional (SetSourceConnection, SetSourceData): a vtkPolyData whose lines and polygon edges must
- *   be edges of the result: breaklines, faults, outlines. Nothing is cut out along polygons.
+ * - 1, optional (SetSourceConnection, SetSourceData): a vtkPolyData whose lines and polygon edges
+ *   must be edges of the result: breaklines, faults, outlines. Nothing is cut out along polygons.
  *
  * @par Output:
  * A vtkPolyData with the same points in the same order (shared with the input, never written), all
- * point data and field data, and the triangles in Polys, counter-clockwise seen from +z. Points that
- * constraints add come behind those of the input. Field data:
+ * point data and field data, and the triangles in Polys, counter-clockwise seen from +z. Points
+ * that constraints add come behind those of the input. Field data:
  * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;
  * - UnusedPointReasons (vtkUnsignedCharArray): for each of them, 1 = duplicate (another point with
  *   the same x,y is the vertex), 2 = not finite (x, y or z), 3 = within MaximumElevationError,
@@ -57,8 +57,8 @@
  * Elevation Surface of 3D Point Clouds". SearchStrategy chooses between its two searches, voxel
  * traversal and the most compact triangle, which give the same triangles.
  *
- * Lattices, constraints, few points, all warnings and errors, and cost: [Documentation/Filters.md](Documentation/Filters.md).
- * Several ranks: Documentation/ManyRanks.md.
+ * Lattices, constraints, few points, all warnings and errors, and cost:
+ * [Documentation/Filters.md](Documentation/Filters.md). Several ranks: Documentation/ManyRanks.md.
  *
  * @sa vtkTrimOutwardTriangles vtkFillElevationHoles vtkDelaunay2D
  */
@@ -119,7 +119,8 @@ public:
   /**
    * Triangles with an edge longer than this in x,y (input units) are not made: gaps in the data
    * stay holes, pockets of the outline stay open. The triangles that remain are those of the full
-   * triangulation. 0 (default): no limit. A negative value, or one that is not a number, is an error.
+   * triangulation. 0 (default): no limit. A negative value, or one that is not a number, is an
+   * error.
    */
   vtkSetMacro(MaximumEdgeLength, double);
   vtkGetMacro(MaximumEdgeLength, double);
@@ -127,11 +128,11 @@ public:
 
   ///@{
   /**
-   * Points become vertices until every other point lies within this vertical distance of the surface
-   * (in the units of z): few points, if not always the fewest possible. The others stay in the output,
-   * and are listed as unused. 0 (default): off; all points become vertices. A negative value, or one
-   * that is not finite, is an error, and so is a MaximumEdgeLength with it: fewer points make longer
-   * edges.
+   * Points become vertices until every other point lies within this vertical distance of the
+   * surface (in the units of z): few points, if not always the fewest possible. The others stay in
+   * the output, and are listed as unused. 0 (default): off; all points become vertices. A negative
+   * value, or one that is not finite, is an error, and so is a MaximumEdgeLength with it: fewer
+   * points make longer edges.
    */
   vtkSetMacro(MaximumElevationError, double);
   vtkGetMacro(MaximumElevationError, double);
@@ -139,12 +140,12 @@ public:
 
   ///@{
   /**
-   * With a MaximumElevationError: whether edges are chosen by how near they are to the points that are
-   * left out [Dyn, Levin & Rippa 1990], as far as triangles do not become much narrower. They then
-   * follow ridges and valleys, and a tenth to a fifth fewer points are needed on terrain; where
-   * elevations are noise, more may be. It takes up to a fifth longer. The triangles are not Delaunay
-   * then, so that they cannot be had from the chosen points alone. Off (default): Delaunay. Without
-   * a MaximumElevationError it does nothing.
+   * With a MaximumElevationError: whether edges are chosen by how near they are to the points that
+   * are left out [Dyn, Levin & Rippa 1990], as far as triangles do not become much narrower. They
+   * then follow ridges and valleys, and a tenth to a fifth fewer points are needed on terrain;
+   * where elevations are noise, more may be. It takes up to a fifth longer. The triangles are not
+   * Delaunay then, so that they cannot be had from the chosen points alone. Off (default):
+   * Delaunay. Without a MaximumElevationError it does nothing.
    */
   vtkSetMacro(DataDependentEdges, bool);
   vtkGetMacro(DataDependentEdges, bool);
@@ -155,10 +156,11 @@ public:
   /**
    * With a MaximumElevationError: whether points of constraints may be left out, too. A point goes
    * where exactly two pieces of lines meet, the line without it passes it within the error above or
-   * below, and within a thousandth of the shorter of the two pieces beside, and no other point changes
-   * its side of the line. Ends, corners and crossings stay. On, a straight line through the nodes of
-   * a grid has as few points as its elevations need. Off (default), lines keep all their points, also
-   * those of the cloud that lie on them. Without a MaximumElevationError it does nothing.
+   * below, and within a thousandth of the shorter of the two pieces beside, and no other point
+   * changes its side of the line. Ends, corners and crossings stay. On, a straight line through the
+   * nodes of a grid has as few points as its elevations need. Off (default), lines keep all their
+   * points, also those of the cloud that lie on them. Without a MaximumElevationError it does
+   * nothing.
    */
   vtkSetMacro(SimplifyConstraints, bool);
   vtkGetMacro(SimplifyConstraints, bool);
@@ -167,13 +169,13 @@ public:
 
   ///@{
   /**
-   * Whether the constraints have no elevations of their own, as the lines of a map. On, the points are
-   * triangulated without them; then each line gets a point wherever it crosses an edge, and at each
-   * point of its own, with the z and point data of the surface there. So the lines are edges,
-   * and the surface is as it was; its triangles are no longer Delaunay where they are split. Lines may
-   * cross; parts outside of the surface are left out, and so are lines of one point. Several ranks
-   * gather the block on one of them, with a warning. Off (default): the points of lines have their
-   * own z.
+   * Whether the constraints have no elevations of their own, as the lines of a map. On, the points
+   * are triangulated without them; then each line gets a point wherever it crosses an edge, and at
+   * each point of its own, with the z and point data of the surface there. So the lines are edges,
+   * and the surface is as it was; its triangles are no longer Delaunay where they are split. Lines
+   * may cross; parts outside of the surface are left out, and so are lines of one point. Several
+   * ranks gather the block on one of them, with a warning. Off (default): the points of lines have
+   * their own z.
    */
   vtkSetMacro(DrapeConstraints, bool);
   vtkGetMacro(DrapeConstraints, bool);
@@ -247,11 +249,11 @@ public:
   ///@{
   /**
    * Whether points without a triangle are removed from the output, and the point array
-   * OriginalPointIds (vtkIdTypeArray) is added: the input's global ids, or else the places of points
-   * in it (on several ranks, in the points of rank after rank; in a composite, in the block); -1 for
-   * points that constraints add. A vtkIdTypeArray of this name that the input has stays, and goes on: so it
-   * names the points of the first filter's input. UnusedPointIds are such ids, too. Off (default):
-   * all points of the input are in the output.
+   * OriginalPointIds (vtkIdTypeArray) is added: the input's global ids, or else the places of
+   * points in it (on several ranks, in the points of rank after rank; in a composite, in the
+   * block); -1 for points that constraints add. A vtkIdTypeArray of this name that the input has
+   * stays, and goes on: so it names the points of the first filter's input. UnusedPointIds are such
+   * ids, too. Off (default): all points of the input are in the output.
    */
   vtkSetMacro(RemoveUnusedPoints, bool);
   vtkGetMacro(RemoveUnusedPoints, bool);
@@ -261,9 +263,9 @@ public:
   ///@{
   /**
    * The type of points in all outputs: vtkAlgorithm::SINGLE_PRECISION, DOUBLE_PRECISION or
-   * DEFAULT_PRECISION (default): float where the input's are float and there are no constraints, else double.
-   * Single precision rounds what has been made in double; a triangle that would turn over then, or
-   * lose its area, is an error.
+   * DEFAULT_PRECISION (default): float where the input's are float and there are no constraints,
+   * else double. Single precision rounds what has been made in double; a triangle that would turn
+   * over then, or lose its area, is an error.
    */
   vtkSetMacro(OutputPointsPrecision, int);
   vtkGetMacro(OutputPointsPrecision, int);
@@ -307,8 +309,8 @@ public:
   ///@{
   /**
    * The processes that make one surface together where each asks for its piece of as many pieces as
-   * there are processes. More pieces are an error. All of them have to update, so where the input or
-   * a property changes on one, call Modified() on all: else this one waits for ever
+   * there are processes. More pieces are an error. All of them have to update, so where the input
+   * or a property changes on one, call Modified() on all: else this one waits for ever
    * (and reports RankWaits once, after a minute).
    * Default: the global controller when the filter is made. nullptr: this process alone.
    */
@@ -327,12 +329,12 @@ public:
    * {property:Spacing}); in a composite ("block", the name of the block); and a row for each value.
    * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent,
    * whose text has the same for people, are invoked. Codes, besides those of data that are invalid,
-   * which are "Words": NoTriangle, PointsOnWall, FewTriangles, FewTrianglesAdvice, InvalidEdgeLength,
-   * InvalidElevationError, InvalidLatticeTolerance, InvalidThreads, InvalidPrecision,
-   * FoldsInSingle, TwoLimits, LatticeNotUsed, NoLines, StripsInLines, TooManyPointsInLines,
-   * NoSuchPointOfLine, NonFinitePointOfLine, LinesElsewhere, LinesFarOutside, PolygonsAreLines,
-   * LinesNotDraped, LinesNotSettled, ArraysLeftOut, OnOneRank (with a reason: ErrorNeedsAll,
-   * DrapingNeedsAll), RankWaits, NotEnoughMemory, Stopped.
+   * which are "Words": NoTriangle, PointsOnWall, FewTriangles, FewTrianglesAdvice,
+   * InvalidEdgeLength, InvalidElevationError, InvalidLatticeTolerance, InvalidThreads,
+   * InvalidPrecision, FoldsInSingle, TwoLimits, LatticeNotUsed, NoLines, StripsInLines,
+   * TooManyPointsInLines, NoSuchPointOfLine, NonFinitePointOfLine, LinesElsewhere, LinesFarOutside,
+   * PolygonsAreLines, LinesNotDraped, LinesNotSettled, ArraysLeftOut, OnOneRank (with a reason:
+   * ErrorNeedsAll, DrapingNeedsAll), RankWaits, NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 

@@ -61,7 +61,7 @@ using elevation::Trimmed;
 using elevation::TrimmedSide;
 
 /** The triangles of output 0 or 1. */
-void PassTriangles(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles, TrimmedSide& side,
+void PassTriangles(vtkPolyData* input, elevation::DataSetTriangles& triangles, TrimmedSide& side,
   int threads, vtkPolyData* output)
 {
   if (side.IsWholeList && triangles.Converted.empty())
@@ -74,7 +74,7 @@ void PassTriangles(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles,
 }
 
 /** Outputs 0 and 1. */
-void PassSides(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles,
+void PassSides(vtkPolyData* input, elevation::DataSetTriangles& triangles,
   const elevation::BoundaryLines* lines, const elevation::TrimOptions& options, Trimmed& trimmed,
   const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
 {
@@ -226,7 +226,7 @@ int vtkTrimOutwardTriangles::RequestData(
     {
       elevation::CheckArrays(given, "The boundary's");
     }
-    elevation::TrianglesOfDataSet triangles = elevation::ViewTriangles(input);
+    elevation::DataSetTriangles triangles = elevation::ViewTriangles(input);
     const bool isGiven = given && triangles.View.Count > 0;
     elevation::BoundaryLines lines;
     if (isGiven)

@@ -9,39 +9,39 @@
  *
  * @par Inputs:
  * - 0: a vtkPolyData of triangles that covers no place of the x,y plane twice.
- * - 1, optional (SetBoundaryConnection, SetBoundaryData): the boundary, a vtkPolyData of closed lines,
- *   of lines that join each other to closed rings, and of polygons. A place is inside when an odd
- *   number of rings goes around it, so rings may nest (a lake, an island in it). They may touch, but
- *   not cross. The boundary may be drawn anywhere, and its z plays no part.
+ * - 1, optional (SetBoundaryConnection, SetBoundaryData): the boundary, a vtkPolyData of closed
+ *   lines, of lines that join each other to closed rings, and of polygons. A place is inside when
+ *   an odd number of rings goes around it, so rings may nest (a lake, an island in it). They may
+ *   touch, but not cross. The boundary may be drawn anywhere, and its z plays no part.
  *
  * Without input 1 the boundary is extracted: a triangle is surface when its longest edge is at most
  * GapTolerance times the spacing of the points there.
  *
  * @par Outputs:
- * - 0: the triangles inside. Vertices and lines of the input come first. Cells that are marked as hidden
- *   (vtkGhostType), or have a point that is, are none, and count in no message.
+ * - 0: the triangles inside. Vertices and lines of the input come first. Cells that are marked as
+ *   hidden (vtkGhostType), or have a point that is, are none, and count in no message.
  * - 1: the triangles outside. With a given boundary, both have a point array OnBoundary
  *   (vtkUnsignedCharArray): 1 for points on its edges, else 0. By it vtkFillElevationHoles leaves
  *   open what the boundary has cut out.
  * - 2: the boundary used: one closed line (its last point is its first) for each ring.
  *
  * Outputs 0 and 1 share the input's points and pass its point data; their triangles are
- * counter-clockwise seen from +z and keep their cell data and order. Where points are inserted, they
- * come after the input's. Field data of all outputs: NumberOfOutwardTriangles, NumberOfRecoveredEdges,
- * NumberOfPointsLeftOut, NumberOfInsertedPoints (vtkIdTypeArray, one value), EffectiveGapTolerance
- * (vtkDoubleArray, one value).
+ * counter-clockwise seen from +z and keep their cell data and order. Where points are inserted,
+ * they come after the input's. Field data of all outputs: NumberOfOutwardTriangles,
+ * NumberOfRecoveredEdges, NumberOfPointsLeftOut, NumberOfInsertedPoints (vtkIdTypeArray, one
+ * value), EffectiveGapTolerance (vtkDoubleArray, one value).
  *
  * @par Guarantees:
  * All decisions of OutwardTest EXACT are exact. The triangles of output 0 cover exactly what is
- * inside the boundary and covered by the mesh (apart from the rounding of crossings); interior holes
- * of the mesh stay. Outputs 0 and 1 together are the triangles of the input, with boundary edges
- * recovered. The result does not depend on the number of threads or ranks. Nothing is written to the
- * inputs.
+ * inside the boundary and covered by the mesh (apart from the rounding of crossings); interior
+ * holes of the mesh stay. Outputs 0 and 1 together are the triangles of the input, with boundary
+ * edges recovered. The result does not depend on the number of threads or ranks. Nothing is written
+ * to the inputs.
  *
  * Errors leave empty outputs, fail the request (but in ParaView), set GetErrorCode() and name the
  * property, cell, point or edge; an abort also leaves empty output,
- * which counts as up to date: call Modified() to start again. A composite input gives outputs of the
- * same structure, each block trimmed on its own, along the same boundary.
+ * which counts as up to date: call Modified() to start again. A composite input gives outputs of
+ * the same structure, each block trimmed on its own, along the same boundary.
  *
  * @par Example:
  * @code
@@ -140,11 +140,11 @@ public:
   ///@{
   /**
    * For the extracted boundary of points on a grid, some of whose nodes are missing, as pixels
-   * outside of a country: the grid's two steps, x and y of the first, then of the second. Edges that
-   * go more than one step along either bridge missing nodes. What is reached from the border of the
-   * triangulation across such edges is outward, however narrow or wide a bay is; no piece
-   * that this leaves is too small to be surface. Missing nodes that the surface encloses are judged as
-   * without this. Where steps differ from row to row, give the largest. Four zeros (default): no
+   * outside of a country: the grid's two steps, x and y of the first, then of the second. Edges
+   * that go more than one step along either bridge missing nodes. What is reached from the border
+   * of the triangulation across such edges is outward, however narrow or wide a bay is; no piece
+   * that this leaves is too small to be surface. Missing nodes that the surface encloses are judged
+   * as without this. Where steps differ from row to row, give the largest. Four zeros (default): no
    * grid. Steps that are not finite, or along one line, are an error. Not used when a boundary is
    * given.
    */
@@ -163,7 +163,7 @@ public:
   vtkBooleanMacro(RecoverBoundary, bool);
   ///@}
 
-  /** What becomes of an edge of the given boundary that is no edge of the mesh. */
+  /** What becomes of an edge of the given boundary that is not an edge of the mesh. */
   enum BoundaryEdgesType
   {
     FOLLOW_SURFACE = 0, ///< it is split where it crosses edges of the mesh
@@ -173,21 +173,21 @@ public:
 
   ///@{
   /**
-   * What becomes of an edge of the given boundary that is no edge of the mesh: a BoundaryEdgesType, to
-   * which other numbers are clamped.
+   * What becomes of an edge of the given boundary that is not an edge of the mesh: a
+   * BoundaryEdgesType, to which other numbers are clamped.
    * - FOLLOW_SURFACE (default): the edge gets a point wherever it crosses an edge of the mesh, with
-   *   z and point data of that place. So the triangles on both sides together are the surface that was
-   *   there, cut. There are as many more points as edges are crossed.
+   *   z and point data of that place. So the triangles on both sides together are the surface that
+   *   was there, cut. There are as many more points as edges are crossed.
    * - STRAIGHT: the edge becomes one edge of the mesh (cut only at points of the mesh that it runs
-   *   through), and as few points as the boundary has are inserted. The triangles that it crosses are
-   *   replaced by as many others; so the surface changes there, most where the edge is long beside
-   *   the relief.
+   *   through), and as few points as the boundary has are inserted. The triangles that it crosses
+   *   are replaced by as many others; so the surface changes there, most where the edge is long
+   *   beside the relief.
    * - OWN_ELEVATIONS: as STRAIGHT, but a point of the mesh with the x,y of a point of the boundary
-   *   gets the z that it has in input 1: a surveyed shore. Of several points of the boundary with the same
-   *   x,y the first counts. Other point data stay.
+   *   gets the z that it has in input 1: a surveyed shore. Of several points of the boundary with
+   *   the same x,y the first counts. Other point data stay.
    *
-   * Not used without a boundary, with RecoverBoundary off (but OWN_ELEVATIONS gives its z then, too),
-   * and by INWARD_NORMAL, for which edges are straight: it looks at triangles of three
+   * Not used without a boundary, with RecoverBoundary off (but OWN_ELEVATIONS gives its z then,
+   * too), and by INWARD_NORMAL, for which edges are straight: it looks at triangles of three
    * boundary points.
    */
   vtkSetClampMacro(BoundaryEdges, int, FOLLOW_SURFACE, OWN_ELEVATIONS);
@@ -200,9 +200,9 @@ public:
 
   ///@{
   /**
-   * Whether points that no cell has are removed from outputs 0 and 1, each for itself, and the point
-   * array OriginalPointIds (vtkIdTypeArray) is added, as in vtkGridDelaunay2D; it is -1 for points
-   * that are inserted. Off (default): both have all points.
+   * Whether points that no cell has are removed from outputs 0 and 1, each for itself, and the
+   * point array OriginalPointIds (vtkIdTypeArray) is added, as in vtkGridDelaunay2D; it is -1 for
+   * points that are inserted. Off (default): both have all points.
    */
   vtkSetMacro(RemoveUnusedPoints, bool);
   vtkGetMacro(RemoveUnusedPoints, bool);
@@ -212,9 +212,9 @@ public:
   ///@{
   /**
    * The type of points in all outputs: vtkAlgorithm::SINGLE_PRECISION, DOUBLE_PRECISION or
-   * DEFAULT_PRECISION (default): float where the input's are float and there is no boundary, else double.
-   * Single precision rounds what has been made in double; a triangle that would turn over then, or
-   * lose its area, is an error.
+   * DEFAULT_PRECISION (default): float where the input's are float and there is no boundary, else
+   * double. Single precision rounds what has been made in double; a triangle that would turn over
+   * then, or lose its area, is an error.
    */
   vtkSetMacro(OutputPointsPrecision, int);
   vtkGetMacro(OutputPointsPrecision, int);
@@ -259,16 +259,16 @@ public:
   vtkGetMacro(NumberOfPointsLeftOut, vtkIdType);
 
   /**
-   * After Update(): the number of points that were inserted: points of the boundary, and crossings of
-   * its edges with the border and, if they follow the surface, with other edges.
+   * After Update(): the number of points that were inserted: points of the boundary, and crossings
+   * of its edges with the border and, if they follow the surface, with other edges.
    */
   vtkGetMacro(NumberOfInsertedPoints, vtkIdType);
 
   ///@{
   /**
    * The processes that make one surface together where each asks for its piece of as many pieces as
-   * there are processes. More pieces are an error. All of them have to update, so where the input or
-   * a property changes on one, call Modified() on all: else this one waits for ever
+   * there are processes. More pieces are an error. All of them have to update, so where the input
+   * or a property changes on one, call Modified() on all: else this one waits for ever
    * (and reports RankWaits once, after a minute).
    * Default: the global controller when the filter is made. nullptr: this process alone.
    */
@@ -285,9 +285,9 @@ public:
    * name and a value. A message begins with the row ("error" or "warning", its code). Then come
    * ("text", the sentence with its values in braces, {points}, and with properties as
    * {property:Spacing}); in a composite ("block", the name of the block); and a row for each value.
-   * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent, whose
-   * text has the same for people, are invoked. Codes, besides those of data that are invalid, which
-   * are "Words": NothingToTrim, InvalidThreads, InvalidPrecision, FoldsInSingle,
+   * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent,
+   * whose text has the same for people, are invoked. Codes, besides those of data that are invalid,
+   * which are "Words": NothingToTrim, InvalidThreads, InvalidPrecision, FoldsInSingle,
    * InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut, BoundaryLeavesOutAll, RingsRepeated,
    * BoundaryEnclosesNothing (reasons: NothingInRing, NothingBetweenRings, BoundaryElsewhere),
    * StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, ArraysLeftOut, OnOneRank (with a

@@ -24,7 +24,7 @@ struct Place
 {
   vtkDataObject* Input;
   std::vector<vtkPolyData*> Outputs;
-  std::string Name; ///< for messages: 'Block 2 ("north")'; empty where the input is no composite
+  std::string Name; ///< for messages: 'Block 2 ("north")'; empty where the input is not a composite
   /**
    * Of the block; the partitions of a vtkPartitionedDataSet have the same. On one rank each of them
    * is a surface of its own; on several, they are the parts of one.
@@ -58,7 +58,7 @@ std::vector<Place> ListPlaces(vtkDataObject* input, vtkInformationVector* output
  * A second input: itself, or the data sets of a composite in one.
  * @param[in] name  what messages call it: "boundary"
  * @return nullptr if there is none
- * @throws Error when a data set is no vtkPolyData
+ * @throws Error when a data set is not a vtkPolyData
  */
 vtkSmartPointer<vtkPolyData> JoinBlocks(vtkDataObject* input, const std::string& name);
 

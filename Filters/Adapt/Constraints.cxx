@@ -15,12 +15,11 @@
 namespace elevation
 {
 
-ConstraintLines ToLines(
-  vtkPolyData* source, const PointsOfDataSet& points, const Progress& progress)
+ConstraintLines ToLines(vtkPolyData* source, const DataSetPoints& points, const Progress& progress)
 {
   ConstraintLines lines;
   lines.Points = points.View;
-  ForEachLine(source, "constraints", progress, [&](const LineOfDataSet& line) {
+  ForEachLine(source, "constraints", progress, [&](const DataSetLine& line) {
     lines.Vertices.insert(lines.Vertices.end(), line.Ids, line.Ids + line.Size);
     lines.Offsets.push_back(static_cast<Index>(lines.Vertices.size()));
     lines.IsClosed.push_back(line.IsPolygon);

@@ -20,8 +20,7 @@ namespace elevation
 {
 
 /** The lines and polygons of the constraints; @a points must outlive them. */
-ConstraintLines ToLines(
-  vtkPolyData* source, const PointsOfDataSet& points, const Progress& progress);
+ConstraintLines ToLines(vtkPolyData* source, const DataSetPoints& points, const Progress& progress);
 
 /** Warns of a given lattice, which lines do not keep to. */
 void WarnOfLattice(const DelaunayOptions& options, std::vector<Message>& warnings);

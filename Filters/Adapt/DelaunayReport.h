@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * What vtkGridDelaunay2D is told by its properties, and tells in the field data of its output.
- * Private to the module.
+ * Checks the options of vtkGridDelaunay2D, and reports the triangulation in the field data of its
+ * output. Private to the module.
  */
 #ifndef DelaunayReport_h
 #define DelaunayReport_h
@@ -17,7 +17,9 @@ namespace elevation
 /** @throws Error naming a property that cannot be used, or two that exclude each other */
 void CheckOptions(const DelaunayOptions& options);
 
-/** Tells points that are hidden, and so had no place, from those that are not finite. */
+/**
+ * Marks unused points that are hidden, and so had no place, apart from those that are not finite.
+ */
 void NameHidden(vtkUnsignedCharArray* marks, Triangulation& triangulation);
 
 /** Adds the field data on points, lines and lattice. */

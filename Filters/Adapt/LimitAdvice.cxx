@@ -23,7 +23,7 @@ void WarnOfNoTriangle(vtkIdType points, std::vector<Message>& warnings)
   }
 }
 
-Message AdviceOnLimit(double limit, const EffectOfLimit& effect)
+Message AdviceOnLimit(double limit, const LimitEffect& effect)
 {
   const Message what = MakeMessage<sentences::FewTriangles>(limit, effect.Missing, effect.Vertices);
   return effect.HasLengths

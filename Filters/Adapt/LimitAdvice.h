@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * What is told where a triangulation has no triangle, or a MaximumEdgeLength leaves few. Private to
- * the module.
+ * Explains why a triangulation has no triangle, and advises a MaximumEdgeLength where the given one
+ * leaves few. Private to the module.
  */
 #ifndef LimitAdvice_h
 #define LimitAdvice_h
@@ -22,7 +22,7 @@ namespace elevation
 {
 
 /** What a limit leaves, and how long edges are without it. */
-struct EffectOfLimit
+struct LimitEffect
 {
   vtkIdType Vertices = 0;
   vtkIdType Missing = 0; ///< of these, without a triangle
@@ -48,10 +48,10 @@ inline vtkIdType PlaceOfQuantile(double part, vtkIdType count)
 void WarnOfNoTriangle(vtkIdType points, std::vector<Message>& warnings);
 
 /** That most points are without a triangle, and which limit would keep them. */
-Message AdviceOnLimit(double limit, const EffectOfLimit& effect);
+Message AdviceOnLimit(double limit, const LimitEffect& effect);
 
 /** Of triangles without a limit. */
-struct LengthsOfEdges
+struct EdgeMeasures
 {
   std::vector<double> Edges;  ///< three of each triangle
   std::vector<double> Limits; ///< of each vertex, the least that keeps a triangle; maybe infinite
@@ -59,10 +59,10 @@ struct LengthsOfEdges
 
 /** @param[in] placeOf  the place of a vertex */
 template <typename PlaceOf>
-LengthsOfEdges MeasureEdges(const Buffer<Index>& triangles, std::size_t numberOfVertices,
+EdgeMeasures MeasureEdges(const Buffer<Index>& triangles, std::size_t numberOfVertices,
   const PlaceOf& placeOf, const Progress& progress)
 {
-  LengthsOfEdges lengths;
+  EdgeMeasures lengths;
   lengths.Edges.reserve(triangles.size());
   lengths.Limits.assign(numberOfVertices, std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < triangles.size(); i += 3)

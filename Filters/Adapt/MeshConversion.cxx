@@ -75,9 +75,9 @@ vtkSmartPointer<vtkDataArray> WithoutHidden(vtkDataArray* coordinates, vtkUnsign
   return shown;
 }
 
-PointsOfDataSet ViewPoints(vtkPointSet* input)
+DataSetPoints ViewPoints(vtkPointSet* input)
 {
-  PointsOfDataSet points;
+  DataSetPoints points;
   const vtkIdType count = input->GetNumberOfPoints();
   if (count == 0)
   {
@@ -278,7 +278,7 @@ bool AreMultiplesOfThree(vtkDataArray* offsets, vtkIdType count)
   return i > count;
 }
 
-/** What a message about a corner that is no point says. */
+/** What a message about a corner that is not a point says. */
 struct NoPoint
 {
   vtkIdType FirstCell;
@@ -317,7 +317,7 @@ void ConvertIds(vtkDataArray* ids, Buffer<Index>& corners, const NoPoint& toBlam
 }
 } // namespace
 
-TrianglesOfDataSet ViewTriangles(vtkPolyData* input)
+DataSetTriangles ViewTriangles(vtkPolyData* input)
 {
   if (input->GetNumberOfStrips() > 0)
   {
@@ -349,7 +349,7 @@ TrianglesOfDataSet ViewTriangles(vtkPolyData* input)
       }
     }
   }
-  TrianglesOfDataSet triangles;
+  DataSetTriangles triangles;
   triangles.Points = ViewPoints(input);
   triangles.View.Points = triangles.Points.View;
   triangles.View.Count = static_cast<Index>(count);
@@ -374,7 +374,7 @@ void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress, int thread
 }
 
 void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& progress,
-  const std::function<void(const LineOfDataSet&)>& visit)
+  const std::function<void(const DataSetLine&)>& visit)
 {
   if (input->GetNumberOfStrips() > 0)
   {
@@ -385,7 +385,7 @@ void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& pr
   const vtkIdType numberOfPoints = input->GetNumberOfPoints();
   const std::size_t count = static_cast<std::size_t>(input->GetNumberOfCells()) + 1;
   vtkIdType sum = 0;
-  LineOfDataSet line{ nullptr, 0, false, input->GetNumberOfVerts() };
+  DataSetLine line{ nullptr, 0, false, input->GetNumberOfVerts() };
   for (vtkCellArray* cells : { input->GetLines(), input->GetPolys() })
   {
     line.IsPolygon = cells == input->GetPolys();

@@ -22,25 +22,25 @@ namespace elevation
 {
 
 /** Points of a data set as the kernel reads them; Owner keeps the memory alive. */
-struct PointsOfDataSet
+struct DataSetPoints
 {
   PointView View;
   vtkSmartPointer<vtkDataArray> Owner;
 };
 
 /**
- * Coordinates in which points with the mark of hidden ones are NaN, so that nothing uses them; the array
- * itself if there is none. @param[in] marks  nullptr: none
+ * Coordinates in which points with the mark of hidden ones are NaN, so that nothing uses them; the
+ * array itself if there is none. @param[in] marks  nullptr: none
  */
 vtkSmartPointer<vtkDataArray> WithoutHidden(
   vtkDataArray* coordinates, vtkUnsignedCharArray* marks);
 
 /**
- * Views float and double points in place; any other type is converted to double. Hidden points have no
- * place.
+ * Views float and double points in place; any other type is converted to double. Hidden points have
+ * no place.
  * @throws Error when there are more points than the kernel's Index holds.
  */
-PointsOfDataSet ViewPoints(vtkPointSet* input);
+DataSetPoints ViewPoints(vtkPointSet* input);
 
 /**
  * Checks that every point (cell) array has as many tuples as there are points (cells): filters rely
@@ -53,16 +53,16 @@ void CheckPointArrays(vtkPointSet* input, const std::string& owner = "");
 void CheckArrays(vtkPolyData* input, const std::string& owner = "");
 
 /**
- * A data set without cells that are marked as hidden or have a point that is, as VTK takes them; itself
- * if there is none. @throws Error as CheckArrays() where there are marks of hidden ones
+ * A data set without cells that are marked as hidden or have a point that is, as VTK takes them;
+ * itself if there is none. @throws Error as CheckArrays() where there are marks of hidden ones
  */
 vtkSmartPointer<vtkPolyData> WithoutHiddenCells(vtkPolyData* input);
 
 /** Triangles of a polydata as the kernel reads them; Points and Converted hold the memory. */
-struct TrianglesOfDataSet
+struct DataSetTriangles
 {
   TriangleList View;
-  PointsOfDataSet Points;
+  DataSetPoints Points;
   Buffer<Index> Converted; ///< ids, where they are not of 32 bits; those are viewed in place
 };
 
@@ -73,13 +73,13 @@ struct TrianglesOfDataSet
  * @throws Error naming the cell when it is not a triangle or its cell array is invalid; also when
  *         there are triangle strips. The kernel checks that points exist.
  */
-TrianglesOfDataSet ViewTriangles(vtkPolyData* input);
+DataSetTriangles ViewTriangles(vtkPolyData* input);
 
 /** The triangles as a mesh. @throws Error as ViewTriangles() and MeshOf() */
 void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress = Progress(), int threads = 1);
 
 /** A line or polygon: its point ids, which all exist, and their number. */
-struct LineOfDataSet
+struct DataSetLine
 {
   const vtkIdType* Ids;
   vtkIdType Size;
@@ -94,7 +94,7 @@ struct LineOfDataSet
  *         there are triangle strips, or more point ids than an Index can count
  */
 void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& progress,
-  const std::function<void(const LineOfDataSet&)>& visit);
+  const std::function<void(const DataSetLine&)>& visit);
 
 /** Data sets in one, as vtkAppendPolyData; a single one itself. @throws Error at invalid cells */
 vtkSmartPointer<vtkPolyData> Append(const std::vector<vtkSmartPointer<vtkPolyData>>& parts);
@@ -169,9 +169,9 @@ struct NewValues
  * Passes all arrays of the input, extended by new tuples with the values of valuesOf(input array,
  * output array, progress), normals at unit length. A tuple without a value gets NaN, 0 or an empty
  * string; in arrays of ids, -1 in place of 0 (the largest number of an unsigned type). Original ids
- * (UsedPoints.h) have no values there. Ghost flags are 0. Global ids go on after the largest; where their type has no such number, they are treated
- * as other values, and no longer marked as global ids. Without new tuples, the input's own arrays
- * are passed.
+ * (UsedPoints.h) have no values there. Ghost flags are 0. Global ids go on after the largest; where
+ * their type has no such number, they are treated as other values, and no longer marked as global
+ * ids. Without new tuples, the input's own arrays are passed.
  */
 void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSetAttributes* output,
   const Progress& progress,

@@ -26,7 +26,7 @@ namespace elevation
 
 namespace
 {
-constexpr const char* NameOfHoles = "HoleId";
+constexpr const char* HoleIdName = "HoleId";
 // Of FillStatus and Interpolation.
 constexpr const char* StatusNames[] = { "filled", "too large", "too many edges", "failed",
   "replaced", "cut out" };
@@ -169,7 +169,7 @@ void PassCells(vtkPolyData* input, const Mesh& mesh, const std::vector<Index>& k
 Index NextHole(vtkPolyData* input)
 {
   auto* const holes =
-    vtkIdTypeArray::SafeDownCast(input->GetCellData()->GetAbstractArray(NameOfHoles));
+    vtkIdTypeArray::SafeDownCast(input->GetCellData()->GetAbstractArray(HoleIdName));
   Index next = 0;
   for (vtkIdType i = 0; holes && i < holes->GetNumberOfValues(); ++i)
   {
@@ -182,7 +182,8 @@ Index NextHole(vtkPolyData* input)
 namespace
 {
 /**
- * What filling has said of tuples of the input before, in the array of this name and type, or one value.
+ * What filling has said of tuples of the input before, in the array of this name and type, or one
+ * value.
  * @param[in] sourceOf  the tuple of the input that tuple i is
  */
 template <typename Array, typename Value, typename SourceOf>
@@ -231,7 +232,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   PassCells(input, mesh, kept, patches, SubProgress(progress, 0.7, 0.9), output);
   Report(progress, 0.9);
   vtkNew<vtkIdTypeArray> holeIds;
-  holeIds->SetName(NameOfHoles);
+  holeIds->SetName(HoleIdName);
   const vtkIdType first = FirstPolygon(input);
   const vtkIdType ofInput = first + static_cast<vtkIdType>(kept.size());
   holeIds->SetNumberOfTuples(ofInput + patches.NumberOfTriangles());
@@ -260,7 +261,7 @@ void MakeReport(
     output->GetCellData()->AddArray(array);
   };
   vtkIdType id = patches.FirstNumber;
-  add(NameOfHoles, vtkNew<vtkIdTypeArray>().Get(), [&id](const HoleReport&) { return id++; });
+  add(HoleIdName, vtkNew<vtkIdTypeArray>().Get(), [&id](const HoleReport&) { return id++; });
   add("Status", vtkNew<vtkUnsignedCharArray>().Get(),
     [](const HoleReport& report) { return static_cast<unsigned char>(report.Status); });
   add("StatusName", vtkNew<vtkStringArray>().Get(),
@@ -294,7 +295,7 @@ void MakeReport(
   PassRings(rims, input, progress, output);
 }
 
-vtkIdType CountOfFilled(const FillResult& patches)
+vtkIdType CountFilled(const FillResult& patches)
 {
   return std::count_if(patches.Reports.begin(), patches.Reports.end(), [](const HoleReport& hole) {
     return hole.Status == FillStatus::Filled || hole.Status == FillStatus::Replaced;
@@ -306,7 +307,7 @@ void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& o
   for (vtkPolyData* output : outputs)
   {
     AddCount(output->GetFieldData(), "NumberOfHoles", patches.Found.Count());
-    AddCount(output->GetFieldData(), "NumberOfFilledHoles", CountOfFilled(patches));
+    AddCount(output->GetFieldData(), "NumberOfFilledHoles", CountFilled(patches));
   }
 }
 

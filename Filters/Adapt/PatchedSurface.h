@@ -35,7 +35,9 @@ std::vector<Values> AttributesOf(vtkPointData* pointData);
 /** Whether the output has float points, so that new points must be rounded to float. */
 bool HasFloatPoints(vtkPolyData* input);
 
-/** The number of the next hole: those filled before have lower ones, in the array HoleId of cells. */
+/**
+ * The number of the next hole: those filled before have lower ones, in the array HoleId of cells.
+ */
 Index NextHole(vtkPolyData* input);
 
 /** Output 0. */
@@ -50,7 +52,7 @@ void MakeReport(
 std::vector<Message> WarningsOf(const FillResult& patches);
 
 /** How many holes are filled. */
-vtkIdType CountOfFilled(const FillResult& patches);
+vtkIdType CountFilled(const FillResult& patches);
 
 /** Adds the counts to the field data of all outputs. */
 void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& outputs);

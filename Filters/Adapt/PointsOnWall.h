@@ -5,7 +5,8 @@
  * Whether points lie on a wall, where a height above x,y makes no surface. Private to the module.
  *
  * A sample of the points is enough, without nulls and blunders, since a few of these would turn the
- * plane. A survey along one line or in a corridor is no wall: along the plane it is wide one way only.
+ * plane. A survey along one line or in a corridor is not a wall: along the plane it is wide one way
+ * only.
  */
 #ifndef PointsOnWall_h
 #define PointsOnWall_h

@@ -32,7 +32,7 @@ vtkSmartPointer<vtkPoints> Converted(vtkPoints* points, int type)
 /** Checks that each triangle turns as it did, and that its corners are finite. */
 void CheckTurns(vtkPolyData* rounded, const PointView& before)
 {
-  const TrianglesOfDataSet triangles = ViewTriangles(rounded);
+  const DataSetTriangles triangles = ViewTriangles(rounded);
   const PointView& after = triangles.View.Points;
   const auto isFinite = [&after](Index corner) {
     const Point2 p = after.At(corner);
@@ -89,7 +89,7 @@ void RoundPoints(const std::vector<vtkPolyData*>& outputs)
     {
       continue;
     }
-    const PointsOfDataSet view = ViewPoints(output);
+    const DataSetPoints view = ViewPoints(output);
     vtkSmartPointer<vtkPoints>& after = rounded[before];
     after = after ? after : Converted(before, VTK_FLOAT);
     output->SetPoints(after);

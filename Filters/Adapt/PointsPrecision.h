@@ -4,9 +4,9 @@
  * @file
  * The type of coordinates: OutputPointsPrecision of the filters. Private to the module.
  *
- * It follows from the inputs' types and the properties, never from the values. Work that adds points
- * on given lines is done in double precision, as rounding would move them off the lines; so the
- * inputs are converted before it, and outputs in single precision are rounded after it.
+ * It follows from the inputs' types and the properties, never from the values. Work that adds
+ * points on given lines is done in double precision, as rounding would move them off the lines; so
+ * the inputs are converted before it, and outputs in single precision are rounded after it.
  */
 #ifndef PointsPrecision_h
 #define PointsPrecision_h
@@ -20,7 +20,7 @@
 namespace elevation
 {
 
-/** @throws Error if it is no vtkAlgorithm::DesiredOutputPrecision */
+/** @throws Error if it is not a vtkAlgorithm::DesiredOutputPrecision */
 void CheckPrecision(int precision);
 
 /**

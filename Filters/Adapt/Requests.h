@@ -28,8 +28,8 @@ void EndWithError(vtkAlgorithm* filter, vtkInformationVector* outputs,
   const std::exception& failure, vtkStringArray* messages);
 
 /**
- * What ProcessRequest returns after an error that has been reported: 0. The line that the executive
- * adds then, which tells the user nothing, is kept from the output window; observers of the
+ * What ProcessRequest returns after an error that has been reported: 0. The executive then adds a
+ * line that does not help the user; it is kept from the output window, but observers of the
  * executive get it. In ParaView it is 1: after a request that has failed, ParaView 5.11 never
  * updates the picture of this output again.
  */

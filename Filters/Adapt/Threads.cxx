@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The threads of the kernel are those of vtkSMPTools, as the user has set it up: neither its backend nor
-// its number of threads is changed, not even for a while, as other pipelines may be at work.
+// The threads of the kernel are those of vtkSMPTools, as the user has set it up: neither its
+// backend nor its number of threads is changed, not even for a while, as other pipelines may be at
+// work.
 #include "Kernel/Base/Base.h"
 
 #include "vtkSMPTools.h"

@@ -40,9 +40,9 @@ void CheckOptions(const TrimOptions& options)
 
 BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress, const std::string& name)
 {
-  const PointsOfDataSet points = ViewPoints(boundary);
+  const DataSetPoints points = ViewPoints(boundary);
   BoundaryLines lines;
-  ForEachLine(boundary, name, progress, [&](const LineOfDataSet& line) {
+  ForEachLine(boundary, name, progress, [&](const DataSetLine& line) {
     for (vtkIdType i = 0; i < line.Size; ++i)
     {
       const Index id = static_cast<Index>(line.Ids[i]);
@@ -67,7 +67,7 @@ vtkIdType SplitSurface(
 {
   vtkNew<vtkPolyData> before;
   before->ShallowCopy(surface);
-  const TrianglesOfDataSet triangles = ViewTriangles(before);
+  const DataSetTriangles triangles = ViewTriangles(before);
   TrimOptions options;
   options.ReturnParents = false;
   options.NumberOfThreads = threads;
@@ -190,7 +190,7 @@ void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBounda
   {
     return;
   }
-  std::unordered_map<Point2, double, HashOfPoint> elevations;
+  std::unordered_map<Point2, double, PointHash> elevations;
   for (std::size_t i = 0; i < lines.Elevations.size(); ++i)
   {
     elevations.emplace(lines.Points.Places[i], lines.Elevations[i]);

@@ -77,7 +77,7 @@ void PassTrimmedPoints(
 void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool arePieces,
   const Progress& progress, vtkPolyData* output);
 
-/** What the filter tells of its work. */
+/** The counts that the filter reports. */
 struct TrimCounts
 {
   TrimCounts() = default;

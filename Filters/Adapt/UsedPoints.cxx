@@ -88,7 +88,7 @@ vtkSmartPointer<vtkPointSet> WithOriginalIds(vtkPointSet* input, vtkIdType first
 std::vector<char> FlagUsed(vtkPolyData* surface)
 {
   std::vector<char> areUsed(static_cast<std::size_t>(surface->GetNumberOfPoints()), 0);
-  const TrianglesOfDataSet triangles = ViewTriangles(surface);
+  const DataSetTriangles triangles = ViewTriangles(surface);
   std::for_each(triangles.View.Corners, triangles.View.Corners + 3 * triangles.View.Count,
     [&](Index corner) { areUsed[corner] = 1; });
   for (vtkCellArray* const cells : { surface->GetVerts(), surface->GetLines() })
@@ -129,7 +129,7 @@ void KeepFlagged(
     return;
   }
   const vtkSmartPointer<vtkPolyData> points = ChosenPoints(surface, kept, progress);
-  const TrianglesOfDataSet triangles = ViewTriangles(surface);
+  const DataSetTriangles triangles = ViewTriangles(surface);
   Buffer<Index> corners;
   corners.Resize(3 * static_cast<std::size_t>(triangles.View.Count));
   std::transform(triangles.View.Corners, triangles.View.Corners + corners.size(), corners.begin(),

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * A surface with the points that its cells use alone, and where these are from. Private to the module.
+ * A surface with the points that its cells use alone, and where these are from. Private to the
+ * module.
  */
 #ifndef UsedPoints_h
 #define UsedPoints_h
@@ -18,12 +19,14 @@
 namespace elevation
 {
 
-/** Whether it is the array OriginalPointIds: which points of the first input those of a surface are. */
+/**
+ * Whether it is the array OriginalPointIds: which points of the first input those of a surface are.
+ */
 bool IsOriginalIds(vtkAbstractArray* array);
 
 /**
- * An input whose points have original ids: the input itself, if it has them from a filter before; else
- * they are its global ids, or else its places.
+ * An input whose points have original ids: the input itself, if it has them from a filter before;
+ * else they are its global ids, or else its places.
  * @param[in] first  place of the first point
  */
 vtkSmartPointer<vtkPointSet> WithOriginalIds(vtkPointSet* input, vtkIdType first);
@@ -31,7 +34,9 @@ vtkSmartPointer<vtkPointSet> WithOriginalIds(vtkPointSet* input, vtkIdType first
 /** One flag a point: whether a cell has it. */
 std::vector<char> FlagUsed(vtkPolyData* surface);
 
-/** Lets the list of unused points in the field data, which is a surface's own, name original ids. */
+/**
+ * Lets the list of unused points in the field data, which is a surface's own, name original ids.
+ */
 void NameUnusedByOriginalIds(vtkPolyData* surface);
 
 /** Leaves only the points with a flag, in their order; cells have no others. */

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The classes of VTK that headers name without including them, in the namespace that VTK was built with.
- * Private to the module.
+ * The classes of VTK that headers name without including them, in the namespace that VTK was built
+ * with. Private to the module.
  */
 #ifndef VTKClasses_h
 #define VTKClasses_h

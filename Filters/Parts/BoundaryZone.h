@@ -69,7 +69,7 @@ public:
   bool Trim(const BoundaryLines& boundary, const TrimOptions& options);
 
   /**
-   * The same along the outline, for the triangles of FindPartOfOutline(). Their states and the
+   * The same along the outline, for the triangles of FindOutlinePart(). Their states and the
    * spacings at the points are in the field data of each part: see AddKnown().
    * @param[in] innerPoints  the sum of all parts
    * @param[in] triangles    of the mesh
@@ -99,7 +99,7 @@ private:
   std::vector<Index> FirstTriangles; // of each part, and the number of all
   std::unique_ptr<CommonPoints> Common;
   vtkSmartPointer<vtkPolyData> Whole;
-  TrianglesOfDataSet Triangles;   // of the whole
+  DataSetTriangles Triangles;     // of the whole
   vtkNew<vtkPolyData> Points;     // of the whole, and those inserted
   std::vector<BorderEdge> Border; // of the mesh, if a boundary is given
   Trimmed Sides;

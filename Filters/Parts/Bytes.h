@@ -86,7 +86,7 @@ struct FieldsOf;
 
 /**
  * Packs and unpacks values of any kind: plain ones, texts, messages, structs with FieldsOf, and
- * lists of these. A value tells where it ends.
+ * lists of these. Each value marks its own end.
  */
 struct AnyValue
 {

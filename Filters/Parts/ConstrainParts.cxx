@@ -48,7 +48,7 @@ public:
   void ShareNear();
   void Cut();
   void AddPoints();
-  LinesOfParts Result() const;
+  SharedLines Result() const;
 
 private:
   Progress Fraction(double begin, double end) const
@@ -63,10 +63,10 @@ private:
   const Cuts& Plane;
   const DelaunayOptions& Options;
   const Progress& Monitor;
-  PointsOfDataSet SourcePoints;
+  DataSetPoints SourcePoints;
   ConstraintLines Given;
   PointTable Near; // those of this rank; then of all ranks, by their ids
-  std::vector<PlaceInPart> PlacesOfNear, PlacesOfAdded;
+  std::vector<PlaceInPart> NearPlaces, AddedPlaces;
   vtkIdType LargestId = -1;
   LinePieces Pieces;
 };
@@ -80,7 +80,7 @@ void AddedLines::Read()
   });
 }
 
-/** What one look at each part tells: where points are, and which are near lines. */
+/** Looks at each part once: where points are, and which are near lines. */
 void AddedLines::ListNear(std::vector<Message>& warnings)
 {
   Box box;
@@ -101,12 +101,12 @@ void AddedLines::ListNear(std::vector<Message>& warnings)
       const Bytes packed = rows.Pack(std::vector<vtkIdType>(near.begin(), near.end()));
       this->Near.Unpack(&packed, 1);
       std::transform(
-        near.begin(), near.end(), std::back_inserter(this->PlacesOfNear), [part](Index place) {
+        near.begin(), near.end(), std::back_inserter(this->NearPlaces), [part](Index place) {
           return PlaceInPart{ part, place };
         });
     });
   });
-  box = BoxOfAll(this->All, box);
+  box = JoinBoxes(this->All, box);
   this->All.Agree([&]() { CheckLines(this->Given, box, warnings); });
 }
 
@@ -119,7 +119,7 @@ void AddedLines::ShareNear()
     std::vector<vtkIdType> all(this->Near.Count());
     std::iota(all.begin(), all.end(), vtkIdType(0));
     std::generate(packed.begin(), packed.end(), [&]() { return this->Near.Pack(all); });
-    for (const PlaceInPart& at : this->PlacesOfNear)
+    for (const PlaceInPart& at : this->NearPlaces)
     {
       places.insert(places.end(), { at.Part, at.Place });
     }
@@ -137,10 +137,10 @@ void AddedLines::ShareNear()
     std::sort(order.begin(), order.end(),
       [this](vtkIdType a, vtkIdType b) { return this->Near.Ids[a] < this->Near.Ids[b]; });
     this->Near.Choose(order);
-    this->PlacesOfNear.clear();
+    this->NearPlaces.clear();
     for (const vtkIdType i : order)
     {
-      this->PlacesOfNear.push_back({ static_cast<int>(places[2 * i]), places[2 * i + 1] });
+      this->NearPlaces.push_back({ static_cast<int>(places[2 * i]), places[2 * i + 1] });
     }
   });
 }
@@ -197,8 +197,8 @@ void AddedLines::AddPoints()
     for (const AddedPoint& point : this->Pieces.Added)
     {
       const int owner = this->Plane.OwnerOf(point.Position);
-      added[owner].push_back(ofNear + static_cast<vtkIdType>(this->PlacesOfAdded.size()));
-      this->PlacesOfAdded.push_back({ owner, counts[owner]++ });
+      added[owner].push_back(ofNear + static_cast<vtkIdType>(this->AddedPlaces.size()));
+      this->AddedPlaces.push_back({ owner, counts[owner]++ });
     }
     for (const auto& ofPart : added)
     {
@@ -208,17 +208,17 @@ void AddedLines::AddPoints()
       }
     }
     std::partial_sum(counts.begin(), counts.end(), common.Bases.begin() + 1);
-    this->Store.FirstIdOfLines = this->LargestId + 1;
+    this->Store.FirstLineId = this->LargestId + 1;
   });
 }
 
-LinesOfParts AddedLines::Result() const
+SharedLines AddedLines::Result() const
 {
-  LinesOfParts lines;
+  SharedLines lines;
   const Index near = static_cast<Index>(this->Near.Count());
-  const PointsOfDataSet places = ViewOf(this->Near);
+  const DataSetPoints places = ViewOf(this->Near);
   const auto numberOf = [&](Index id) {
-    const PlaceInPart& at = id < near ? this->PlacesOfNear[id] : this->PlacesOfAdded[id - near];
+    const PlaceInPart& at = id < near ? this->NearPlaces[id] : this->AddedPlaces[id - near];
     return this->Store.FirstOf(at.Part) + at.Place;
   };
   const auto placeOf = [&](Index id) {
@@ -264,8 +264,8 @@ void ForEachTriangle(
  * The pieces that are edges of no part's triangles; the same on all ranks.
  * @param[out] extents  of the triangles of the parts of this rank
  */
-std::vector<std::size_t> ListMissing(PartStore& store, const LinesOfParts& lines,
-  const Progress& progress, std::map<int, Box>& extents)
+std::vector<std::size_t> ListMissing(
+  PartStore& store, const SharedLines& lines, const Progress& progress, std::map<int, Box>& extents)
 {
   std::vector<vtkIdType> isEdge(lines.Pieces.size(), 0);
   std::map<std::array<GlobalId, 2>, std::size_t> pieces;
@@ -343,7 +343,7 @@ void SendMeeting(
 
 /** Recovers the pieces. @return what has become of the triangles of each part */
 ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
-  const LinesOfParts& lines, const std::vector<std::size_t>& missing, const Progress& progress)
+  const SharedLines& lines, const std::vector<std::size_t>& missing, const Progress& progress)
 {
   std::map<GlobalId, Point2> corners;
   for (const SentTriangle& triangle : sent)
@@ -402,7 +402,7 @@ ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
 }
 } // namespace
 
-LinesOfParts AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
+SharedLines AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
   const DelaunayOptions& options, const Progress& progress, std::vector<Message>& warnings)
 {
   AddedLines lines(store, source, plane, options, progress);
@@ -411,12 +411,12 @@ LinesOfParts AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
   lines.ShareNear();
   lines.Cut();
   lines.AddPoints();
-  LinesOfParts result;
+  SharedLines result;
   store.Crew.All().Agree([&]() { result = lines.Result(); });
   return result;
 }
 
-bool RecoverLines(PartStore& store, const LinesOfParts& lines, const Progress& progress)
+bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& progress)
 {
   Engine& crew = store.Crew;
   std::map<int, Box> extents;

@@ -4,17 +4,17 @@
  * @file
  * Lines that become edges of a surface in parts (Engine.h). Private to the module.
  *
- * In: parts with their points, and all lines on all ranks. Out: parts with the points that lines add,
- * and, when all is triangulated, what becomes of triangles that lines cross.
+ * In: parts with their points, and all lines on all ranks. Out: parts with the points that lines
+ * add, and, when all is triangulated, what becomes of triangles that lines cross.
  *
  * The steps, around passes 2 to 5 of TriangulateParts.h:
  *   1. Each part lists its points that are on lines, or nearly so. All ranks get these, and cut the
- *      lines by them, all alike. So all know the points that the lines add, and each part gets those
- *      of its cell.
- *   2. Each part tells which pieces of the lines are edges of its triangles.
- *   3. The triangles that meet a piece that is no edge yet go to the first part, which recovers these
- *      pieces together. What has changed comes back to the parts that had it; it counts whenever a
- *      part is read. The corners of all these triangles may be asked for.
+ *      lines by them, all alike. So all know the points that the lines add, and each part gets
+ *      those of its cell.
+ *   2. Each part lists the pieces of the lines that are edges of its triangles.
+ *   3. The triangles that meet a piece that is not an edge yet go to the first part, which recovers
+ *      these pieces together. What has changed comes back to the parts that had it; it counts
+ *      whenever a part is read. The corners of all these triangles may be asked for.
  *
  * Cost: a part in files is read once in step 1, once in step 2, and once more in step 3 if it has a
  * triangle there. In memory are the lines and their pieces, the points near them, and in step 3 the
@@ -36,7 +36,7 @@ namespace elevation
 {
 
 /** The lines as all ranks know them. */
-struct LinesOfParts
+struct SharedLines
 {
   std::vector<std::array<GlobalId, 2>> Pieces; ///< numbers of their ends, the lower first
   std::vector<Ends> Places;                    ///< of the ends
@@ -50,14 +50,14 @@ struct LinesOfParts
  * @param[out] warnings  as of CheckLines()
  * @throws Error on all ranks, as on one; Aborted
  */
-LinesOfParts AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
+SharedLines AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
   const DelaunayOptions& options, const Progress& progress, std::vector<Message>& warnings);
 
 /**
  * Steps 2 and 3, on all ranks.
  * @return whether triangles have changed; then points of other parts have to be asked for anew
  */
-bool RecoverLines(PartStore& store, const LinesOfParts& lines, const Progress& progress);
+bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& progress);
 
 } // namespace elevation
 

@@ -94,8 +94,8 @@ void Inbox::Clear()
 }
 
 /*
- * Each part of this rank gets its boxes, one after another; files are named after box and part, so that
- * ranks may share a folder. No file is made before something is written.
+ * Each part of this rank gets its boxes, one after another; files are named after box and part, so
+ * that ranks may share a folder. No file is made before something is written.
  */
 Engine::Engine(const Ranks& ranks, int ownParts, const std::vector<std::string>& boxes,
   const std::string& folder)
@@ -122,8 +122,8 @@ Engine::Engine(const Ranks& ranks, int ownParts, const std::vector<std::string>&
 }
 
 /*
- * Firsts has the first part of each rank and does not fall; a rank without parts has that of the next
- * one. So of those that begin with the part, the last one has it.
+ * Firsts has the first part of each rank and does not fall; a rank without parts has that of the
+ * next one. So of those that begin with the part, the last one has it.
  */
 int Engine::RankOf(int part) const
 {
@@ -132,8 +132,8 @@ int Engine::RankOf(int part) const
 }
 
 /*
- * Parts share the progress evenly: cuts give all of them about as many points. An error ends the loop,
- * on other ranks where a step next reports progress.
+ * Parts share the progress evenly: cuts give all of them about as many points. An error ends the
+ * loop, on other ranks where a step next reports progress.
  */
 void Engine::ForEach(
   const Progress& progress, const std::function<void(int, const Progress&)>& step) const
@@ -188,7 +188,8 @@ void Engine::Send(int part, int box, Bytes&& stretch)
 
 /*
  * What goes to a rank is a list: first the labels, part, box and size of each message, then the
- * messages. Own ones go the same way, so that ranks come in their order; ExchangeLists() moves them.
+ * messages. Own ones go the same way, so that ranks come in their order; ExchangeLists() moves
+ * them.
  */
 void Engine::Deliver(const Progress& progress)
 {

@@ -6,24 +6,25 @@
  * module.
  *
  * A program for parts is a list of steps. In a step each part is worked on by itself, with what
- * others have sent it, and says what to send to which part; all that is sent in a step is there when
- * the next one begins. Parts have numbers, and the program knows nothing else of where they are:
+ * others have sent it, and says what to send to which part; all that is sent in a step is there
+ * when the next one begins. Parts have numbers, and the program knows nothing else of where they
+ * are:
  *   - one for each rank, in memory;
  *   - many for one process, in files, one of them in memory at a time;
  *   - many for each of several ranks, in files.
  * A rank holds parts with successive numbers, maybe none.
  *
  * What is sent to a part lies in one of its boxes until it is taken. Boxes are numbered, as the
- * program wants; those that have a name are files where parts are in files, the others are small and
- * always in memory. In a box, what ranks have sent is in their order, and what one rank has sent is
- * in the order of sending. So the same is found there whoever holds the parts, but for its order: a
- * program whose result depends on that sorts it.
+ * program wants; those that have a name are files where parts are in files, the others are small
+ * and always in memory. In a box, what ranks have sent is in their order, and what one rank has
+ * sent is in the order of sending. So the same is found there whoever holds the parts, but for its
+ * order: a program whose result depends on that sorts it.
  *
- * An error or an abort in a step on any rank ends it on all of them, as Ranks::Agree() says. Files go
- * with their box.
+ * An error or an abort in a step on any rank ends it on all of them, as Ranks::Agree() says. Files
+ * go with their box.
  *
- * Cost: what parts of the same rank send each other is moved, not copied, or appended to a file. For
- * other ranks there is one message for each thing that is sent, and a list of them.
+ * Cost: what parts of the same rank send each other is moved, not copied, or appended to a file.
+ * For other ranks there is one message for each thing that is sent, and a list of them.
  *
  * It is the model of DIY [Morozov & Peterka 2016]; Design.md says why it is not DIY.
  *

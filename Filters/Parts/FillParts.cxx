@@ -70,13 +70,13 @@ void FillParts::WithPart(int part, const Progress& progress, const Visit& visit)
 
 /*
  * A part is looked at once. The points on its border are kept meanwhile, as which of them are on
- * that of the surface is known only when all ranks have told their edges.
+ * that of the surface is known only when all ranks have sent their edges.
  */
 void FillParts::FindHoles(int partOfRims)
 {
-  this->PartOfRims = partOfRims;
+  this->RimsPart = partOfRims;
   std::vector<KnownPart> own(this->Crew.EndOwn() - this->Crew.FirstOwn());
-  EdgesOfParts edges;
+  PartEdges edges;
   Parts borders;
   this->Crew.ForEach(this->Fraction(0.0, 0.18), [&](int part, const Progress& progress) {
     this->WithPart(part, progress, [&](FilledPart& one, const Progress& reading) {
@@ -138,8 +138,8 @@ void FillParts::FindHoles(int partOfRims)
 }
 
 /**
- * A long triangle tells the points of a region how far the next line is, up to half of its height away
- * (Holes::Gaps).
+ * Finds from a long triangle how far the next line is from the points of a region, up to half of
+ * its height away (Holes::Gaps).
  */
 void FillParts::FindReaches()
 {
@@ -177,13 +177,13 @@ void FillParts::SendRims(Parts&& borders)
         }
       }
       points = chosen.empty() ? nullptr : ChosenPoints(points, chosen);
-      if (points && this->Crew.IsOwn(this->PartOfRims))
+      if (points && this->Crew.IsOwn(this->RimsPart))
       {
         this->OwnRims.push_back(points);
       }
       else if (points)
       {
-        this->Crew.Send(this->PartOfRims, Rims, PackData(points));
+        this->Crew.Send(this->RimsPart, Rims, PackData(points));
       }
       points = nullptr;
     }
@@ -199,8 +199,8 @@ void FillParts::Fill()
   }
   this->GroupHoles();
   this->FillAll();
-  this->ShareOfHoles(this->Whole.OfAll.Reports);
-  this->ShareOfHoles(this->Whole.HaveRoom);
+  this->ShareHoleValues(this->Whole.OfAll.Reports);
+  this->ShareHoleValues(this->Whole.HaveRoom);
   this->Whole.DropRegionsWithoutRoom();
   this->Whole.NumberNewPoints();
   for (const auto& [region, triangles] : this->LongTriangles)
@@ -386,7 +386,7 @@ SurroundedHoles& FillParts::HolesOf(int group, const Progress& progress)
 
 /** Hands to all ranks what each knows of the holes of its groups. */
 template <typename Value>
-void FillParts::ShareOfHoles(std::vector<Value>& values) const
+void FillParts::ShareHoleValues(std::vector<Value>& values) const
 {
   std::vector<Value> own;
   for (int group = this->GroupCrew->FirstOwn(); group < this->GroupCrew->EndOwn(); ++group)
@@ -419,7 +419,7 @@ void FillParts::FindQuotas(const Progress& progress)
       needs[holes.Numbers[i]] = found[i];
     }
   });
-  this->ShareOfHoles(needs);
+  this->ShareHoleValues(needs);
   this->All.Agree([&]() { CheckEffort(needs, this->Points, this->Whole.Options); });
   this->Whole.Quotas = QuotasFor(needs, this->Whole.Options.MaximumInsertedPoints);
 }
@@ -518,7 +518,7 @@ void FillParts::Pass(int part, const Progress& progress, vtkPolyData* output)
 void FillParts::PassRims(const Progress& progress, vtkPolyData* output)
 {
   Parts points = this->OwnRims;
-  this->Crew.At(this->PartOfRims, Rims).ForEach([&points](const Bytes& bytes) {
+  this->Crew.At(this->RimsPart, Rims).ForEach([&points](const Bytes& bytes) {
     points.push_back(UnpackData(bytes.data(), bytes.size()));
   });
   WriteRims(this->Whole, points, progress, output);

@@ -10,8 +10,8 @@
  * reports.
  *
  * The passes, each of which all ranks do at the same time:
- *   1. What is on the borders of parts tells all ranks the border of the surface, and they find the
- *      same holes (Holes.h).
+ *   1. All ranks find the border of the surface from the borders of the parts, and so the same
+ *      holes (Holes.h).
  *   2. The lattice of all points is looked for, each counted once.
  *   3. Each hole goes to a group of holes that are filled together. In memory a rank has one group:
  *      the largest hole goes first, to the rank with least work so far. In files a part has some:
@@ -118,7 +118,7 @@ private:
   void Surround(const std::vector<char>& areWaiting, const Progress& progress);
   SurroundedHoles& HolesOf(int group, const Progress& progress);
   template <typename Value>
-  void ShareOfHoles(std::vector<Value>& values) const;
+  void ShareHoleValues(std::vector<Value>& values) const;
   void FindQuotas(const Progress& progress);
   bool FillGroup(int group, const Progress& progress, std::vector<vtkIdType>& beyond);
   void FillAll();
@@ -127,7 +127,7 @@ private:
   const SurfaceParts::MakePart Make;
   Engine Crew; // of the parts
   const Ranks& All;
-  int PartOfRims = 0;
+  int RimsPart = 0;
   Parts OwnRims;       // if this rank has that part: points of its parts
   FilledPart InMemory; // the part of this rank, in memory
   std::vector<KnownPart> Known;
@@ -138,7 +138,7 @@ private:
   std::unique_ptr<Engine> GroupCrew; // whose parts they are
   SurroundedHoles Around;            // of the group that is worked on
   vtkIdType NewTriangles = 0;        // of this rank until all are filled
-  std::map<RegionOfPart, vtkIdType> LongTriangles; // of this rank's parts, in each region
+  std::map<PartRegion, vtkIdType> LongTriangles; // of this rank's parts, in each region
   bool AreMarked = true;             // whether any part has others' points
 };
 

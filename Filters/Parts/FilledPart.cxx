@@ -103,7 +103,7 @@ vtkIdType FilledPart::CountOfOwn() const
 
 PointView FilledPart::OwnPoints(Buffer<double>& kept) const
 {
-  const PointsOfDataSet points = ViewPoints(this->Input);
+  const DataSetPoints points = ViewPoints(this->Input);
   const std::vector<char> areOthers = this->AreOthers();
   for (Index i = 0; i < points.View.Count; ++i)
   {
@@ -170,7 +170,7 @@ vtkIdType FilledPart::LargestId() const
   return largest;
 }
 
-/** The input and the corners of others; of points that parts have in common, one is no ghost. */
+/** The input and the corners of others; of points that parts have in common, one is not a ghost. */
 vtkSmartPointer<vtkPolyData> FilledPart::WithCorners(bool areMarked, const Progress& progress) const
 {
   auto data = vtkSmartPointer<vtkPolyData>::New();

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * A part of a surface whose holes are filled (FillParts.h): what is read of it, and how it is written.
- * Private to the module.
+ * A part of a surface whose holes are filled (FillParts.h): what is read of it, and how it is
+ * written. Private to the module.
  */
 #ifndef FilledPart_h
 #define FilledPart_h
@@ -30,7 +30,8 @@ struct FilledPart
   SurroundedHoles Filled; ///< holes whose patches this part gets
 
   /**
-   * Reads the triangles, finds regions of long ones, and lists the points that other parts may have.
+   * Reads the triangles, finds regions of long ones, and lists the points that other parts may
+   * have.
    * @param[in] longest  edge of a triangle that is not long; 0: none is
    * @throws Error, as SharedPoints::Sort(); Aborted
    */

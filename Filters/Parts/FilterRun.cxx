@@ -43,7 +43,7 @@ const char* RequiredType(vtkAlgorithm* filter)
   return filter->GetInputPortInformation(0)->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), 0);
 }
 
-/** Where a block has been gathered, that is told, if there are cells or else a reason to tell. */
+/** Warns that a block has been gathered, if it has cells or there is another reason to warn. */
 void WarnOfGathering(Place* home, const Message& why)
 {
   if (home && (!why.IsEmpty() || home->Input->GetNumberOfElements(vtkDataObject::CELL) > 0))
@@ -69,8 +69,8 @@ bool IsCopy(vtkPolyData* surface, vtkIdType point)
 }
 
 /**
- * Removes the points that no cell has. A rank keeps its own that cells of another have, so that each
- * point still belongs to one. All ranks call it, those without an output with nullptr.
+ * Removes the points that no cell has. A rank keeps its own that cells of another have, so that
+ * each point still belongs to one. All ranks call it, those without an output with nullptr.
  */
 void KeepUsed(vtkPolyData* surface, const Ranks& ranks, const Progress& progress)
 {
@@ -297,8 +297,8 @@ void FilterRun::PrepareParts(
 }
 
 /**
- * Leaves points that cells have in the surfaces of a block, and rounds them where that is asked for;
- * of several ranks, all call it.
+ * Leaves points that cells have in the surfaces of a block, and rounds them where that is asked
+ * for; of several ranks, all call it.
  */
 void FilterRun::FinishOutputs(Block& block, const Ranks& ranks) const
 {

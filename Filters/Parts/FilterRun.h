@@ -34,7 +34,9 @@ struct Block
   std::vector<vtkPolyData*> Outputs; ///< of each port
   elevation::Progress Progress;
   std::vector<Message> Warnings; ///< to be reported
-  /** Why FilterRun::Spread wants it to be gathered, a {reason} of OnOneRank; none: it cannot say. */
+  /**
+   * Why FilterRun::Spread wants it to be gathered, a {reason} of OnOneRank; none: it cannot say.
+   */
   Message WhyGathered = Message();
 };
 
@@ -44,7 +46,7 @@ struct Block
  * Progress rises by the number of points of the blocks. When the body throws, the outputs of the
  * block are emptied. What it throws, and the warnings, are reported as one error and one warning of
  * the filter; these name the blocks of a composite. After an abort all outputs are empty, on all
- * ranks, and one warning tells so.
+ * ranks, and one warning says so.
  *
  * Where several ranks take part (Ranks), all of them meet here, whatever blocks each has: before
  * the blocks, to hand the second input to all, and to bring blocks that are spread over ranks to

@@ -27,7 +27,9 @@ struct HoleExtent
 
 std::vector<HoleExtent> ExtentsOf(const Holes& holes, const PointView& points);
 
-/** The rank of each hole: the largest first, to the one with least work. @param[in] can  have some */
+/**
+ * The rank of each hole: the largest first, to the one with least work. @param[in] can  have some
+ */
 std::vector<int> BalancedRanks(
   const std::vector<HoleExtent>& holes, const std::vector<vtkIdType>& can);
 

@@ -252,7 +252,7 @@ void JoinFieldData(const Parts& parts, const CommonPoints& points, vtkFieldData*
 }
 } // namespace
 
-void WarnOfLeft(
+void WarnOfLeftOut(
   const std::string& kind, const std::set<std::string>& left, std::vector<Message>& warnings)
 {
   std::string names;
@@ -281,7 +281,7 @@ vtkSmartPointer<vtkPolyData> Join(
   {
     data.push_back(part->GetPointData());
   }
-  WarnOfLeft(
+  WarnOfLeftOut(
     "point", JoinArrays(data, rows, points.Count(), copying, joined->GetPointData()), warnings);
   JoinFieldData(parts, points, joined->GetFieldData());
   if (kind == PartKind::Points)
@@ -306,7 +306,7 @@ vtkSmartPointer<vtkPolyData> Join(
   joined->SetVerts(JoinCells(parts, vertices, points, firstVertices, copying, count, rows));
   joined->SetLines(JoinCells(parts, lines, points, firstLines, copying, count, rows));
   joined->SetPolys(JoinCells(parts, polygons, points, firstPolygons, copying, count, rows));
-  WarnOfLeft("cell", JoinArrays(data, rows, count, copying, joined->GetCellData()), warnings);
+  WarnOfLeftOut("cell", JoinArrays(data, rows, count, copying, joined->GetCellData()), warnings);
   return joined;
 }
 

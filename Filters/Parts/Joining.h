@@ -40,7 +40,7 @@ vtkSmartPointer<vtkPolyData> Join(
   const Parts& parts, PartKind kind, const Progress& progress, std::vector<Message>& warnings);
 
 /** Adds a warning of arrays that are left out, if any. @param[in] kind  "point", say */
-void WarnOfLeft(
+void WarnOfLeftOut(
   const std::string& kind, const std::set<std::string>& left, std::vector<Message>& warnings);
 
 } // namespace elevation

@@ -50,8 +50,8 @@ struct ArrayMark
 
 /**
  * Makes the arrays of a data set such that VTK's communicators keep all values and their order: of
- * no attribute; where vtkIdType, which would be cut to 32 bits, of 64 bits; and none without values,
- * at which they stop reading field data.
+ * no attribute; where vtkIdType, which would be cut to 32 bits, of 64 bits; and none without
+ * values, at which they stop reading field data.
  * @return for each array its mark and its name
  */
 Bytes MarkArrays(vtkPolyData* data)

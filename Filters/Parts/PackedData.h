@@ -18,8 +18,8 @@ namespace elevation
 {
 
 /**
- * A data set as bytes, and back, by VTK's communicator. What that changes stays: the order of arrays
- * with names, their types, all their attributes, and the 64 bits of a vtkIdType.
+ * A data set as bytes, and back, by VTK's communicator. What that changes stays: the order of
+ * arrays with names, their types, all their attributes, and the 64 bits of a vtkIdType.
  * @throws Error
  */
 Bytes PackData(vtkPolyData* data);

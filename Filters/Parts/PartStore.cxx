@@ -17,8 +17,8 @@ const std::vector<std::string>& NamesOfBoxes()
   return names;
 }
 
-// Points that came twice go; so counts are known only when all are there. In files none can come twice
-// where ids are places, and nothing is read.
+// Points that came twice go; so counts are known only when all are there. In files none can come
+// twice where ids are places, and nothing is read.
 void PartStore::Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const Progress& progress)
 {
   this->Part.Own = PointTable(this->Part.Kinds);
@@ -254,7 +254,7 @@ SurfacePart PartStore::TakeWhole(int part, const Progress& progress)
   SurfacePart taken =
     this->Crew.IsInFiles() ? this->ReadWhole(part, progress) : std::move(this->Part);
   taken.AddedPoints = static_cast<Index>(std::count_if(taken.Own.Ids.begin(), taken.Own.Ids.end(),
-    [this](vtkIdType id) { return id >= this->FirstIdOfLines; }));
+    [this](vtkIdType id) { return id >= this->FirstLineId; }));
   return taken;
 }
 

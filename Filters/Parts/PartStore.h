@@ -8,9 +8,9 @@
  * In: packed rows of points, and what the passes of TriangulateParts.h find. Out: a part as
  * SurfacePart, its own points alone, or whole.
  *
- * In memory a rank has at most one part, which is there all the time. In files nothing of a part is in
- * memory between the steps: what comes for it lies in its boxes (Engine.h), and is put together anew
- * whenever it is asked for. The boxes:
+ * In memory a rank has at most one part, which is there all the time. In files nothing of a part is
+ * in memory between the steps: what comes for it lies in its boxes (Engine.h), and is put together
+ * anew whenever it is asked for. The boxes:
  *
  *   box        what is in it                          written by           read by
  *   OwnPoints  rows of points                         pass 1, lines        2, 6, for output
@@ -93,9 +93,9 @@ public:
    */
   void Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const Progress& progress);
 
-  /** Adds packed points of lines, with ids from FirstIdOfLines on; Part.Bases has to count them. */
+  /** Adds packed points of lines, with ids from FirstLineId on; Part.Bases has to count them. */
   void AddOwn(int part, Bytes&& rows);
-  vtkIdType FirstIdOfLines = std::numeric_limits<vtkIdType>::max(); ///< above all others
+  vtkIdType FirstLineId = std::numeric_limits<vtkIdType>::max(); ///< above all others
 
   GlobalId FirstOf(int part) const { return this->Part.Bases[part]; }
   GlobalId EndOf(int part) const { return this->Part.Bases[part + 1]; }
@@ -144,8 +144,8 @@ public:
   void ForgetOthers(int part);
 
   /**
-   * Does a step with a whole part: own points, triangles of its cell and of seams as lines have changed
-   * them, and the corners that these have in other parts; without a limit of edges.
+   * Does a step with a whole part: own points, triangles of its cell and of seams as lines have
+   * changed them, and the corners that these have in other parts; without a limit of edges.
    */
   template <typename Step>
   void WithWhole(int part, const Progress& progress, const Step& step)

@@ -26,7 +26,7 @@ using PointKey = std::array<std::int64_t, 3>;
 class PointKeys
 {
 public:
-  /** @param[in] byIds  the data set has global ids, and they tell */
+  /** @param[in] byIds  the data set has global ids, and points with the same id are the same */
   PointKeys(vtkPolyData* data, bool byIds);
   PointKey Of(vtkIdType point) const;
 

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 /*
- * Points come in two ways, which differ until they are sent. At once: the arrays stay VTK's until rows
- * of them are packed, and ranks may have different arrays, of which those are kept that all have. In
- * slices: rows are packed into files, which go as they are sent; as no rank can look at its points
- * again, all slices need the same arrays.
+ * Points come in two ways, which differ until they are sent. At once: the arrays stay VTK's until
+ * rows of them are packed, and ranks may have different arrays, of which those are kept that all
+ * have. In slices: rows are packed into files, which go as they are sent; as no rank can look at
+ * its points again, all slices need the same arrays.
  *
  * The samples differ too. At once, the number of points is known, and one point of each stretch of
- * some is taken, so that each part gets about 1,000, all of which all ranks get. In slices, a hash of
- * the place decides, and the sample is thinned whenever it is too large; it is the same however the
- * slices are cut.
+ * some is taken, so that each part gets about 1,000, all of which all ranks get. In slices, a hash
+ * of the place decides, and the sample is thinned whenever it is too large; it is the same however
+ * the slices are cut.
  */
 #include "PointSource.h"
 
@@ -54,7 +54,9 @@ vtkIdType PlaceInStretch(vtkIdType stretch, vtkIdType size)
   return static_cast<vtkIdType>((HashOf(stretch) >> 16) % static_cast<std::uint64_t>(size));
 }
 
-/** Whether slices have the same arrays; names of components and attributes are those of the last. */
+/**
+ * Whether slices have the same arrays; names of components and attributes are those of the last.
+ */
 bool AreSame(const std::vector<ArrayKind>& kinds, const std::vector<ArrayKind>& others)
 {
   return std::equal(kinds.begin(), kinds.end(), others.begin(), others.end(),
@@ -118,8 +120,8 @@ PointSource::PointSource(const Ranks& ranks, const std::string& folder)
 PointSource::~PointSource() = default;
 
 /**
- * The arrays of a slice; the others need the same. This rank alone decides, as others may have added
- * none yet.
+ * The arrays of a slice; the others need the same. This rank alone decides, as others may have
+ * added none yet.
  */
 void PointSource::TakeKinds(vtkPointSet* points)
 {
@@ -186,7 +188,9 @@ void PointSource::Add(vtkPointSet* points, const Progress& progress)
   this->Kept.clear();
 }
 
-/** A hash of its place tells whether a point is in the sample; of one too large each other goes. */
+/**
+ * A hash of its place decides whether a point is in the sample; of one too large each other goes.
+ */
 void PointSource::SampleStretch(const std::vector<vtkIdType>& places)
 {
   for (const vtkIdType at : places)
@@ -285,8 +289,8 @@ void PointSource::Read(
 }
 
 /**
- * A sample of points that come at once: one of each stretch of some, at a place that follows no rule, as
- * rows of a grid may be as long as a stretch.
+ * A sample of points that come at once: one of each stretch of some, at a place that follows no
+ * rule, as rows of a grid may be as long as a stretch.
  */
 std::vector<double> PointSource::SampleAtOnce(vtkIdType parts) const
 {
@@ -315,8 +319,8 @@ Cuts PointSource::CutPlane(int parts)
   std::vector<double> coordinates;
   if (this->IsInFile())
   {
-    // All ranks choose by the same mask, that of the one with most points: each point of all ranks is
-    // in the sample as likely as any other.
+    // All ranks choose by the same mask, that of the one with most points: each point of all ranks
+    // is in the sample as likely as any other.
     std::vector<double> mask = { static_cast<double>(this->SampleMask) };
     this->All.Maximum(mask);
     this->SampleMask = static_cast<std::uint64_t>(mask[0]);
@@ -345,8 +349,8 @@ Cuts PointSource::CutPlane(int parts)
 }
 
 /**
- * Sends the points that are kept, in their order; then there are none. Memory is given back as rows are
- * packed, part by part.
+ * Sends the points that are kept, in their order; then there are none. Memory is given back as rows
+ * are packed, part by part.
  */
 void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Progress& progress,
   std::vector<vtkIdType>& counts)
@@ -390,8 +394,8 @@ void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Pr
 }
 
 /*
- * Slice by slice, all ranks send and deliver together until none has a slice left. So no more than a
- * slice of each rank is in memory. Points that come at once are one slice.
+ * Slice by slice, all ranks send and deliver together until none has a slice left. So no more than
+ * a slice of each rank is in memory. Points that come at once are one slice.
  */
 Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, SurfacePart& common,
   std::vector<vtkIdType>& counts)

@@ -4,21 +4,21 @@
  * @file
  * Brings points, as they come, to the parts of the plane in which they lie. Private to the module.
  *
- * In: points of this rank with their arrays, all at once, or slice by slice where they do not fit into
- * memory. Out: cuts of the plane (Cuts.h), with a cell for each part, and the points of each cell with
- * its part.
+ * In: points of this rank with their arrays, all at once, or slice by slice where they do not fit
+ * into memory. Out: cuts of the plane (Cuts.h), with a cell for each part, and the points of each
+ * cell with its part.
  *
  * The passes:
  *   1. Slices are written to a file as they come; points that come at once stay where they are. A
  *      sample is kept.
  *   2. All ranks agree on the arrays and the numbers of their points.
- *   3. The samples of all ranks tell where to cut the plane.
- *   4. Slice by slice, each point goes to the part of its cell. What is not finite has no place in the
- *      plane and stays on its rank, spread evenly over the parts there. Points that are marked as
- *      another rank's (vtkDataSetAttributes::DUPLICATEPOINT) go nowhere.
+ *   3. The samples of all ranks decide where to cut the plane.
+ *   4. Slice by slice, each point goes to the part of its cell. What is not finite has no place in
+ *      the plane and stays on its rank, spread evenly over the parts there. Points that are marked
+ *      as another rank's (vtkDataSetAttributes::DUPLICATEPOINT) go nowhere.
  *
- * Cost: linear. 32 bytes a point, and the values of its arrays, are sent once, and written twice where
- * points come in slices.
+ * Cost: linear. 32 bytes a point, and the values of its arrays, are sent once, and written twice
+ * where points come in slices.
  */
 #ifndef PointSource_h
 #define PointSource_h

@@ -174,13 +174,13 @@ PointTable::PointTable(const std::vector<ArrayKind>& kinds)
   }
   const auto marks = std::find_if(this->Arrays.begin(), this->Arrays.end(),
     [](const auto& array) { return IsGhostArray(array); });
-  this->PlaceOfMarks = marks - this->Arrays.begin();
+  this->MarksIndex = marks - this->Arrays.begin();
 }
 
 vtkUnsignedCharArray* PointTable::Marks() const
 {
-  return this->PlaceOfMarks < this->Arrays.size()
-    ? vtkUnsignedCharArray::SafeDownCast(this->Arrays[this->PlaceOfMarks])
+  return this->MarksIndex < this->Arrays.size()
+    ? vtkUnsignedCharArray::SafeDownCast(this->Arrays[this->MarksIndex])
     : nullptr;
 }
 
@@ -197,7 +197,7 @@ void PointTable::Read(vtkPointSet* points, vtkIdType first, const Progress& prog
   // Hidden points keep their places.
   vtkNew<vtkPolyData> bare;
   bare->SetPoints(points->GetPoints());
-  const PointsOfDataSet all = ViewPoints(bare);
+  const DataSetPoints all = ViewPoints(bare);
   const PointView& view = all.View;
   const std::size_t count = static_cast<std::size_t>(view.Count);
   this->Coordinates.Resize(3 * count);
@@ -407,13 +407,13 @@ void PointTable::Choose(const std::vector<vtkIdType>& places)
   *this = std::move(chosen);
 }
 
-PointsOfDataSet ViewOf(const PointTable& rows)
+DataSetPoints ViewOf(const PointTable& rows)
 {
   vtkNew<vtkDoubleArray> coordinates;
   coordinates->SetNumberOfComponents(3);
   coordinates->SetArray(const_cast<double*>(rows.Coordinates.data()),
     static_cast<vtkIdType>(rows.Coordinates.size()), /*save=*/1);
-  PointsOfDataSet points;
+  DataSetPoints points;
   points.Owner = WithoutHidden(coordinates, rows.Marks());
   points.View.Double = vtkDoubleArray::FastDownCast(points.Owner)->GetPointer(0);
   points.View.Count = static_cast<Index>(rows.Count());

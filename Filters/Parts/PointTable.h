@@ -78,11 +78,11 @@ public:
 
 private:
   void View(vtkPointData* data);
-  std::size_t PlaceOfMarks = 0; // among the arrays; their number: there are none
+  std::size_t MarksIndex = 0; // among the arrays; their number: there are none
 };
 
 /** The positions, in place unless some are hidden: these have none. */
-PointsOfDataSet ViewOf(const PointTable& rows);
+DataSetPoints ViewOf(const PointTable& rows);
 
 } // namespace elevation
 

@@ -17,7 +17,7 @@ namespace elevation
 
 namespace
 {
-constexpr int TagOfFailure = 20201, TagOfArrival = 20202; // of no other message
+constexpr int FailureTag = 20201, ArrivalTag = 20202; // of no other message
 } // namespace
 
 struct RankNotes::Sent
@@ -64,7 +64,7 @@ void RankNotes::SendFailure()
 {
   if (this->Ranks)
   {
-    this->Own = std::make_unique<Sent>(this->Ranks, TagOfFailure);
+    this->Own = std::make_unique<Sent>(this->Ranks, FailureTag);
   }
 }
 
@@ -77,7 +77,7 @@ bool RankNotes::HasFailureCome()
   }
   this->Next = now + std::chrono::milliseconds(50);
   int isThere = 0, source = 0;
-  this->Ranks->Iprobe(vtkMultiProcessController::ANY_SOURCE, TagOfFailure, &isThere, &source);
+  this->Ranks->Iprobe(vtkMultiProcessController::ANY_SOURCE, FailureTag, &isThere, &source);
   return isThere != 0;
 }
 
@@ -86,7 +86,7 @@ void RankNotes::TakeFailures(int failures)
   for (int i = 0; this->Ranks && i < failures; ++i)
   {
     int note = 0;
-    this->Ranks->Receive(&note, 1, vtkMultiProcessController::ANY_SOURCE, TagOfFailure);
+    this->Ranks->Receive(&note, 1, vtkMultiProcessController::ANY_SOURCE, FailureTag);
   }
   if (this->Own)
   {
@@ -96,8 +96,8 @@ void RankNotes::TakeFailures(int failures)
 }
 
 /*
- * Nobody goes on before the notes of all have come, so each rank has at most one note of another that
- * belongs to a later meeting, and takes that there.
+ * Nobody goes on before the notes of all have come, so each rank has at most one note of another
+ * that belongs to a later meeting, and takes that there.
  */
 void RankNotes::Meet(
   std::chrono::milliseconds patience, const std::function<void(const std::vector<int>&)>& late)
@@ -106,13 +106,13 @@ void RankNotes::Meet(
   {
     return;
   }
-  Sent arrival(this->Ranks, TagOfArrival);
+  Sent arrival(this->Ranks, ArrivalTag);
   std::vector<int> missing;
   arrival.ForEachOther([&missing](int rank) { missing.push_back(rank); });
   const auto hasCome = [this](int rank) {
     int isThere = 0, source = 0, note = 0;
-    this->Ranks->Iprobe(rank, TagOfArrival, &isThere, &source);
-    return isThere != 0 && this->Ranks->Receive(&note, 1, rank, TagOfArrival) != 0;
+    this->Ranks->Iprobe(rank, ArrivalTag, &isThere, &source);
+    return isThere != 0 && this->Ranks->Receive(&note, 1, rank, ArrivalTag) != 0;
   };
   const auto end = std::chrono::steady_clock::now() + patience;
   bool isLate = false;

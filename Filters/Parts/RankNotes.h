@@ -7,8 +7,8 @@
  * the module.
  *
  * A note is one number, sent to every other rank without waiting for it. This needs MPI: with any
- * other controller, or where VTK has been built without the module VTK::ParallelMPI, no note is sent;
- * the others learn of a failure at the end of their step, and wait without a word.
+ * other controller, or where VTK has been built without the module VTK::ParallelMPI, no note is
+ * sent; the others learn of a failure at the end of their step, and wait without a word.
  */
 #ifndef RankNotes_h
 #define RankNotes_h

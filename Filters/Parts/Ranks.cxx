@@ -404,7 +404,7 @@ std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& 
   return all;
 }
 
-Box BoxOfAll(const Ranks& ranks, const Box& own)
+Box JoinBoxes(const Ranks& ranks, const Box& own)
 {
   std::vector<double> sides = { -own.Low.X, -own.Low.Y, own.High.X, own.High.Y };
   ranks.Maximum(sides);

@@ -45,7 +45,10 @@ public:
    * @param[in] waiting  gets one message for each time that this rank waits longer than Patience
    */
   Ranks(vtkMultiProcessController* controller, const std::function<void(const Message&)>& waiting);
-  /** The same, alone where the output is not asked for in pieces. @throws Error if these are too many */
+  /**
+   * The same, alone where the output is not asked for in pieces. @throws Error if these are too
+   * many
+   */
   Ranks(vtkMultiProcessController* controller, vtkInformation* request,
     vtkInformationVector* outputs, const std::function<void(const Message&)>& waiting);
 
@@ -94,8 +97,8 @@ public:
   Progress Watched(const Progress& progress) const;
 
   /**
-   * Bytes from all ranks to all. In round k each rank meets the one whose number differs from its own
-   * in the bits of k: the lower of the two sends first, so that none waits for ever.
+   * Bytes from all ranks to all. In round k each rank meets the one whose number differs from its
+   * own in the bits of k: the lower of the two sends first, so that none waits for ever.
    * @param[in] toEach  for each rank
    * @return from each rank
    * @throws std::bad_alloc as Error on all ranks
@@ -149,7 +152,7 @@ bool IsOnAny(const Ranks& ranks, bool isOnThis);
 std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& ranks);
 
 /** The box of the boxes of all ranks. */
-Box BoxOfAll(const Ranks& ranks, const Box& own);
+Box JoinBoxes(const Ranks& ranks, const Box& own);
 
 } // namespace elevation
 

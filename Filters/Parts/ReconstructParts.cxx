@@ -97,7 +97,7 @@ void ReconstructParts::Close()
   this->Constraints = this->Boundary = nullptr;
   this->NumberOfParts = 0;
   this->Gone.clear();
-  this->IsLost = this->IsOfAll = false;
+  this->IsLost = this->IsOnAllRanks = false;
 }
 
 void ReconstructParts::CheckIsComplete() const
@@ -113,7 +113,7 @@ template <typename Step>
 void ReconstructParts::Do(bool withAll, const Step& step)
 {
   this->CheckIsComplete();
-  this->IsOfAll = withAll;
+  this->IsOnAllRanks = withAll;
   this->IsLost = true;
   step();
   this->IsLost = false;
@@ -194,7 +194,7 @@ void ReconstructParts::Begin(int count)
   {
     throw CodedError(*this->Refusal);
   }
-  this->IsOfAll = true;
+  this->IsOnAllRanks = true;
   try
   {
     vtkDataObject *constraints = nullptr, *boundary = nullptr;
@@ -256,7 +256,7 @@ void ReconstructParts::Check() const
   if (options.GivenLattice.IsSet() && options.UseLattice == LatticeMode::Automatic &&
     !this->Constraints)
   {
-    StepsOfGiven(options.GivenLattice);
+    CheckedSteps(options.GivenLattice);
   }
   if (options.MaximumElevationError > 0.0)
   {
@@ -325,7 +325,7 @@ void ReconstructParts::Trim(const Progress& progress)
 {
   if (this->Work->All().Triangles == 0)
   {
-    return; // that has been told
+    return; // a warning has said so
   }
   std::vector<Message> warnings;
   this->Do(true, [&]() {
@@ -458,7 +458,7 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
   {
     output->Initialize();
     rims->Initialize();
-    if (isReporting || !this->IsOfAll || this->Everybody->Own() == 0)
+    if (isReporting || !this->IsOnAllRanks || this->Everybody->Own() == 0)
     {
       this->ReportError(error);
     }
@@ -489,7 +489,7 @@ ReconstructParts::Counts ReconstructParts::All() const
   if (this->Filled)
   {
     counts.Holes = this->Filled->Result().Found.Count();
-    counts.FilledHoles = CountOfFilled(this->Filled->Result());
+    counts.FilledHoles = CountFilled(this->Filled->Result());
     counts.FilledTriangles = this->Filled->CountOfNewTriangles() +
       (this->Trimmed ? counts.TrimmedTriangles : counts.Triangles);
   }

@@ -3,22 +3,22 @@
 /**
  * @file
  * The surface of points that are added slice by slice, triangulated, trimmed and filled in parts in
- * files, on one rank or several: the work behind vtkReconstructPieces of the Python package, which is a
- * library of its own and so sees this class alone. Private to the project.
+ * files, on one rank or several: the work behind vtkReconstructPieces of the Python package, which
+ * is a library of its own and so sees this class alone. Private to the project.
  *
  * In: slices of points on each rank. Out: the parts of each rank, and what there is of all.
  *
  * The steps:
  *   1. Each rank opens the work and adds its points. No rank waits for another.
  *   2. All ranks begin together: they check what they are asked for, and share the lines.
- *   3. All ranks together triangulate, trim and fill: each step has the parts of the one before made
- *      again from their files.
+ *   3. All ranks together triangulate, trim and fill: each step has the parts of the one before
+ *      made again from their files.
  *   4. Each rank passes its parts on, one at a time. No rank waits for another.
  *
- * Errors: those of step 2 are that of all ranks, and nothing is lost. They are thrown again, without a
- * meeting of the ranks, until the properties change: so a rank that asks for its next part does not
- * wait for one that has given up. Any other error loses the points of the rank, in step 3 of all ranks.
- * What all ranks throw is reported by the first one.
+ * Errors: those of step 2 are that of all ranks, and nothing is lost. They are thrown again,
+ * without a meeting of the ranks, until the properties change: so a rank that asks for its next
+ * part does not wait for one that has given up. Any other error loses the points of the rank, in
+ * step 3 of all ranks. What all ranks throw is reported by the first one.
  */
 #ifndef ReconstructParts_h
 #define ReconstructParts_h
@@ -92,7 +92,9 @@ public:
     vtkAlgorithm* source, std::function<Settings()> settings, vtkStringArray* messages);
   ~ReconstructParts();
 
-  /** Whether a setting that is taken with the first points can be changed; else there is an error. */
+  /**
+   * Whether a setting that is taken with the first points can be changed; else there is an error.
+   */
   bool CanChange(const char* setting);
   void Close(); ///< forgets all points, and removes the files
 
@@ -145,7 +147,7 @@ private:
   std::unique_ptr<TrimParts> Trimmed;
   std::unique_ptr<FillParts> Filled;
   bool IsLost = false;                 // whether points are
-  bool IsOfAll = false;                // whether all ranks have thrown what was thrown last
+  bool IsOnAllRanks = false;           // whether all ranks have thrown what was thrown last
   std::unique_ptr<CodedError> Refusal; // to begin
   vtkMTimeType TimeOfRefusal = 0;
   int RefusedParts = 0;

@@ -26,8 +26,8 @@ struct FieldsOf<Piece>
 namespace
 {
 /**
- * A node of the tree of cells (Cuts.h): cells [Begin, End), which have the numbers of their parts. What
- * is done for a node is done by its first part, which has the seam of its lower half already.
+ * A node of the tree of cells (Cuts.h): cells [Begin, End), which have the numbers of their parts.
+ * What is done for a node is done by its first part, which has the seam of its lower half already.
  */
 struct Node
 {
@@ -217,8 +217,8 @@ void Settling::WatchLattice(const Step& step)
 }
 
 /**
- * Settles what the cell of a part can, and then the larger cells that it completes on this rank: those
- * that end with this part, from the smallest.
+ * Settles what the cell of a part can, and then the larger cells that it completes on this rank:
+ * those that end with this part, from the smallest.
  */
 void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress& progress)
 {
@@ -260,8 +260,8 @@ void Settling::SettleNode(
 }
 
 /**
- * The same for all cells that several ranks hold, level by level. At each level the seam of the upper
- * half goes to the part that has that of the lower one.
+ * The same for all cells that several ranks hold, level by level. At each level the seam of the
+ * upper half goes to the part that has that of the lower one.
  */
 bool Settling::JoinSeams(const SharedLattice* lattice)
 {

@@ -2,22 +2,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Passes 2 and 3 of TriangulateParts.h: the triangles of all parts, those of seams included. Private to
- * the module.
+ * Passes 2 and 3 of TriangulateParts.h: the triangles of all parts, those of seams included.
+ * Private to the module.
  *
- * In: parts with their points, and the cuts that made them. Out: triangles of each cell, kept with its
- * part, and those that this rank has settled for several cells, by numbers of points.
+ * In: parts with their points, and the cuts that made them. Out: triangles of each cell, kept with
+ * its part, and those that this rank has settled for several cells, by numbers of points.
  *
- * Each part is triangulated, and keeps what its cell settles (Pieces.h). Cells form a tree (Cuts.h),
- * and what the seams of two halves of a larger cell settle is found by the first part of the two:
- *   - where a rank holds all of the larger cell, as soon as its last part is done. So parts in their
- *     order go through the tree depth first, and a rank has no more seams at a time than the tree has
- *     levels;
+ * Each part is triangulated, and keeps what its cell settles (Pieces.h). Cells form a tree
+ * (Cuts.h), and what the seams of two halves of a larger cell settle is found by the first part of
+ * the two:
+ *   - where a rank holds all of the larger cell, as soon as its last part is done. So parts in
+ *     their order go through the tree depth first, and a rank has no more seams at a time than the
+ *     tree has levels;
  *   - else level by level, all ranks together: the seam of the upper half is sent.
- * Should a point not be on the lattice, or few points be on it by chance, both are done again without.
+ * Should a point not be on the lattice, or few points be on it by chance, both are done again
+ * without.
  *
- * Cost: that of triangulating each part, and for a part of m points some multiple of sqrt(m) for its
- * seam; log2(ranks) rounds.
+ * Cost: that of triangulating each part, and for a part of m points some multiple of sqrt(m) for
+ * its seam; log2(ranks) rounds.
  */
 #ifndef SettleParts_h
 #define SettleParts_h

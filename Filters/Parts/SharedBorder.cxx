@@ -153,7 +153,7 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
 }
 
 void AppendBorder(const Mesh& mesh, const SharedPoints& points, const std::vector<Index>& regionOf,
-  int part, EdgesOfParts& edges)
+  int part, PartEdges& edges)
 {
   const auto numberOf = [&](Index point) {
     const auto at = std::lower_bound(points.Places.begin(), points.Places.end(), point);
@@ -180,7 +180,7 @@ void AppendBorder(const Mesh& mesh, const SharedPoints& points, const std::vecto
 namespace
 {
 /** Notes what an edge is that two parts have in common, where a triangle beside it is long. */
-void JoinRegions(const EdgeOfPart& one, const EdgeOfPart& other, EdgesOfParts& all)
+void JoinRegions(const PartEdge& one, const PartEdge& other, PartEdges& all)
 {
   if (one.Region != None && other.Region != None)
   {
@@ -193,16 +193,16 @@ void JoinRegions(const EdgeOfPart& one, const EdgeOfPart& other, EdgesOfParts& a
 }
 
 /** Takes away the edges that two parts have in common. */
-void KeepSingleEdges(EdgesOfParts& all)
+void KeepSingleEdges(PartEdges& all)
 {
-  std::vector<EdgeOfPart>& edges = all.OnBorder;
-  const auto keyOf = [](const EdgeOfPart& edge) {
+  std::vector<PartEdge>& edges = all.OnBorder;
+  const auto keyOf = [](const PartEdge& edge) {
     return std::make_tuple(
       std::min(edge.Ends[0], edge.Ends[1]), std::max(edge.Ends[0], edge.Ends[1]), edge.Ends[0]);
   };
   std::sort(edges.begin(), edges.end(),
-    [&](const EdgeOfPart& a, const EdgeOfPart& b) { return keyOf(a) < keyOf(b); });
-  std::vector<EdgeOfPart> single;
+    [&](const PartEdge& a, const PartEdge& b) { return keyOf(a) < keyOf(b); });
+  std::vector<PartEdge> single;
   for (std::size_t i = 0; i < edges.size(); ++i)
   {
     const bool isPair = i + 1 < edges.size() && edges[i].Ends[0] == edges[i + 1].Ends[1] &&
@@ -228,17 +228,17 @@ void KeepSingleEdges(EdgesOfParts& all)
 }
 } // namespace
 
-SharedBorder::SharedBorder(EdgesOfParts&& edges)
+SharedBorder::SharedBorder(PartEdges&& edges)
 {
-  std::vector<EdgeOfPart>& border = edges.OnBorder;
-  const auto isOfRegion = [](const EdgeOfPart& edge) { return edge.Region != None; };
+  std::vector<PartEdge>& border = edges.OnBorder;
+  const auto isOfRegion = [](const PartEdge& edge) { return edge.Region != None; };
   std::copy_if(border.begin(), border.end(), std::back_inserter(edges.OfRegions), isOfRegion);
-  for (std::vector<EdgeOfPart>* some : { &border, &edges.OfRegions })
+  for (std::vector<PartEdge>* some : { &border, &edges.OfRegions })
   {
-    std::sort(some->begin(), some->end(), [](const EdgeOfPart& a, const EdgeOfPart& b) {
+    std::sort(some->begin(), some->end(), [](const PartEdge& a, const PartEdge& b) {
       return std::tie(a.Part, a.HalfEdge) < std::tie(b.Part, b.HalfEdge);
     });
-    for (const EdgeOfPart& edge : *some)
+    for (const PartEdge& edge : *some)
     {
       this->Keys.insert(this->Keys.end(), { edge.Ends[0], edge.Ends[1] });
     }
@@ -247,9 +247,9 @@ SharedBorder::SharedBorder(EdgesOfParts&& edges)
   this->Keys.erase(std::unique(this->Keys.begin(), this->Keys.end()), this->Keys.end());
   this->Coordinates.resize(3 * this->Keys.size(), 0.0);
   this->OnBoundary.resize(this->Keys.size(), 0);
-  const auto add = [this](const std::vector<EdgeOfPart>& some, std::vector<BorderEdge>& found,
+  const auto add = [this](const std::vector<PartEdge>& some, std::vector<BorderEdge>& found,
                      std::vector<int>& partOf) {
-    for (const EdgeOfPart& edge : some)
+    for (const PartEdge& edge : some)
     {
       const Index ends[2] = { this->Find(edge.Ends[0]), this->Find(edge.Ends[1]) };
       found.push_back({ ends[0], ends[1] });
@@ -267,16 +267,16 @@ SharedBorder::SharedBorder(EdgesOfParts&& edges)
 }
 
 /** Regions are in the order of the first parts that have some of them. */
-void SharedBorder::NumberRegions(const EdgesOfParts& edges)
+void SharedBorder::NumberRegions(const PartEdges& edges)
 {
-  for (const EdgeOfPart& edge : edges.OfRegions)
+  for (const PartEdge& edge : edges.OfRegions)
   {
-    this->Regions.emplace(RegionOfPart(edge.Part, edge.Region), 0);
+    this->Regions.emplace(PartRegion(edge.Part, edge.Region), 0);
   }
   for (const auto& joined : edges.Joined)
   {
-    this->Regions.emplace(RegionOfPart(joined[0], joined[1]), 0);
-    this->Regions.emplace(RegionOfPart(joined[2], joined[3]), 0);
+    this->Regions.emplace(PartRegion(joined[0], joined[1]), 0);
+    this->Regions.emplace(PartRegion(joined[2], joined[3]), 0);
   }
   std::vector<Index> parents;
   for (auto& region : this->Regions)
@@ -298,7 +298,7 @@ void SharedBorder::NumberRegions(const EdgesOfParts& edges)
     numbers.push_back(root == region.second ? count++ : numbers[root]);
     region.second = numbers.back();
   }
-  for (const EdgeOfPart& edge : edges.OfRegions)
+  for (const PartEdge& edge : edges.OfRegions)
   {
     this->RegionOfEdge.push_back(this->Regions.at({ edge.Part, edge.Region }));
   }
@@ -320,14 +320,14 @@ PointView SharedBorder::View() const
 }
 
 // Those that are left on each rank are paired at a rank for each edge; what is single goes to all.
-SharedBorder CollectBorder(const Ranks& ranks, EdgesOfParts&& edges)
+SharedBorder CollectBorder(const Ranks& ranks, PartEdges&& edges)
 {
   std::vector<Bytes> packed(ranks.Count());
   ranks.Agree([&]() {
     KeepSingleEdges(edges);
     for (std::size_t i = 0; i < edges.OnBorder.size() && ranks.Count() > 1; ++i)
     {
-      const EdgeOfPart& edge = edges.OnBorder[i];
+      const PartEdge& edge = edges.OnBorder[i];
       const std::uint64_t bits = BitsOf(edge.Ends[0]) + BitsOf(edge.Ends[1]);
       AppendTo(packed[RankOf(bits, ranks)], &edge, 1);
     }
@@ -336,7 +336,7 @@ SharedBorder CollectBorder(const Ranks& ranks, EdgesOfParts&& edges)
   {
     packed = ranks.Exchange(std::move(packed));
     ranks.Agree([&]() {
-      edges.OnBorder = Unpacked<EdgeOfPart>(packed);
+      edges.OnBorder = Unpacked<PartEdge>(packed);
       KeepSingleEdges(edges);
     });
     const auto toAll = [&](auto& some) {

@@ -46,7 +46,7 @@ private:
 void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points);
 
 /** An edge of a part's triangles. */
-struct EdgeOfPart
+struct PartEdge
 {
   PointKey Ends[2];
   double Places[4]; ///< x,y of both
@@ -56,13 +56,13 @@ struct EdgeOfPart
 };
 
 /** A region of long triangles of a part: the part, and the number of the region there. */
-using RegionOfPart = std::pair<vtkIdType, vtkIdType>;
+using PartRegion = std::pair<vtkIdType, vtkIdType>;
 
 /** The edges of parts that others have to know. */
-struct EdgesOfParts
+struct PartEdges
 {
-  std::vector<EdgeOfPart> OnBorder;
-  std::vector<EdgeOfPart> OfRegions; ///< between a long triangle, on the left, and another
+  std::vector<PartEdge> OnBorder;
+  std::vector<PartEdge> OfRegions; ///< between a long triangle, on the left, and another
   std::vector<std::array<vtkIdType, 4>> Joined; ///< regions of two parts that are one
 };
 
@@ -78,15 +78,15 @@ struct SharedBorder
   std::vector<BorderEdge> RegionEdges;
   std::vector<int> PartOfRegionEdge;
   std::vector<Index> RegionOfEdge;
-  std::map<RegionOfPart, Index> Regions; ///< those of the parts, as of all
+  std::map<PartRegion, Index> Regions; ///< those of the parts, as of all
 
   SharedBorder() = default;
-  explicit SharedBorder(EdgesOfParts&& edges);
+  explicit SharedBorder(PartEdges&& edges);
   Index Find(const PointKey& key) const;
   PointView View() const;
 
 private:
-  void NumberRegions(const EdgesOfParts& edges);
+  void NumberRegions(const PartEdges& edges);
 };
 
 /**
@@ -95,7 +95,7 @@ private:
  * @param[in] regionOf  from NumberRegions()
  */
 void AppendBorder(const Mesh& mesh, const SharedPoints& points, const std::vector<Index>& regionOf,
-  int part, EdgesOfParts& edges);
+  int part, PartEdges& edges);
 
 /**
  * The border of the parts of all ranks, the same on all of them: without the edges that two parts
@@ -103,7 +103,7 @@ void AppendBorder(const Mesh& mesh, const SharedPoints& points, const std::vecto
  * @param[in] edges  of the parts of this rank
  * @throws Error on all ranks if an edge has more than two triangles, or two on one side
  */
-SharedBorder CollectBorder(const Ranks& ranks, EdgesOfParts&& edges);
+SharedBorder CollectBorder(const Ranks& ranks, PartEdges&& edges);
 
 } // namespace elevation
 

@@ -36,7 +36,7 @@ bool SharedHoles::Find(const Progress& progress)
 {
   const PointView points = this->Border.View();
   this->OfAll = FillResult();
-  this->OfAll.Found = FindHolesOfBorder(this->Border.Edges, points, progress);
+  this->OfAll.Found = FindBorderHoles(this->Border.Edges, points, progress);
   this->FirstRegion = this->OfAll.Found.Count();
   if (!this->Border.RegionEdges.empty())
   {
@@ -128,8 +128,8 @@ void SurroundedHoles::Surround(const Parts& parts, const SharedHoles& all, const
 }
 
 /**
- * Of holes from the first that is a region, by the points of the surrounding: what is inside. All of
- * their triangles are there, so the rim begins with the same edge; other regions may be cut off.
+ * Of holes from the first that is a region, by the points of the surrounding: what is inside. All
+ * of their triangles are there, so the rim begins with the same edge; other regions may be cut off.
  */
 void SurroundedHoles::ListRegions(Index first, Holes& holes) const
 {
@@ -224,7 +224,7 @@ WholeSurface SurroundedHoles::KnownOf(const SharedHoles& all) const
 
 std::vector<HoleNeed> SurroundedHoles::Needs(const SharedHoles& all, const Progress& progress) const
 {
-  return NeedsOfHoles(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all),
+  return FindHoleNeeds(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all),
     this->OptionsFor(all, progress), this->KnownOf(all));
 }
 

@@ -65,7 +65,7 @@ struct SharedHoles
   bool NeedLattice() const;
   /** @param[in] points  of all parts, each once */
   void FindLattice(const Ranks& ranks, const PointSlices& points, const Progress& progress);
-  /** When all is filled: these are no holes any more, and later ones get lower numbers. */
+  /** When all is filled: these are not holes any more, and later ones get lower numbers. */
   void DropRegionsWithoutRoom();
   std::vector<Index> NewNumbers;                ///< then, of the holes before, or None
   Index NumberOf(int part, Index region) const; ///< then, of a region of a part
@@ -83,7 +83,9 @@ struct SurroundedHoles
   /** Joins what parts have around the holes. */
   void Surround(const Parts& parts, const SharedHoles& all, const Progress& progress);
   std::vector<HoleNeed> Needs(const SharedHoles& all, const Progress& progress) const;
-  /** Takes regions without room out of Numbers. @return the holes that need more than their boxes */
+  /**
+   * Takes regions without room out of Numbers. @return the holes that need more than their boxes
+   */
   std::vector<Index> Fill(const SharedHoles& all, const Progress& progress);
   /** Keeps only those points of the surrounding that patches have. */
   void KeepCorners();

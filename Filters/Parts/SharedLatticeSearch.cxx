@@ -66,7 +66,7 @@ std::vector<Point2> CollectPoints(const Ranks& ranks, const std::vector<Point2>&
 NodeBox Joined(const Ranks& ranks, const NodeBox& own)
 {
   NodeBox box;
-  static_cast<Box&>(box) = BoxOfAll(ranks, own);
+  static_cast<Box&>(box) = JoinBoxes(ranks, own);
   return box;
 }
 
@@ -124,7 +124,7 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
 {
   std::vector<vtkIdType> count = { static_cast<vtkIdType>(points.Count) };
   ranks.Sum(count);
-  all.CountOfAll = static_cast<double>(count[0]);
+  all.CloudSize = static_cast<double>(count[0]);
   std::vector<std::vector<Index>> notFinite; // of each slice
   std::vector<double> reals;
   ranks.Agree([&]() {
@@ -132,7 +132,7 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
     const Progress sampling = ranks.Watched(SubProgress(progress, 0.0, 0.4));
     ForEachSlice(points, sampling, [&](const PointView& slice, const Progress& ofSlice) {
       notFinite.emplace_back();
-      own.Add(SampleForLattice(slice, all.CountOfAll, threads, ofSlice, notFinite.back()));
+      own.Add(SampleForLattice(slice, all.CloudSize, threads, ofSlice, notFinite.back()));
     });
     reals = ToReals(own);
   });
@@ -141,7 +141,7 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
   {
     all.Add(FromReals(at));
   }
-  if (!all.MayBeOfLattice())
+  if (!all.MayFitLattice())
   {
     return false;
   }
@@ -189,10 +189,10 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
   std::vector<vtkIdType> beside; // the id of the first of each rank
   Point2 place;                  // of that of this one
   ranks.Agree([&]() {
-    steps = StepsOfGiven(options.GivenLattice);
+    steps = CheckedSteps(options.GivenLattice);
     const Progress looking = ranks.Watched(SubProgress(progress, 0.0, 0.0));
     forEachRows([&](const PointTable& rows) {
-      const PointsOfDataSet points = ViewOf(rows);
+      const DataSetPoints points = ViewOf(rows);
       const PointView& view = points.View;
       const Extent extent = FindExtent(view, threads, looking, [](Index, const Point2&) {});
       own.Join(extent);
@@ -211,7 +211,7 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
       throw BesideGivenLattice(beside[0], place, steps, tolerance);
     }
   });
-  const Box box = BoxOfAll(ranks, own);
+  const Box box = JoinBoxes(ranks, own);
   if (box.Low.X > box.High.X)
   {
     return false;

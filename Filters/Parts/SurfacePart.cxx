@@ -149,7 +149,7 @@ void MergeAtOwners(Engine& engine, int box, const SurfacePart& part, std::vector
 }
 
 /** A quantile of the values of all ranks, sorted on each, none negative. */
-double QuantileOfAll(const Ranks& ranks, const std::vector<double>& values, double part)
+double FindQuantile(const Ranks& ranks, const std::vector<double>& values, double part)
 {
   std::vector<vtkIdType> count = { static_cast<vtkIdType>(values.size()) };
   ranks.Sum(count);
@@ -175,10 +175,10 @@ double QuantileOfAll(const Ranks& ranks, const std::vector<double>& values, doub
 } // namespace
 
 void MeasureAll(
-  Engine& engine, int box, const Progress& progress, const SurfacePart& part, EffectOfLimit& effect)
+  Engine& engine, int box, const Progress& progress, const SurfacePart& part, LimitEffect& effect)
 {
   const Ranks& ranks = engine.All();
-  LengthsOfEdges lengths;
+  EdgeMeasures lengths;
   ranks.Agree([&]() {
     lengths = MeasureEdges(
       part.Result.Triangles, part.Own.Count() + part.Others.Count(),
@@ -193,9 +193,9 @@ void MeasureAll(
     limits.erase(std::lower_bound(limits.begin(), limits.end(), infinity), limits.end());
   });
   effect.HasLengths = true;
-  effect.Shortest = QuantileOfAll(ranks, lengths.Edges, 0.0);
-  effect.Median = QuantileOfAll(ranks, lengths.Edges, HalfOfAll);
-  effect.ForMost = QuantileOfAll(ranks, lengths.Limits, PartOfMost);
+  effect.Shortest = FindQuantile(ranks, lengths.Edges, 0.0);
+  effect.Median = FindQuantile(ranks, lengths.Edges, HalfOfAll);
+  effect.ForMost = FindQuantile(ranks, lengths.Limits, PartOfMost);
 }
 void KeepCorners(SurfacePart& part)
 {

@@ -55,8 +55,8 @@ struct SurfacePart
 };
 
 /**
- * Brings the own points into the order of their ids, which decides among duplicates. Points of the same
- * id are the same, and count once.
+ * Brings the own points into the order of their ids, which decides among duplicates. Points of the
+ * same id are the same, and count once.
  * @throws Error if they are in different places
  */
 void SortOwn(SurfacePart& part);
@@ -73,8 +73,8 @@ void AppendTriangles(const std::vector<GlobalTriangle>& triangles, GlobalId firs
  * Sets the lengths of edges of all parts, which are in memory. All ranks call it.
  * @param[in] box  of each part, in which nothing is
  */
-void MeasureAll(Engine& engine, int box, const Progress& progress, const SurfacePart& part,
-  EffectOfLimit& effect);
+void MeasureAll(
+  Engine& engine, int box, const Progress& progress, const SurfacePart& part, LimitEffect& effect);
 
 /** Brings the points of other parts into the order of their ids, only those that are corners. */
 void KeepCorners(SurfacePart& part);

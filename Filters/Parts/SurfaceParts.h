@@ -34,12 +34,13 @@ struct SurfaceParts
 };
 
 /**
- * Works on a block that is spread over ranks, of which each rank with a place for it has one part, in
- * memory. All ranks call it.
+ * Works on a block that is spread over ranks, of which each rank with a place for it has one part,
+ * in memory. All ranks call it.
  * @param[in] isFit  whether the part of this rank can be worked on; an Error is as false
- * @param[in] work   false on all ranks, with nothing written, if the block has to be gathered after all
- * @return false on all ranks if the block has to be gathered: parts that are not fit, or whose arrays
- *         differ
+ * @param[in] work   false on all ranks, with nothing written, if the block has to be gathered after
+ *                   all
+ * @return false on all ranks if the block has to be gathered: parts that are not fit, or whose
+ *         arrays differ
  */
 bool WorkOnParts(Block& block, const Ranks& ranks, const std::function<bool(vtkPolyData*)>& isFit,
   const std::function<bool(const SurfaceParts&)>& work);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 /*
- * The passes in their order; 2 and 3 are those of SettleParts.h. What they leave for each other lies in
- * the boxes of parts (PartStore.h), whether these are files or in memory.
+ * The passes in their order; 2 and 3 are those of SettleParts.h. What they leave for each other
+ * lies in the boxes of parts (PartStore.h), whether these are files or in memory.
  */
 #include "TriangulateParts.h"
 
@@ -67,7 +67,7 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
   this->Store->CheckCounts();
   this->Total.Points = this->Store->Part.Bases.back();
   // Lines keep to no lattice.
-  LinesOfParts lines;
+  SharedLines lines;
   if (constraints)
   {
     WarnOfLattice(this->Options, warnings);
@@ -170,9 +170,9 @@ void TriangulateParts::FetchOthers()
 }
 
 /**
- * Leaves out triangles with a longer edge, and counts the vertices without one. Whether a point that
- * another part has asked for is such a vertex is known when all parts have said where they have
- * triangles.
+ * Leaves out triangles with a longer edge, and counts the vertices without one. Whether a point
+ * that another part has asked for is such a vertex is known when all parts have said where they
+ * have triangles.
  */
 void TriangulateParts::LimitEdges(const Progress& progress)
 {
@@ -230,7 +230,7 @@ void TriangulateParts::LimitEdges(const Progress& progress)
       [&](vtkIdType place) { return !std::binary_search(covered.begin(), covered.end(), place); });
   });
   this->Everybody.Sum(sums);
-  EffectOfLimit& effect = this->Total.Effect;
+  LimitEffect& effect = this->Total.Effect;
   this->Total.Triangles = sums[0];
   effect.Vertices = this->Store->Part.Bases.back() - this->Total.Duplicates -
     this->Total.NotFinite - this->Total.Hidden;

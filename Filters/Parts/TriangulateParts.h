@@ -4,30 +4,30 @@
  * @file
  * The triangulation of points in parts, which is that of all points at once. Private to the module.
  *
- * In: the points of all ranks, at once or in slices (PointSource.h), and lines that become edges. Out:
- * the part of the surface in each cell of the plane, with the corners that its triangles have in other
- * parts.
+ * In: the points of all ranks, at once or in slices (PointSource.h), and lines that become edges.
+ * Out: the part of the surface in each cell of the plane, with the corners that its triangles have
+ * in other parts.
  *
- * Parts are those of an engine (Engine.h): one for each rank in memory, or some of each rank in files,
- * one of them in memory at a time. The passes, each of which all ranks do at the same time:
- *   1. The plane is cut into a cell for each part, and each point goes to the part of its cell. Lines
- *      add points (ConstrainParts.h); without lines, the lattice of all points is looked for.
- *   2. Each part is triangulated, and what its cell settles stays there (Pieces.h). Where a rank holds
- *      both halves of a larger cell, it then settles what that can.
- *   3. The seams of the others go to the first part of the two halves, level by level up to the whole
- *      plane.
+ * Parts are those of an engine (Engine.h): one for each rank in memory, or some of each rank in
+ * files, one of them in memory at a time. The passes, each of which all ranks do at the same time:
+ *   1. The plane is cut into a cell for each part, and each point goes to the part of its cell.
+ *      Lines add points (ConstrainParts.h); without lines, the lattice of all points is looked for.
+ *   2. Each part is triangulated, and what its cell settles stays there (Pieces.h). Where a rank
+ *      holds both halves of a larger cell, it then settles what that can.
+ *   3. The seams of the others go to the first part of the two halves, level by level up to the
+ *      whole plane.
  *   4. The triangles that seams have settled go to the parts of their lowest corners.
  *   5. These ask the parts of the other corners for the points, with the values of their arrays.
  *   6. Lines are recovered as edges, of which pass 5 is done again, and long edges left out.
  * Should not all points be on the lattice, passes 2 and 3 are done again without it.
  *
- * Cost: a rank sends 32 bytes for a point, and the values of arrays, once, and the same for the points
- * of some multiple of sqrt(m) of the m points of a part: those of seams, and those at which its
- * triangles meet those of other parts. There are log2(ranks) rounds of seams. Memory for files: what
- * the fullest part takes, and the seams. Files: 32 bytes a point and the values of its arrays, twice
- * in pass 1, and 24 for its triangles. They are read up to four times while a lattice is looked for,
- * once in pass 2, up to three times more with lines and once with a limit of edges, and again whenever
- * a part is asked for.
+ * Cost: a rank sends 32 bytes for a point, and the values of arrays, once, and the same for the
+ * points of some multiple of sqrt(m) of the m points of a part: those of seams, and those at which
+ * its triangles meet those of other parts. There are log2(ranks) rounds of seams. Memory for files:
+ * what the fullest part takes, and the seams. Files: 32 bytes a point and the values of its arrays,
+ * twice in pass 1, and 24 for its triangles. They are read up to four times while a lattice is
+ * looked for, once in pass 2, up to three times more with lines and once with a limit of edges, and
+ * again whenever a part is asked for.
  */
 #ifndef TriangulateParts_h
 #define TriangulateParts_h
@@ -66,8 +66,8 @@ public:
    * @param[in] ownParts  of this rank; in memory at most one. A rank without parts has no points.
    * @param[in] constraints  lines, the same on all ranks; or nullptr
    * @param[out] warnings  on the constraints
-   * @throws Error, Aborted on all ranks when any of them fails; std::bad_alloc on one rank alone: with
-   *         more parts it may succeed
+   * @throws Error, Aborted on all ranks when any of them fails; std::bad_alloc on one rank alone:
+   *         with more parts it may succeed
    */
   void Triangulate(int ownParts, vtkPolyData* constraints, const DelaunayOptions& options,
     std::vector<Message>& warnings);
@@ -85,7 +85,7 @@ public:
     vtkIdType Duplicates = 0, NotFinite = 0, Hidden = 0;
     vtkIdType Settled = 0;   ///< triangles, also those with an edge above MaximumEdgeLength
     vtkIdType Triangles = 0; ///< without these
-    EffectOfLimit Effect; ///< if there is a limit; the lengths of edges for parts in memory alone
+    LimitEffect Effect; ///< if there is a limit; the lengths of edges for parts in memory alone
     std::int64_t Crossings = 0; ///< of the constraints
     bool LatticeFound = false;
     Lattice Steps; ///< if found

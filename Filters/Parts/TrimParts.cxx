@@ -19,7 +19,7 @@ namespace
 enum BoxOfTrim
 {
   NearTriangles, // of all parts, at the part with most; it takes them at once
-  Back           // what became of a part's own
+  Back           // a part's own triangles, trimmed
 };
 } // namespace
 
@@ -81,7 +81,9 @@ CodedError TrimParts::Refusal() const
                      : MakeError<sentences::OutlineNotInPieces>();
 }
 
-/** The part, whose triangles are read. In memory the step finds it as it was left by the last one. */
+/**
+ * The part, whose triangles are read. In memory the step finds it as it was left by the last one.
+ */
 template <typename Step>
 void TrimParts::WithPart(int part, const Progress& progress, const Step& step)
 {
@@ -145,7 +147,10 @@ void TrimParts::Read()
   }
 }
 
-/** Pass 1, with a margin of an outline. The near triangles wait here until all ranks know which part has most of them. */
+/**
+ * Pass 1, with a margin of an outline. The near triangles wait here until all ranks know which part
+ * has most of them.
+ */
 void TrimParts::FindNear(int margin)
 {
   this->Margin = margin;
@@ -171,17 +176,16 @@ void TrimParts::FindNear(int margin)
       sums[1] += static_cast<vtkIdType>(own.CountOfInnerPoints());
     });
   });
-  this->NearOfParts = this->Crew.All().Collect(near);
-  this->Home =
-    static_cast<int>(std::max_element(this->NearOfParts.begin(), this->NearOfParts.end()) -
-      this->NearOfParts.begin());
+  this->NearCounts = this->Crew.All().Collect(near);
+  this->Home = static_cast<int>(
+    std::max_element(this->NearCounts.begin(), this->NearCounts.end()) - this->NearCounts.begin());
   this->Crew.All().Sum(sums);
   this->Kept = sums[0];
-  this->Extent = BoxOfAll(this->Crew.All(), extent);
+  this->Extent = JoinBoxes(this->Crew.All(), extent);
   this->InnerPoints = sums[1];
 }
 
-/** Pass 2. @return false on all ranks if the near triangles do not tell what to keep */
+/** Pass 2. @return false on all ranks if the near triangles do not decide what to keep */
 bool TrimParts::TrimNear()
 {
   const Ranks& all = this->Crew.All();
@@ -229,7 +233,7 @@ void TrimParts::SendBack(const BoundaryZone& zone)
   auto back = backs.begin();
   for (int part = 0; part < this->Crew.CountOfParts(); ++part)
   {
-    if (this->NearOfParts[part] >= 0)
+    if (this->NearCounts[part] >= 0)
     {
       const TrimmedZone taken = std::move(*back++);
       this->Crew.Send(part, Back, taken.Pack());

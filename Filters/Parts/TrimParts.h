@@ -2,27 +2,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Trims a surface in parts where they are, along a given boundary or the outline of what is measured.
- * Private to the module.
+ * Trims a surface in parts where they are, along a given boundary or the outline of what is
+ * measured. Private to the module.
  *
- * In: the parts of an engine (Engine.h): one for each rank in memory, or some of each rank in files.
- * Out: the triangles of both sides of each part, and the boundary. The passes, each of which all ranks
- * do at the same time:
- *   1. Each part finds its triangles near the boundary, and the sides of the others. If no boundary is
- *      given, those are near that may tell where the outline is (Outline.h), and the others are inside.
- *   2. These near triangles, and the border of each part, go to the part with most of them. Its rank
- *      joins them, proves by the border of all that the surface covers nothing twice, and trims them
- *      (BoundaryZone.h).
- *   3. Each part gets back what became of its own, with the points that it does not have. Of a point
- *      that several parts get, the first is the owner; in the others it is a ghost.
+ * In: the parts of an engine (Engine.h): one for each rank in memory, or some of each rank in
+ * files. Out: the triangles of both sides of each part, and the boundary. The passes, each of which
+ * all ranks do at the same time:
+ *   1. Each part finds its triangles near the boundary, and the sides of the others. If no boundary
+ *      is given, those that the outline may depend on are near (Outline.h), and the others are
+ *      inside.
+ *   2. These near triangles, and the border of each part, go to the part with most of them. Its
+ *      rank joins them, proves by the border of all that the surface covers nothing twice, and
+ *      trims them (BoundaryZone.h).
+ *   3. Each part gets its own triangles back, trimmed, with the points that it does not have. Of a
+ *      point that several parts get, the first is the owner; in the others it is a ghost.
  *   4. Each part is written, when it is asked for.
  *
- * Guarantee: what is kept covers what one surface would keep; beside inserted points, diagonals may
- * differ. It is refused where only the whole surface would tell: triangles that the sweep cannot prove,
- * near triangles that do not tell the outline, InwardNormal.
+ * Guarantee: what is kept covers what one surface would keep; next to inserted points, diagonals
+ * may differ. What needs the whole surface is refused: triangles that the sweep cannot prove, near
+ * triangles that do not decide the outline, InwardNormal.
  *
- * Cost: only what is near the boundary or on the border of a part is sent. Passes 1 and 4 make a part
- * from files each, and look for its near triangles. Memory for files: one part, or what is near in all.
+ * Cost: only what is near the boundary or on the border of a part is sent. Passes 1 and 4 make a
+ * part from files each, and look for its near triangles. Memory for files: one part, or what is
+ * near in all.
  */
 #ifndef TrimParts_h
 #define TrimParts_h
@@ -100,7 +102,7 @@ private:
   int Margin = 0;        // of an outline
   std::unique_ptr<TrimmedPart> InMemory;
   std::vector<Bytes> NearParts;       // of this rank, until they are sent
-  std::vector<vtkIdType> NearOfParts; // triangles of each part, and 1; -1 if it has no points
+  std::vector<vtkIdType> NearCounts;  // triangles of each part, and 1; -1 if it has no points
   int Home = 0;                       // the part with most of them
   vtkIdType InnerPoints = 0;          // of all parts
   Box Extent;                         // of all triangles, where none is kept but near ones

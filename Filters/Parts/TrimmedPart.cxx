@@ -27,7 +27,7 @@ namespace elevation
 
 namespace
 {
-constexpr char IsNear = 2; // neither kept nor outward: what comes back tells
+constexpr char IsNear = 2; // neither kept nor outward until it comes back
 }
 
 void TrimmedPart::Read()
@@ -93,7 +93,7 @@ bool TrimmedPart::SweepForOutline(int margin, const TrimOptions& options, const 
   extraction.Grid = options.Grid;
   extraction.NumberOfThreads = options.NumberOfThreads;
   extraction.Monitor = progress;
-  const bool isProven = FindPartOfOutline(this->List, margin, extraction, this->Outline);
+  const bool isProven = FindOutlinePart(this->List, margin, extraction, this->Outline);
   this->Swept.Near = std::move(this->Outline.Triangles);
   this->Swept.Border = std::move(this->Outline.Border);
   this->Swept.IsOutward.assign(static_cast<std::size_t>(this->List.Count), 0);
@@ -170,8 +170,8 @@ vtkIdType TrimmedPart::CountOfSide(int side) const
 }
 
 /**
- * Finds which of the new points this part has, if not in its near part, and adds the others; and which
- * of the far points on the boundary.
+ * Finds which of the new points this part has, if not in its near part, and adds the others; and
+ * which of the far points on the boundary.
  */
 void TrimmedPart::FindOwn(const Progress& progress)
 {

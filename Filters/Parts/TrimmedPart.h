@@ -42,7 +42,7 @@ public:
    */
   bool Sweep(const std::vector<Point2>& points, const Rings& rings, double numberOfAll, int threads,
     const Progress& progress);
-  /** The same without a boundary: the near triangles tell the outline. See FindPartOfOutline() */
+  /** The same without a boundary: the near triangles decide the outline. See FindOutlinePart() */
   bool SweepForOutline(int margin, const TrimOptions& options, const Progress& progress);
   std::int64_t CountOfInnerPoints() const { return this->Outline.NumberOfInnerPoints; }
   vtkIdType CountOfNear() const { return static_cast<vtkIdType>(this->Swept.Near.size()); }
@@ -69,11 +69,11 @@ private:
   TrimmedSide SideOf(int side, const Progress& progress) const;
 
   const vtkSmartPointer<vtkPolyData> Input;
-  TrianglesOfDataSet Triangles;
+  DataSetTriangles Triangles;
   std::vector<Index> Sources; // of the triangles, if some were left out
   TriangleList List;
   SweptAlongRings Swept;
-  PartOfOutline Outline;   // without a boundary; its triangles and border are those of Swept
+  OutlinePart Outline;     // without a boundary; its triangles and border are those of Swept
   std::vector<Index> Sent; // points of the near part
   TrimmedZone Back;
   std::vector<Index> Places;        // of the new points, among those of the output

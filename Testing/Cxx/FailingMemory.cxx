@@ -18,8 +18,8 @@
 #endif
 #endif
 
-// Without inlining, the library has copies of VTK's inline functions, which VTK itself then calls: what
-// they ask for looks as if the library did.
+// Without inlining, the library has copies of VTK's inline functions, which VTK itself then calls:
+// what they ask for looks as if the library did.
 #if defined(__GLIBC__) && defined(__ELF__) && !defined(HAS_SANITIZER) && !defined(__NO_INLINE__)
 #define REPLACES_MALLOC
 #include <dlfcn.h>
@@ -116,7 +116,9 @@ Range RangeOf(const void* address)
   return search.Found;
 }
 
-/** The code that asks, as far as it has been seen: whether it is a function of the standard library. */
+/**
+ * The code that asks, as far as it has been seen: whether it is a function of the standard library.
+ */
 struct KnownCode
 {
   std::uintptr_t At;

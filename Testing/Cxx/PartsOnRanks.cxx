@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 /*
- * Parts of a surface on ranks, in memory and in files: whoever holds them, their triangles are those of
- * all points at once, also trimmed and where holes are filled, and a failure on one rank is that of all.
- * All ranks run this program: PartsOnRanks FOLDER [--ranks].
+ * Parts of a surface on ranks, in memory and in files: whoever holds them, their triangles are
+ * those of all points at once, also trimmed and where holes are filled, and a failure on one rank
+ * is that of all. All ranks run this program: PartsOnRanks FOLDER [--ranks].
  */
 #include "Check.h"
 
@@ -141,7 +141,7 @@ std::vector<Corners> AllAtOnce(
   PointView points;
   points.Double = cloud.front().data();
   points.Count = static_cast<Index>(cloud.size());
-  const PointsOfDataSet own = source ? ViewPoints(source) : PointsOfDataSet();
+  const DataSetPoints own = source ? ViewPoints(source) : DataSetPoints();
   const ConstrainedTriangulation all = TriangulateConstrained(
     points, source ? ToLines(source, own, Progress()) : ConstraintLines(), options);
   return ByPlaces(all.Result.Triangles, [&](Index i) {
@@ -283,7 +283,9 @@ void CheckGivenLattice(const Ranks& ranks)
   }
 }
 
-/** A surface with lakes: points at some places are taken away. Triangles across these are too long. */
+/**
+ * A surface with lakes: points at some places are taken away. Triangles across these are too long.
+ */
 std::vector<Place> CloudWithLakes(bool isLattice)
 {
   std::vector<Place> cloud = Cloud(isLattice);
@@ -335,7 +337,10 @@ std::vector<Corners3> TrianglesOf(vtkPolyData* surface)
   return triangles;
 }
 
-/** What is known of holes in words, in an order that no part decides; no spacing of one that is refused. */
+/**
+ * What is known of holes in words, in an order that no part decides; no spacing of one that is
+ * refused.
+ */
 std::vector<std::string> InWords(const std::vector<HoleReport>& reports)
 {
   std::vector<std::string> words;
@@ -489,7 +494,10 @@ std::vector<Place> SurveyLines()
   return cloud;
 }
 
-/** Triangles longer than the limit are not made; longer ones than the longest are opened, if above 0. */
+/**
+ * Triangles longer than the limit are not made; longer ones than the longest are opened, if above
+ * 0.
+ */
 void CheckFillingOf(const Ranks& ranks, const std::vector<Place>& cloud, double limit,
   double longest, const FillOptions& options, const std::string& name)
 {
@@ -700,7 +708,7 @@ void CheckTrimming(const Ranks& ranks)
       {
         vtkNew<vtkPolyData> kept;
         trimmed.Parts->Write(part, Progress(), kept, nullptr);
-        TrianglesOfDataSet ofPart = ViewTriangles(kept);
+        DataSetTriangles ofPart = ViewTriangles(kept);
         Buffer<Index> corners;
         std::for_each(ofPart.View.Corners, ofPart.View.CornersOf(ofPart.View.Count),
           [&corners](Index corner) { corners.Append(corner); });

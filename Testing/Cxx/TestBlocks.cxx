@@ -37,7 +37,7 @@
 
 namespace
 {
-/** Scattered points in a square at x0, some of them twice; its field data tell x0. */
+/** Scattered points in a square at x0, some of them twice; its field data contain x0. */
 vtkSmartPointer<vtkPolyData> MakeCloud(double x0, int duplicates)
 {
   auto cloud = vtkSmartPointer<vtkPolyData>::New();
@@ -263,7 +263,7 @@ std::vector<std::string> MessagesOfChain(vtkDataObject* input, double maximumEdg
   return messages;
 }
 
-void TestChainTellsOnce()
+void TestChainReportsOnce()
 {
   vtkNew<vtkPolyData> two;
   vtkNew<vtkPoints> points;
@@ -358,7 +358,7 @@ void TestErrorsFailTheRequest()
       ofFilter->Clear();
       Check(!update(input) && tried.Filter->GetErrorCode() != vtkErrorCode::NoError &&
           ofFilter->GetError() && !ofWindow->GetError(),
-        name + ": an error fails the request, and is told once");
+        name + ": an error fails the request, and is reported once");
       Check(update(tried.Good) && tried.Filter->GetErrorCode() == vtkErrorCode::NoError,
         name + ": a good update takes the error away");
     }
@@ -406,7 +406,7 @@ int TestBlocks(int, char*[])
   TestPartitions();
   TestSecondInput();
   TestMessages();
-  TestChainTellsOnce();
+  TestChainReportsOnce();
   TestArraysFakeNoReport();
   TestErrorsFailTheRequest();
   TestProgressAndAbort();

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Each filter runs on a small input as often as it asks for memory, and each time another piece is
-// refused. The run ends with an error and empty outputs, or with the usual result where the piece was
-// not needed; nothing leaks, and the next run has the usual result.
+// refused. The run ends with an error and empty outputs, or with the usual result where the piece
+// was not needed; nothing leaks, and the next run has the usual result.
 #include "Check.h"
 #include "FailingMemory.h"
 #include "Inputs.h"
@@ -116,7 +116,8 @@ Make OfPieces(const std::function<void(vtkReconstructPieces*)>& set)
   return [set]() {
     vtkNew<vtkReconstructPieces> filter;
     filter->SetFolder(Folder);
-    // VTK's own pool of threads, in headers and so in our library, ends the program where memory ends.
+    // VTK's own pool of threads, in headers and so in our library, ends the program where memory
+    // ends.
     filter->GetDelaunay()->SetNumberOfThreads(1);
     set(filter);
     return Filter(filter);
@@ -181,7 +182,7 @@ bool IsEmpty(vtkPolyDataAlgorithm* filter)
   return isEmpty;
 }
 
-/** What became of a run in which a piece was refused. */
+/** How a run ended in which a piece was refused. */
 struct Outcome
 {
   long Asked = 0, Left = 0;

@@ -262,7 +262,7 @@ void TestReport()
   {
     vtkFieldData* field = fill->GetOutput(port)->GetFieldData();
     Check(
-      field->GetArray("NumberOfHoles")->GetTuple1(0) == 3, "field data tell the number of holes");
+      field->GetArray("NumberOfHoles")->GetTuple1(0) == 3, "field data have the number of holes");
     Check(field->GetArray("NumberOfFilledHoles")->GetTuple1(0) == 2, "and of those filled");
   }
   vtkPolyData* report = fill->GetOutput(1);
@@ -323,7 +323,7 @@ void TestReport()
   {
     Check((data->GetArray("Status")->GetTuple1(i) == vtkFillElevationHoles::TOO_LARGE) ==
         (data->GetArray("Area")->GetTuple1(i) == 13.0),
-      "the large hole is told");
+      "the large hole is reported");
   }
   fill->SetMaximumHoleSize(0.0);
   fill->Update();
@@ -397,7 +397,7 @@ void TestSeparateCoordinates()
   vtkNew<vtkTest::ErrorObserver> observer;
   fill->AddObserver(vtkCommand::WarningEvent, observer);
   fill->Update();
-  Check(observer->GetWarningMessage().find("coordinates can tell apart") != std::string::npos,
+  Check(observer->GetWarningMessage().find("precision of the coordinates") != std::string::npos,
     "a spacing below the steps of float is refused");
 }
 
@@ -433,7 +433,7 @@ void TestUnlimitedSpacing()
         observer->GetWarningMessage().find("Hole 0") != std::string::npos, "the warning names it");
       Check(fill->GetOutput(1)->GetCellData()->GetArray("Status")->GetTuple1(0) ==
           vtkFillElevationHoles::FAILED,
-        "Status tells it");
+        "Status says so");
     }
   }
 }
@@ -609,7 +609,8 @@ void TestSurfacesThatPass()
   vtkNew<vtkPolyData> empty;
   fill->SetInputData(empty);
   fill->Update();
-  Check(!observer->GetWarning() && !observer->GetError(), "an empty input has been told of");
+  Check(!observer->GetWarning() && !observer->GetError(),
+    "another filter has warned of an empty input");
   Check(fill->GetOutput()->GetNumberOfPoints() == 0, "and empty output");
   observer->Clear();
 

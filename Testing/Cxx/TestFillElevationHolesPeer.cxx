@@ -76,7 +76,7 @@ int TestFillElevationHolesPeer(int, char*[])
   Check(ours.KeepsCellData, "cell data are kept");
   Numbers peer = Peer(sheet);
   Check(peer.Area > 401.0 && peer.BrokenRules > 0 && !peer.KeepsCellData,
-    "vtkFillHolesFilter closes the outer border (if not, tell the documentation)");
+    "vtkFillHolesFilter closes the outer border (if not, correct the documentation)");
 
   std::cout << "The same with a hole of 10 x 10 and an island of 2 x 2 in it\n";
   for (int y = 5; y < 15; ++y)

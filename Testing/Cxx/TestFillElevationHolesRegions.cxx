@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // OpenEdgeLength of vtkFillElevationHoles: regions of long triangles that patches replace, by
-// numbers: which cells stay, with their data, what is told of the regions, limits and errors.
+// numbers: which cells stay, with their data, what is reported of the regions, limits and errors.
 #include "Check.h"
 #include "MeshRules.h"
 #include "SheetOfSquares.h"

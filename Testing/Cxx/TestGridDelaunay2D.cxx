@@ -106,13 +106,13 @@ void TestOutput(int precision)
   const double expected[6] = { 0.0, 0.0, 1.0, 0.0, 0.0, 1.0 };
   Check(delaunay->GetLatticeFound() && lattice && lattice->GetNumberOfTuples() == 1 &&
       std::equal(expected, expected + 6, lattice->GetPointer(0)),
-    "the lattice is told");
+    "the lattice is reported");
   vtkNew<vtkGridDelaunay2D> again;
   again->SetLatticeModeToOff();
   again->SetInputData(output);
   again->Update();
   Check(!again->GetLatticeFound() && !again->GetOutput()->GetFieldData()->GetArray("Lattice"),
-    "no lattice is told when none was looked for, nor one of the input");
+    "no lattice is reported when none was looked for, nor one of the input");
 
   delaunay->SetDuplicatePolicyToKeepHighest();
   delaunay->Update();
@@ -194,7 +194,7 @@ std::vector<vtkIdType> Corners(vtkPolyData* surface)
   return corners;
 }
 
-/** A limit that leaves most points without a triangle is told, with one that does not. */
+/** A warning names a limit that leaves most points without a triangle, and one that does not. */
 void TestLimitTooSmall()
 {
   for (const double step : { 3e-7, 25.0, 4e9 })
@@ -236,7 +236,7 @@ void TestLimitTooSmall()
     }
     Check(std::count(has.begin(), has.end(), 1) >= 0.95 * 900 &&
         std::count(has.begin(), has.end(), 1) < 900 && !observer->GetWarning(),
-      "the limit that is told keeps triangles at 95 % of the points");
+      "the limit that is advised keeps triangles at 95 % of the points");
   }
 }
 
@@ -329,7 +329,7 @@ void TestProgressAndAbort()
     "an abort at the last report leaves no counts");
 }
 
-/** Observers hear of the work; the unit tests named Progress tell how often at most. */
+/** Observers hear of the work; the unit tests named Progress check how often at most. */
 void TestReportsAreMany()
 {
   vtkNew<vtkPoints> points;

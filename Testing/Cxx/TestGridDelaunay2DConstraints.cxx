@@ -126,7 +126,7 @@ void TestNothingIsAdded()
 
   auto lines = MakeLines({ { { 1, 1, -50 }, { 3, 2, -50 } } });
   delaunay->SetSourceData(lines);
-  Check(delaunay->GetSource() == lines, "the constraints are told");
+  Check(delaunay->GetSource() == lines, "GetSource() returns the constraints");
   delaunay->Update();
   vtkPolyData* output = delaunay->GetOutput();
   Check(output->GetPoints() == input->GetPoints() &&

@@ -3,7 +3,8 @@
 //
 // A picture of vtkGridDelaunay2D with constraints: a horizon on a lattice, dropped in the east of a
 // fault with a gap, whose two sides have depths of their own and meet at the tips; and a thin fault
-// that crosses the first. Colours are depths: they change at the faults, and triangles keep to them.
+// that crosses the first. Colours are depths: they change at the faults, and triangles keep to
+// them.
 #include "PictureFromAbove.h"
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"

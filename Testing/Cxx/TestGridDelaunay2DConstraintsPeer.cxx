@@ -3,8 +3,8 @@
 //
 // Constraints with which vtkDelaunay2D fails, and what vtkGridDelaunay2D makes of them: an outline
 // with two holes, and lines that run through points that they do not name. The length of all edges
-// that lie on the lines, as a part of that of the lines, tells who is right: 1 is right, less are
-// missing edges, more are edges that lie on each other. And no triangle of ours may cover what
+// that lie on the lines, as a part of that of the lines, shows who is right: 1 is right; with less,
+// edges are missing; with more, edges lie on each other. And no triangle of ours may cover what
 // another one covers.
 #include "Check.h"
 #include "MeshRules.h"
@@ -26,7 +26,9 @@
 
 namespace
 {
-/** A lattice of size x size; some points moved off their nodes, so that no two circles are equal. */
+/**
+ * A lattice of size x size; some points moved off their nodes, so that no two circles are equal.
+ */
 vtkSmartPointer<vtkPolyData> MakeInput(int size, double shift)
 {
   vtkNew<vtkPoints> points;

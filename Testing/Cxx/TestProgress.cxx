@@ -3,8 +3,8 @@
 //
 // On many points, the progress of the three filters rises in small steps, and after an abort,
 // wherever it comes, at most two reports follow, and nothing is left. How much work is done between
-// two reports is counted by the unit tests named Progress, which see the kernel; how many seconds
-// that takes, and a stop, is told by BenchmarkProgress.
+// two reports is counted by the unit tests named Progress, which see the kernel; BenchmarkProgress
+// measures how many seconds that takes, and a stop.
 #include "Check.h"
 
 #include "Inputs.h"
@@ -47,7 +47,7 @@ struct Reports
   }
 };
 
-/** Updates a filter, and tells how it reported. */
+/** Updates a filter, and returns what it reported. */
 Reports Watch(vtkPolyDataAlgorithm* filter, double abortAt = 2.0)
 {
   Reports reports;

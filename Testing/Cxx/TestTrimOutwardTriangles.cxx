@@ -380,7 +380,7 @@ void TestExtractedBoundary()
   Check(trim->GetOutput(2)->GetNumberOfLines() == 1, "a wide tolerance bridges the gap");
   Check(trim->GetEffectiveGapTolerance() == 14.0, "the tolerance set is the one used");
 
-  // What is left out is told; a tolerance that is no number of spacings is refused.
+  // What is left out is reported; a tolerance that is not a number of spacings is refused.
   vtkNew<vtkTest::ErrorObserver> observer;
   trim->AddObserver(vtkCommand::ErrorEvent, observer);
   trim->AddObserver(vtkCommand::WarningEvent, observer);
@@ -719,7 +719,7 @@ void TestEmptyMeshAndAbort()
   trim->SetInputData(empty);
   trim->Update();
   Check(!observer->GetWarning() && trim->GetOutput()->GetNumberOfCells() == 0,
-    "an empty mesh passes: what made it has told why");
+    "an empty mesh passes: the filter that made it has said why");
   vtkNew<vtkPolyData> cloud;
   cloud->SetPoints(MakeMesh()->GetPoints());
   trim->SetInputData(cloud);

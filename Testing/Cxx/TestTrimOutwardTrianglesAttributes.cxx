@@ -148,7 +148,9 @@ void TestNearestCorner()
     "global ids stay global ids");
 }
 
-/** Checks that triangles, which come behind other cells, have the data of those they are part of. */
+/**
+ * Checks that triangles, which come behind other cells, have the data of those they are part of.
+ */
 void CheckCells(vtkPolyData* output, vtkIdType others)
 {
   vtkCellData* data = output->GetCellData();
@@ -179,7 +181,7 @@ void TestIdsOfCells()
     CheckCells(output, port == 0 ? 2 : 0);
     Check(!output->GetCellData()->GetGlobalIds(), "ids that parts share are no global ids");
     Check(output->GetCellData()->GetPedigreeIds() == output->GetCellData()->GetArray("Patch"),
-      "pedigree ids tell where parts come from");
+      "pedigree ids show where parts come from");
   }
 
   // Nothing is cut: around everything; and along the other diagonal, which is recovered.

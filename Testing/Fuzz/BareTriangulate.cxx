@@ -609,7 +609,7 @@ private:
       return;
     }
     this->Require(static_cast<int>(hull.NumberOfPoints()) == this->Full.HullPoints,
-      "Euler's formula tells the points of the hull");
+      "Euler's formula gives the number of points of the hull");
 
     const auto grow = [&](const char* way, const DelaunayOptions& options, const Answer& answer) {
       CurrentWay = way;
@@ -654,7 +654,7 @@ private:
     return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
   }
 
-  /** About as long as an edge may be, or exactly. @return false if doubles cannot tell */
+  /** About as long as an edge may be, or exactly. @return false if doubles cannot decide */
   bool DrawLimit(double& limit)
   {
     const std::int64_t squared =
@@ -662,8 +662,8 @@ private:
         this->Points.Places[this->From.Below(this->Points.Count)]);
     const bool isExact = this->From.OneIn(2);
     limit = std::sqrt(static_cast<double>(squared) + (isExact ? 0.0 : 0.5));
-    const bool isTold = !isExact || limit == std::floor(limit);
-    if (squared == 0 || !isTold || this->Points.Span > 16384 ||
+    const bool isDecided = !isExact || limit == std::floor(limit);
+    if (squared == 0 || !isDecided || this->Points.Span > 16384 ||
       std::fabs(std::log2(this->Points.Unit)) > 100)
     {
       return false;

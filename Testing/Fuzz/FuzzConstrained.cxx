@@ -92,7 +92,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   catch (const Error& error)
   {
-    // The one error that lines between finite points may have: they cross anew wherever they are cut.
+    // The one error that lines between finite points may have: they cross anew wherever they are
+    // cut.
     Require(std::strstr(error.what(), "cross again and again"), error.what());
     return 0;
   }

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Surface -> filled surface: holes reported as filled are closed by patches that fit, others are left
- * alone for the reason that is told, counts agree, and elevations are within bounds. Regions of long
- * triangles are replaced by patches, or keep their triangles; those without room are not listed.
+ * Surface -> filled surface: holes reported as filled are closed by patches that fit, others are
+ * left alone for the reason that is reported, counts agree, and elevations are within bounds.
+ * Regions of long triangles are replaced by patches, or keep their triangles; those without room
+ * are not listed.
  */
 #include "FuzzSurface.h"
 
@@ -67,9 +68,9 @@ void RequireReport(
   const bool isTooLarge = options.MaximumHoleSize > 0.0 && report.Size > options.MaximumHoleSize;
   const bool hasTooMany =
     options.MaximumHoleEdges > 0 && report.NumberOfEdges > options.MaximumHoleEdges;
-  Require((report.Status == FillStatus::TooLarge) == isTooLarge, "holes too large are told");
+  Require((report.Status == FillStatus::TooLarge) == isTooLarge, "holes too large are reported");
   Require((report.Status == FillStatus::TooManyEdges) == (hasTooMany && !isTooLarge),
-    "holes with too many edges are told");
+    "holes with too many edges are reported");
   Require(
     (report.Status == FillStatus::Failed) == !report.Reason.IsEmpty(), "failures have a reason");
   Require(!IsClosed(report) || !holes.Touched[hole], "a hole in which borders touch is not filled");
@@ -91,7 +92,7 @@ void RequireReport(
   Require(
     triangles == report.NumberOfEdges - 2 + 2 * (islands + points + known), "a patch is complete");
   Require(points <= options.MaximumInsertedPoints, "no more points than allowed");
-  Require(report.Method != Interpolation::Adaptive, "the method used is told");
+  Require(report.Method != Interpolation::Adaptive, "the method used is reported");
 
   // The patch's own border is that of the hole.
   std::multiset<std::pair<Index, Index>> open;
@@ -143,7 +144,7 @@ void RequirePoints(const Surface& surface, const Holes& holes, Index hole,
   const bool allFinite = std::all_of(surface.Xyz.begin(), surface.Xyz.end(),
     [](double value) { return std::isfinite(value) && std::fabs(value) < 1e100; });
   const Interpolation method = filled.Reports[hole].Method;
-  // Adaptive mixes methods, and tells the one with the largest share: it may not be all Membrane.
+  // Adaptive mixes methods, and reports the one with the largest share: it may not be all Membrane.
   const bool isMean = method == Interpolation::NeighborMean ||
     (method == Interpolation::Membrane && options.Method != Interpolation::Adaptive);
   for (Index i = begin; i < end; ++i)

@@ -4,8 +4,8 @@
  * @file
  * How fuzz targets make input of bytes, and how they fail.
  *
- * Any bytes are valid: where they end, zeros follow. Points are drawn by commands of a few bytes each,
- * so that a changed byte changes one part of the input and leaves the others alone.
+ * Any bytes are valid: where they end, zeros follow. Points are drawn by commands of a few bytes
+ * each, so that a changed byte changes one part of the input and leaves the others alone.
  */
 #ifndef FuzzInput_h
 #define FuzzInput_h
@@ -98,7 +98,9 @@ public:
   {
   }
 
-  /** The next bytes as an input of their own, so that what reads them does not move what follows. */
+  /**
+   * The next bytes as an input of their own, so that what reads them does not move what follows.
+   */
   Input Take(std::size_t size)
   {
     const std::uint8_t* const begin = this->Next;

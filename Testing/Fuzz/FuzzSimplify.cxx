@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Points, lines and an elevation error -> mesh of few points: every other point is within the error,
- * lines are edges, all else is Delaunay where that is asked for; threads change nothing, and where there
- * are no lines the order of points does not either.
+ * Points, lines and an elevation error -> mesh of few points: every other point is within the
+ * error, lines are edges, all else is Delaunay where that is asked for; threads change nothing, and
+ * where there are no lines the order of points does not either.
  */
 #include "ConstrainedMesh.h"
 #include "FuzzLines.h"
@@ -23,7 +23,7 @@ namespace
 {
 using namespace fuzz;
 
-/** Duplicates and points that are not finite are told as without an error; the others by the error. */
+/** Duplicates and points that are not finite are as without an error; the others depend on it. */
 void RequireAccount(const Cloud& all, const Triangulation& few, const Triangulation& whole)
 {
   Require(few.UnusedPoints.size() == few.UnusedReasons.size() &&
@@ -43,7 +43,7 @@ void RequireAccount(const Cloud& all, const Triangulation& few, const Triangulat
     reasons.push_back(few.UnusedReasons[i]);
   }
   Require(unused == whole.UnusedPoints && reasons == whole.UnusedReasons,
-    "duplicates and points that are not finite are told as without an error");
+    "duplicates and points that are not finite are reported as without an error");
   Require(few.NumberOfDuplicates == whole.NumberOfDuplicates &&
       few.NumberOfNotFinite == whole.NumberOfNotFinite && few.NumberOfRedundant == redundant,
     "the counts are those of the lists");

@@ -43,7 +43,9 @@ inline bool IsMeasurable(const Surface& surface)
 
 namespace detail
 {
-/** Turns the edge of h where both its triangles together are strictly convex; Twins are not kept. */
+/**
+ * Turns the edge of h where both its triangles together are strictly convex; Twins are not kept.
+ */
 inline void Flip(Mesh& mesh, Index h)
 {
   const Index twin = mesh.Twin(h);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Surface + rings -> trimmed surface, or surface -> outline: the result is a surface, it covers what it
- * covered before, rings run along its edges, and what is kept is what is inside.
+ * Surface + rings -> trimmed surface, or surface -> outline: the result is a surface, it covers
+ * what it covered before, rings run along its edges, and what is kept is what is inside.
  */
 #include "FuzzSurface.h"
 #include "Location.h"
@@ -288,7 +288,9 @@ double HeightOver(const Point2& a, const Point2& b, const Point2& p)
   return ((b.X - a.X) / length) * (p.Y - a.Y) - ((b.Y - a.Y) / length) * (p.X - a.X);
 }
 
-/** How deep a segment leads into a triangle: how far the middle of what is inside is from its sides. */
+/**
+ * How deep a segment leads into a triangle: how far the middle of what is inside is from its sides.
+ */
 double DepthIn(const Point2 (&corners)[3], const Point2& a, const Point2& b)
 {
   double begin = 0.0, end = 1.0;
@@ -398,7 +400,8 @@ void RequireTrimmed(const Surface& surface, const std::vector<Point2>& points, c
   {
     largest = std::max({ largest, std::fabs(points[id].X), std::fabs(points[id].Y) });
   }
-  // A vertex of the border may move by some units in the last place, into what is thinner than that.
+  // A vertex of the border may move by some units in the last place, into what is thinner than
+  // that.
   const double height = LeastHeight(surface.Triangles);
   const bool isThick = height > 64.0 * 0x1p-53 * largest;
   RequireNone(SurfaceFindings(mesh, isThick), "trimmed, with what is outward");

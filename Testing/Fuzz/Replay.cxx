@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The main of a fuzz target where the compiler has no libFuzzer: runs it on files, and on bytes that
- * are the same each time.
+ * The main of a fuzz target where the compiler has no libFuzzer: runs it on files, and on bytes
+ * that are the same each time.
  *
  *   FuzzTrim FILE|FOLDER ...    runs these
  *   FuzzTrim --made COUNT ...   runs so many inputs that are made, then the others

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""How a fault and what it replaces stand beside each other in the code."""
+"""How a fault and what it replaces stand next to each other in the code."""
 
 
 def switched(path, number, right, wrong):

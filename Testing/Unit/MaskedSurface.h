@@ -37,7 +37,9 @@ inline bool Coast(double x, double y)
     !(y > 0.6 && std::fabs(x - 0.4) < 0.025);
 }
 
-/** Two round islands, one with a lake, a neck between them 0.05 wide, and two islands, one a ring. */
+/**
+ * Two round islands, one with a lake, a neck between them 0.05 wide, and two islands, one a ring.
+ */
 inline bool Archipelago(double x, double y)
 {
   const auto distance = [&](double p, double q) { return std::hypot(x - p, y - q); };

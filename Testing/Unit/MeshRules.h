@@ -22,7 +22,9 @@ inline elevation::ValidateOptions RulesOfSurface()
   return rules;
 }
 
-/** The rules that a mesh breaks, as text, and whether its Twins are wrong; empty when all is well. */
+/**
+ * The rules that a mesh breaks, as text, and whether its Twins are wrong; empty when all is well.
+ */
 inline std::string FindingsOf(
   const elevation::Mesh& mesh, const elevation::ValidateOptions& rules = RulesOfSurface())
 {

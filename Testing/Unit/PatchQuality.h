@@ -131,7 +131,7 @@ Quality Judge(const Outcome& run, const Mesh& all, Index hole, SpacingAt&& spaci
   return quality;
 }
 
-/** All patches, by the spacings that the reports tell: not of those that are graded. */
+/** Judges all patches but the graded ones by the spacings that the reports give. */
 inline Quality Judge(const Outcome& run)
 {
   Quality quality;

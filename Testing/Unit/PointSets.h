@@ -74,8 +74,8 @@ constexpr const char* RealClouds[] = { "autzen_trim_ground", "f3_fs6", "f3_trunc
   "landlab_nocella", "nankai_channels", "srtm_pyrenees_voids400", "st_helens_after_usgs" };
 
 /**
- * A small cloud of the kind of a real one: with its steps, its place on the map, an outline and voids
- * of its kind. Of LiDAR, points of uneven density; of others, nodes of a lattice.
+ * A small cloud of the kind of a real one: with its steps, its place on the map, an outline and
+ * voids of its kind. Of LiDAR, points of uneven density; of others, nodes of a lattice.
  */
 inline Cloud CloudLike(const std::string& name)
 {

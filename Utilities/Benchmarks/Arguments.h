@@ -183,7 +183,7 @@ public:
       const auto& [needsValue, take] = row->second;
       if (needsValue && i + 1 >= argc)
       {
-        throw UsageError(option + " needs a value; --help tells which");
+        throw UsageError(option + " needs a value; --help lists them");
       }
       take(needsValue ? argv[++i] : "");
     }

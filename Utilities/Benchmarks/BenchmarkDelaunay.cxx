@@ -5,7 +5,7 @@
 // against each other. See README.md for how to run it and how to read what it prints.
 //
 // For each data set:
-//   1. Trial: every code runs once in a process of its own. This tells its peak of memory, and
+//   1. Trial: every code runs once in a process of its own. This gives its peak of memory, and
 //      whether it survives within the time limit.
 //   2. Check: in another process the survivors run once and their meshes are examined.
 //   3. Timing: in that same process they run in turn, A B C A B C ..., so that whatever else the

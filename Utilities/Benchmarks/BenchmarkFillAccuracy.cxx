@@ -565,7 +565,7 @@ struct Reliability
 {
   static constexpr int Steps = 12; ///< of a quarter; one more class holds what is beyond
   std::size_t Counts[3][Steps + 1] = {};
-  std::size_t Untold = 0;
+  std::size_t Unknown = 0;
 
   void Add(const Reliability& other)
   {
@@ -576,7 +576,7 @@ struct Reliability
         this->Counts[third][step] += other.Counts[third][step];
       }
     }
-    this->Untold += other.Untold;
+    this->Unknown += other.Unknown;
   }
   /** The share of errors within a number of quarters; of one third, or of all if below 0. */
   double Share(int quarters, int third = -1) const
@@ -609,7 +609,7 @@ Reliability CompareErrors(const Filled& filled, const Coordinates& lost, vtkIdTy
   {
     places[i] = 0.0;
   }
-  const std::vector<double> told = DistancesOf(points, filled.Patch, places);
+  const std::vector<double> expected = DistancesOf(points, filled.Patch, places);
   std::vector<double> away(misses.size(), std::numeric_limits<double>::infinity());
   for (const Index id : std::set<Index>(filled.Patch.begin(), filled.Patch.end()))
   {
@@ -623,14 +623,14 @@ Reliability CompareErrors(const Filled& filled, const Coordinates& lost, vtkIdTy
   Reliability result;
   for (std::size_t k = 0; k < misses.size(); ++k)
   {
-    if (misses[k] < 0.0 || !(told[k] >= 0.0))
+    if (misses[k] < 0.0 || !(expected[k] >= 0.0))
     {
-      ++result.Untold;
+      ++result.Unknown;
       continue;
     }
     const int third = std::min(2, static_cast<int>(3.0 * away[k] / depth));
     // An error of 0 is within one of 0.
-    const double ratio = misses[k] > 0.0 ? 4.0 * misses[k] / told[k] : 0.0;
+    const double ratio = misses[k] > 0.0 ? 4.0 * misses[k] / expected[k] : 0.0;
     const int step =
       ratio > 0.0 ? static_cast<int>(std::ceil(std::min(ratio, Reliability::Steps + 1.0))) - 1 : 0;
     ++result.Counts[third][step];
@@ -975,10 +975,11 @@ void WriteReliability(
 
 void PrintReliability(const Reliability& errors)
 {
-  std::printf("%-28s within one %.1f %%, two %.1f %%; within one by thirds from the rim %.1f, %.1f, "
-              "%.1f %%; not told %zu\n",
+  std::printf(
+    "%-28s within one %.1f %%, two %.1f %%; within one by thirds from the rim %.1f, %.1f, "
+    "%.1f %%; unknown %zu\n",
     "  FilledError", 100.0 * errors.Share(4), 100.0 * errors.Share(8), 100.0 * errors.Share(4, 0),
-    100.0 * errors.Share(4, 1), 100.0 * errors.Share(4, 2), errors.Untold);
+    100.0 * errors.Share(4, 1), 100.0 * errors.Share(4, 2), errors.Unknown);
 }
 
 /**

@@ -24,7 +24,7 @@ using namespace benchmark;
 
 const char* const Usage = R"(Usage: BenchmarkProgress [options]
 
-Updates each filter on points with a dozen gaps, on one thread, and tells, in milliseconds of
+Updates each filter on points with a dozen gaps, on one thread, and prints, in milliseconds of
 processor time, of the median of the runs: the whole update; the longest silence, which is the time
 between two reports; and the longest time from an abort, at 5, 30, 55, 80 and 97 % of the way, to the
 end of the update. The last column has their parts of the whole update, in thousandths.

@@ -27,7 +27,7 @@ const char* const Usage = R"(Usage: BenchmarkSimplify [options]
 
 Times vtkGridDelaunay2D with a MaximumElevationError beside triangulating all points, in turns, and
 counts its vertices beside greedy insertion one point at a time (by coordinates, also on a
-lattice). Tells the largest vertical distance of all points from what vtkDecimatePro and
+lattice). Prints the largest vertical distance of all points from what vtkDecimatePro and
 vtkQuadricDecimation make of the full triangulation with as many vertices. Tables are Markdown.
 
   --files LIST      .vtp, .f64, .csv or .xyz files
@@ -42,7 +42,7 @@ vtkQuadricDecimation make of the full triangulation with as many vertices. Table
   --json FILE       writes the processor seconds of each row to a file
   --help            shows this text
 
-The exit code is 1 when an error told is above the limit; 2 for a wrong option.
+The exit code is 1 when a reported error is above the limit; 2 for a wrong option.
 )";
 
 struct Options
@@ -174,7 +174,7 @@ struct Variant
   std::vector<double> Seconds{};
   std::vector<double> Processor{};
   Index Vertices = 0;
-  double Largest = 0.0; ///< error, as told
+  double Largest = 0.0; ///< error, as reported
   bool IsLattice = false;
   vtkSmartPointer<vtkPolyData> Mesh{}; ///< of all points
 

@@ -153,7 +153,7 @@ Outcome RunInChild(Result& result, Work&& work)
 
 /**
  * The growth of this process's peak of resident memory since its construction, in bytes.
- * Linux tells and lets the peak be reset; elsewhere, and where it may not be reset, the answer is
+ * Linux reports the peak and lets it be reset; elsewhere, and where it may not be reset, the answer is
  * -1: not known.
  */
 class PeakMemory

@@ -67,7 +67,7 @@ public:
 /** vtkGridDelaunay2D: vtkPolyData in, vtkPolyData out, a fresh filter each time. 0 threads: all. */
 std::unique_ptr<Competitor> NewGridDelaunay(int threads);
 
-/** The same on one thread, to tell what threads are worth. */
+/** The same on one thread, to show what threads gain. */
 std::unique_ptr<Competitor> NewGridDelaunayOneThread();
 
 /** That several times at once, one a thread: what the machine gives to so many threads. */

@@ -72,7 +72,7 @@ class Surface:
         return os.path.getsize(self.path)
 
     def row(self, error, asked):
-        """What is told of one surface. asked: words"""
+        """What is reported of one surface. asked: words"""
         result = reconstruct(self.points, maximum_elevation_error=error)
         report = result.report
         # Points outside the outline that was found are no points of the surface.

@@ -99,7 +99,7 @@ def triangulations(benchmark, cloud, folder, options):
              "--time-limit", str(options.time_limit), "--json", path, *arguments],
             stdout=subprocess.DEVNULL, check=False,
         )
-        if done.returncode not in (0, 1):  # 1: a result of ours is wrong, which the file tells
+        if done.returncode not in (0, 1):  # 1: a result of ours is wrong, as the file says
             raise Failed(f"{benchmark}: code {done.returncode}")
         with open(path, encoding="utf-8") as stream:
             return json.load(stream)
@@ -205,8 +205,8 @@ def measure_all(folder, options, benchmark, save):
     """save(measured) is called after each step, so that little is lost when it is stopped."""
     from vtkelevationsurface.picture.display import screen
 
-    told = {"repeats": options.repeats, "time_limit": options.time_limit}
-    measured = {"machine": machine(), "options": told, "clouds": [], "accuracy": []}
+    chosen = {"repeats": options.repeats, "time_limit": options.time_limit}
+    measured = {"machine": machine(), "options": chosen, "clouds": [], "accuracy": []}
     with screen() as reason:  # meshlabserver does not start without one
         if reason:
             print(f"no display for MeshLab: {reason}", file=sys.stderr)

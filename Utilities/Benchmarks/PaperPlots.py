@@ -12,7 +12,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: 
 
 from PaperTables import NAMES, PAPER_NAMES, paper_series, series, slope  # noqa: E402
 
-# Colours that colour-blind eyes can tell apart; each code has a marker of its own too.
+# Colours that colour-blind eyes can distinguish; each code has a marker of its own too.
 LOOKS = {
     "default": ("#d55e00", "o"),
     "voxel_traversal": ("#0072b2", "s"),

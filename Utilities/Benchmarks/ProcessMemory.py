@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Memory of this process, as Linux tells it."""
+"""Memory of this process, as Linux reports it."""
 
 
 def memory_of(name):

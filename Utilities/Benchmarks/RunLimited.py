@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs a program with a limit of processor time, and tells what it took.
+"""Runs a program with a limit of processor time, and prints what it took.
 
     RunLimited.py SECONDS PROGRAM ARGUMENTS ...
 

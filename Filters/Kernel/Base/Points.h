@@ -62,7 +62,7 @@ inline double SquaredLength(Point2 p, Point2 q)
 }
 
 /** A hash in which all bits are well mixed, the same for 0.0 and -0.0. */
-struct HashOfPoint
+struct PointHash
 {
   std::size_t operator()(const Point2& p) const
   {

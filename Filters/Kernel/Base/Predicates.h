@@ -74,7 +74,7 @@ inline Sign Orientation(const Point2& a, const Point2& b, const Point2& c)
  * @retval Positive  d lies inside
  * @retval Zero      the four points are co-circular
  * @retval Negative  d lies outside
- * (With a, b, c clockwise the sign is reversed; with collinear a, b, c the sign tells the side of
+ * (With a, b, c clockwise the sign is reversed; with collinear a, b, c the sign gives the side of
  * their line, as the limit of circles.) Exact for all finite coordinates.
  */
 inline Sign InCircle(const Point2& a, const Point2& b, const Point2& c, const Point2& d)

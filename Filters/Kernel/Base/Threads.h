@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Independent pieces of work on several threads. Where the threads come from is for the one who links
- * the kernel to say.
+ * Independent pieces of work on several threads. Where the threads come from is for the one who
+ * links the kernel to say.
  */
 #ifndef elevation_Base_Threads_h
 #define elevation_Base_Threads_h
@@ -41,8 +41,8 @@ inline int ThreadsAtOnce(int requested)
 }
 
 /**
- * Calls call(0) to call(count - 1), each once, on up to @a threads threads, and returns when all have
- * returned.
+ * Calls call(0) to call(count - 1), each once, on up to @a threads threads, and returns when all
+ * have returned.
  * @param[in] call  throws nothing
  */
 void CallOnThreads(Index count, int threads, const std::function<void(Index)>& call);
@@ -94,11 +94,11 @@ public:
 
   Round(Clock::time_point end, bool isAlone)
     : End(end)
-    , LastWork(WorkOfThread() + (isAlone ? 1 << 20 : 1 << 23))
+    , LastWork(CountThreadWork() + (isAlone ? 1 << 20 : 1 << 23))
   {
   }
   /** For the thread that made it. */
-  bool IsOver() const { return WorkOfThread() >= this->LastWork || Clock::now() >= this->End; }
+  bool IsOver() const { return CountThreadWork() >= this->LastWork || Clock::now() >= this->End; }
 
 private:
   const Clock::time_point End;

@@ -15,8 +15,8 @@ namespace elevation
 {
 
 /**
- * The root of the set that an id belongs to. Halves the path to it, so that n calls and joins cost at
- * most n log n.
+ * The root of the set that an id belongs to. Halves the path to it, so that n calls and joins cost
+ * at most n log n.
  * @param[in,out] parents  one an id; a root is its own parent
  */
 template <typename Ids>

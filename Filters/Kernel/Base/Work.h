@@ -47,7 +47,7 @@ inline void CountWork(std::size_t steps)
 }
 
 /** What the calling thread has done since it began. */
-inline std::size_t WorkOfThread()
+inline std::size_t CountThreadWork()
 {
   return detail::OwnWork.Done;
 }

@@ -161,13 +161,13 @@ private:
       const Entry entry = get(i);
       sorted[ends[bucketOf(entry)]++] = entry;
     });
-    Index told = 0;
+    Index reported = 0;
     for (Index begin = 0, bucket = 0; fullest > Few && begin < count; begin = ends[bucket++])
     {
-      if (begin - told > 65536)
+      if (begin - reported > 65536)
       {
         Report(this->Monitor, 0.0);
-        told = begin;
+        reported = begin;
       }
       const Index size = ends[bucket] - begin;
       if (size > Few)

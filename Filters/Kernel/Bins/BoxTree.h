@@ -114,8 +114,8 @@ private:
  * Calls visit(i) for all i in [begin, end), and report(fraction) now and then: one row, or one bin,
  * may hold all points.
  */
-template <typename Tell, typename Visit>
-void ForEachReporting(Index begin, Index end, Tell&& report, Visit&& visit)
+template <typename ReportDone, typename Visit>
+void ForEachReporting(Index begin, Index end, ReportDone&& report, Visit&& visit)
 {
   constexpr Index stretch = 1 << 16;
   for (Index i = begin;;)

@@ -54,8 +54,8 @@ struct DelaunayOptions
   /** Triangles with a longer edge (in x,y) are left out; 0: no limit. */
   double MaximumEdgeLength = 0.0;
   /**
-   * As few points become vertices as are needed for the others to be within this vertical distance of
-   * the surface; 0: all points do.
+   * As few points become vertices as are needed for the others to be within this vertical distance
+   * of the surface; 0: all points do.
    */
   double MaximumElevationError = 0.0;
   /** With it: points of lines go, too, where the lines stay nearly the same (FewerPieces.h). */
@@ -87,7 +87,7 @@ struct Triangulation
   std::vector<UnusedReason> UnusedReasons; ///< one per unused point
   Index NumberOfDuplicates = 0;
   Index NumberOfNotFinite = 0;
-  Index NumberOfHidden = 0;    ///< as NameHidden() tells: not among those that are not finite
+  Index NumberOfHidden = 0;    ///< set by NameHidden(); not counted as not finite
   Index NumberOfRedundant = 0; ///< points within MaximumElevationError
   /** No vertical distance of such a point is larger; it is no larger than MaximumElevationError. */
   double LargestElevationError = 0.0;

@@ -25,8 +25,8 @@ struct IsLess
 
 /**
  * Brings lesser points before greater ones.
- * @return where the greater ones begin: as near to a place as equal coordinates, which stay together,
- *         let it; never the end
+ * @return where the greater ones begin: as near to a place as equal coordinates, which stay
+ *         together, let it; never the end
  */
 std::vector<Point2>::iterator CutAt(std::vector<Point2>::iterator first,
   std::vector<Point2>::iterator place, std::vector<Point2>::iterator last, bool isOfY)

@@ -5,12 +5,12 @@
  * The cells of a plane that is cut for several ranks, each with about as many points.
  *
  * The plane is halved, each half again, and so on, always across the longer side of what the points
- * take up there [Bentley 1975]. A node of this tree is a range of cells, [begin, end), and is cut in
- * the middle of the range, where a sample of the points says that the points divide in the same
+ * take up there [Bentley 1975]. A node of this tree is a range of cells, [begin, end), and is cut
+ * in the middle of the range, where a sample of the points says that the points divide in the same
  * ratio.
  *
- * A cell has the points on its low sides and not those on its high sides. So each point has one owner,
- * and points with the same x,y have the same one.
+ * A cell has the points on its low sides and not those on its high sides. So each point has one
+ * owner, and points with the same x,y have the same one.
  *
  * [Bentley 1975] Multidimensional binary search trees used for associative searching.
  */

@@ -24,8 +24,8 @@ bool Cell::HoldsCircle(Point2 a, Point2 b, Point2 c) const
   }
   // The centre from a, and a bound of its error: of each product a few units in the last place.
   constexpr double unit = 32.0 * std::numeric_limits<double>::epsilon();
-  // With d above it, the radius is above 1e-101, and what products lose below 1e-308 shifts the centre
-  // by less than 1e-122: far less than the rounding that is allowed for.
+  // With d above it, the radius is above 1e-101, and what products lose below 1e-308 shifts the
+  // centre by less than 1e-122: far less than the rounding that is allowed for.
   constexpr double smallest = 1e-200;
   if (this->ClearlyHolds(a, b, c))
   {
@@ -82,7 +82,7 @@ namespace
 {
 using Edge = std::pair<Index, Index>;
 
-/** In loops after the triangulation, which has told all progress: lets an abort in. */
+/** Lets an abort in, in loops after the triangulation: that has already reported all progress. */
 void CheckAbort(const Progress& progress, std::size_t step)
 {
   if (step % 49152 == 0) // also a multiple of three
@@ -340,7 +340,9 @@ void MarkSettled(
   }
 }
 
-/** The points on the border of the mesh, or near that of its box: few, if they are spread evenly. */
+/**
+ * The points on the border of the mesh, or near that of its box: few, if they are spread evenly.
+ */
 std::vector<char> FindNear(const SettledMesh& mesh)
 {
   std::vector<char> isNear = mesh.IsOnBorder;
@@ -370,13 +372,13 @@ std::vector<char> FindNear(const SettledMesh& mesh)
  *
  * The others are settled. For let the circle of a triangle, with its rim, reach a place that is not
  * inside the cell. As the cell is convex and has all points, that place is not inside the mesh
- * either, at most on its border. Walk straight to it from some place inside the triangle, so that no
- * vertex is on the way. Lifted to the paraboloid, the mesh is convex: each edge on the way is crossed
- * to a triangle whose plane is at least as high over that place, so that its circle reaches it as
- * well. Hence all triangles on the way are open. The last of them has an edge on the border of the
- * mesh, whose ends are near; and what shares an edge with an open triangle has two near corners. So
- * all are looked at. It does not matter where rounding alone refuses a circle: what is open without
- * need makes more triangles near, never fewer.
+ * either, at most on its border. Walk straight to it from some place inside the triangle, so that
+ * no vertex is on the way. Lifted to the paraboloid, the mesh is convex: each edge on the way is
+ * crossed to a triangle whose plane is at least as high over that place, so that its circle reaches
+ * it as well. Hence all triangles on the way are open. The last of them has an edge on the border
+ * of the mesh, whose ends are near; and what shares an edge with an open triangle has two near
+ * corners. So all are looked at. It does not matter where rounding alone refuses a circle: what is
+ * open without need makes more triangles near, never fewer.
  *
  * It holds for coordinates alone: on a lattice, nodes are triangulated, which are elsewhere.
  */

@@ -6,19 +6,19 @@
  *
  * A triangle depends on the points in and on its circle alone. So in a cell of the plane, all of
  * whose points are known, each triangle whose circle lies in the cell is one of the whole cloud: it
- * is settled. The others touch few points, those of the seam: near the border of the cell, and on the
- * hull of its points.
+ * is settled. The others touch few points, those of the seam: near the border of the cell, and on
+ * the hull of its points.
  *
  * Settled triangles cover parts of the plane. Every other triangle of the whole cloud has its three
- * corners on seams: a corner with settled triangles all around has no others. So the triangulation of
- * the points of all seams has these triangles too; what else it has lies where the settled ones are,
- * and their edges tell where that is. Two pieces are therefore joined by triangulating the points of
- * their two seams, and what is settled then is what lies in the two cells together. Level by level
- * this gives all triangles, while only seams are passed on.
+ * corners on seams: a corner with settled triangles all around has no others. So the triangulation
+ * of the points of all seams has these triangles too; what else it has lies where the settled ones
+ * are, and their edges show where that is. Two pieces are therefore joined by triangulating the
+ * points of their two seams, and what is settled then is what lies in the two cells together. Level
+ * by level this gives all triangles, while only seams are passed on.
  *
- * It rests on the rule for points on one circle, the fan of the lowest one: it keeps a triangle when
- * other points of its circle go. For among fewer points its lowest corner still is the lowest, and its
- * other two are still neighbours on the circle.
+ * It rests on the rule for points on one circle, the fan of the lowest one: it keeps a triangle
+ * when other points of its circle go. For among fewer points its lowest corner still is the lowest,
+ * and its other two are still neighbours on the circle.
  *
  * The seam of a cell with m evenly spread points has some multiple of sqrt(m) points.
  */

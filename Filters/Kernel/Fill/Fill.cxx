@@ -229,7 +229,7 @@ public:
     return std::move(this->Result);
   }
 
-  /** See NeedsOfHoles(). */
+  /** See FindHoleNeeds(). */
   std::vector<HoleNeed> PlanAndReturnNeeds()
   {
     this->PlanAll();
@@ -541,7 +541,7 @@ HoleReport MeasureHole(const Mesh& mesh, const Holes& holes, Index hole, const F
   return report;
 }
 
-std::vector<HoleNeed> NeedsOfHoles(const Mesh& mesh, const PointView& points, const Holes& holes,
+std::vector<HoleNeed> FindHoleNeeds(const Mesh& mesh, const PointView& points, const Holes& holes,
   const FillOptions& options, const WholeSurface& whole)
 {
   return HoleFilling(mesh, points, holes, options, whole).PlanAndReturnNeeds();

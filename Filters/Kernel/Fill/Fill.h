@@ -12,7 +12,7 @@
  * Where a hole is a region of long triangles, the patch replaces them; of a region that is not
  * filled, the caller keeps them. They are no evidence: elevations are found from the other ones,
  * and the points inside the region. A region whose patch would have no new point has no room: it
- * stays as it is and is no hole.
+ * stays as it is and is not a hole.
  *
  * Guarantees: a patch is constrained Delaunay, lies inside its hole and covers it exactly; its
  * boundary edges are those of the hole, none is split. The rest of the surface stays as it is.
@@ -124,7 +124,7 @@ struct FillResult
   std::vector<Index> TriangleOffsets{ 0 };
   /** One per new point: the nearest known point of its hole; the lowest of several. */
   std::vector<Index> NearestBoundaryPoints;
-  /** One per new point: of its elevation; NaN where nothing can be told. */
+  /** One per new point: the standard error of its elevation; NaN where it is unknown. */
   std::vector<double> StandardErrors;
   std::vector<std::vector<double>> Attributes; ///< as in the options, one value per new point
   std::vector<HoleReport> Reports;
@@ -147,8 +147,8 @@ FillResult FillHoles(const Mesh& mesh, const PointView& points, Holes holes,
   const FillOptions& options, const WholeSurface& whole = WholeSurface());
 
 /**
- * The report of a hole by its edges alone: filled, unless MaximumHoleSize or MaximumHoleEdges refuse
- * it.
+ * The report of a hole by its edges alone: filled, unless MaximumHoleSize or MaximumHoleEdges
+ * refuse it.
  * @param[in] mesh  has the points of the holes
  */
 HoleReport MeasureHole(
@@ -164,7 +164,7 @@ struct HoleNeed
 };
 
 /** Of each hole of a part. As FillHoles(), without quotas. */
-std::vector<HoleNeed> NeedsOfHoles(const Mesh& mesh, const PointView& points, const Holes& holes,
+std::vector<HoleNeed> FindHoleNeeds(const Mesh& mesh, const PointView& points, const Holes& holes,
   const FillOptions& options, const WholeSurface& whole = WholeSurface());
 
 /**
@@ -173,8 +173,8 @@ std::vector<HoleNeed> NeedsOfHoles(const Mesh& mesh, const PointView& points, co
  * @param[in] numberOfPoints  of the whole surface
  * @throws Error if more new points are expected than MaximumExpectedPoints; if this is 0, than ten
  *         times the surface's points and more than a million. It names a spacing that would do. No
- *         error if MaximumInsertedPoints is no larger: then large holes fail. The same if one hole takes
- *         more than MemoryOfHole.
+ *         error if MaximumInsertedPoints is no larger: then large holes fail. The same if one hole
+ *         takes more than MemoryOfHole.
  */
 void CheckEffort(
   const std::vector<HoleNeed>& needs, double numberOfPoints, const FillOptions& options);

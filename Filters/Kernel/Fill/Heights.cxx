@@ -34,7 +34,9 @@ constexpr std::size_t MostCentersWithPointsInside = 1000;
 /** Centres closer together than this, in spacings, add nothing but rounding. */
 constexpr double LeastDistance = 0.02;
 
-/** Places where the methods are tried, and places that suffice with moved points at reduced size. */
+/**
+ * Places where the methods are tried, and places that suffice with moved points at reduced size.
+ */
 constexpr int NumberOfPlaces = 32;
 constexpr int NumberOfPlacesOfLargeHoles = 4;
 constexpr int EnoughPlaces = 4;
@@ -54,7 +56,7 @@ constexpr double SlopeLimit = 3.0;
 
 /**
  * An edge is steep from so many median slopes of edges at the boundary on. With 5 LiDAR scans lose,
- * with 8 only cliffs and outliers are found. Points that steep edges cut off are no centres of
+ * with 8 only cliffs and outliers are found. Points that steep edges cut off are not centres of
  * splines if they are less than this part of what all edges join.
  */
 constexpr double SteepEdge = 6.0;
@@ -231,7 +233,7 @@ void Heights::CollectSlopes(const VertexStars& stars)
 
 /**
  * Which of the known points stand apart: parts of the boundary and its ring that only steep edges
- * join to the rest, and that are small beside it.
+ * join to the rest, and that are small compared with it.
  */
 std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& values) const
 {
@@ -366,7 +368,9 @@ void Heights::MakeCandidates(
   this->IsCandidate[0] = this->IsByTrials || !this->HasSpline();
 }
 
-/** Tries the candidates beside the hole: at its size and, where it does not fit, at smaller ones. */
+/**
+ * Tries the candidates beside the hole: at its size and, where it does not fit, at smaller ones.
+ */
 void Heights::TryBeside(Trials& trials, const Progress& progress) const
 {
   const bool isLarge = this->Harmonic && this->Harmonic->IsLarge();
@@ -554,7 +558,7 @@ Heights::RimSlopes Heights::MeasureSlopes(const Values& values, double unit) con
 }
 
 /**
- * Scales values of new points back and keeps them within the bounds that Heights.h tells.
+ * Scales values of new points back and keeps them within the bounds described in Heights.h.
  * @param[in] scaled  values at the boundary, (value - middle) / unit
  */
 void Heights::Bound(const std::vector<double>& scaled, const Values& values, double middle,

@@ -59,8 +59,9 @@
  * much for each halving as they grow at the places, from half of the largest reduced size that has
  * two places or more to that size; at least by 1.2, at most by 8. Without such places by 1.5.
  *
- * Fallbacks, told by Used(): splines become the membrane if their points are nearly in a line;
- * values that are not finite at the boundary or the ring are left to NeighborMean, which skips NaN.
+ * Fallbacks, which Used() returns: splines become the membrane if their points are nearly in a
+ * line; values that are not finite at the boundary or the ring are left to NeighborMean, which
+ * skips NaN.
  *
  * Guarantees: only points of the surface are used, never those of other patches, so the result does
  * not depend on the order of holes. Everything is taken in the order of positions, so it does not
@@ -122,7 +123,7 @@ public:
   std::vector<double> Apply(const Values& values, const Progress& progress = Progress()) const;
 
   /**
-   * The standard error of each new vertex's value, as the trials tell; NaN where no place could be
+   * The standard error of each new vertex's value, from the trials; NaN where no place could be
    * tried, and for NeighborMean.
    */
   std::vector<double> StandardErrors() const;

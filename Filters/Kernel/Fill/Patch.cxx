@@ -897,7 +897,7 @@ EdgeLengths SpacingsOfEdges(
  * About how many graded points there will be, which does not grow with the distance of lines. As
  * the spacing grows with the distance from an edge, there are 1 / Growth points at each of its
  * sides, if it asks for its length; and around a lone point as many as the integral over rings
- * tells. Far from all of these, the spacing is the largest.
+ * gives. Far from all of these, the spacing is the largest.
  */
 double GradedPoints(
   const EdgeLengths& lengths, const EdgeLengths& spacings, double area, double mean, double largest)

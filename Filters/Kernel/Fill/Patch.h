@@ -19,12 +19,12 @@
  *           spacing is the mean length of the boundary's edges [Nguyen, eq. 1].
  * In a region, the mean is that of all edges, of the boundary and inside, that are not long: those
  * along the surface's own border may be. (It is the limit where all are.) In a region of lines,
- * which has more inner edges than boundary edges, an edge counts as at least a tenth of the gap beside it
- * (Holes::Gaps; no more than the region's mean width): the spacing follows the gap, not the
- * distance of points along lines. Long edges count in Graded, which so makes points sparser towards a long
- * border, and away from lines; the spacing at a point inside is the mean length of the inner edges
- * there. With Nodes, inner edges are not kept as such: those between neighbouring nodes come by
- * themselves, longer ones get a node inside.
+ * which has more inner edges than boundary edges, an edge counts as at least a tenth of the gap
+ * beside it (Holes::Gaps; no more than the region's mean width): the spacing follows the gap, not
+ * the distance of points along lines. Long edges count in Graded, which so makes points sparser
+ * towards a long border, and away from lines; the spacing at a point inside is the mean length of
+ * the inner edges there. With Nodes, inner edges are not kept as such: those between neighbouring
+ * nodes come by themselves, longer ones get a node inside.
  *
  * The passes:
  *   1. Nodes and Even: place the points, at least 0.6 spacings, or 0.4 lattice steps, from the
@@ -36,17 +36,18 @@
  *      places all the points of Graded.
  *
  * Limits of refinement: boundary edges and inner edges are not split, and no point comes closer to
- * them than 0.3 spacings. So a triangle is not refined if its circumcentre is behind a boundary edge or that
- * close to one. All other triangles of Even and Graded have angles of at least 20 degrees and
- * interior edges of at most 1.6 spacings: a longer interior edge has such an exception on both
- * sides. With Graded, the spacing of a triangle is the mean of those at its corners. If the
+ * them than 0.3 spacings. So a triangle is not refined if its circumcentre is behind a boundary
+ * edge or that close to one. All other triangles of Even and Graded have angles of at least 20
+ * degrees and interior edges of at most 1.6 spacings: a longer interior edge has such an exception
+ * on both sides. With Graded, the spacing of a triangle is the mean of those at its corners. If the
  * boundary's edges are about as long as the spacing, and it has no very sharp corner, there are no
  * exceptions.
  *
  * Guarantees: a patch is constrained Delaunay, lies inside its hole and covers it exactly; its
- * boundary edges are those of the hole, and inner edges are edges of it. Refinement ends even without a limit on points: a new point
- * keeps 0.3 spacings from all others that it sees, so discs of half that radius around new points
- * are disjoint and inside the hole, which bounds their number.
+ * boundary edges are those of the hole, and inner edges are edges of it. Refinement ends even
+ * without a limit on points: a new point keeps 0.3 spacings from all others that it sees, so discs
+ * of half that radius around new points are disjoint and inside the hole, which bounds their
+ * number.
  *
  * Cost: expected linear in the number of points.
  *

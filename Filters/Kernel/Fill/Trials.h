@@ -5,7 +5,7 @@
  * How well the methods of Heights.h predict the surface around a hole.
  *
  * In: a hole with its centres and splines, and the directions and sizes in which to move it. Out:
- * the logarithms of the methods' shares, and errors by distance from the boundary. Heights.h tells
+ * the logarithms of the methods' shares, and errors by distance from the boundary. Heights.h states
  * the rules. Only Heights.cxx includes this file.
  */
 #ifndef elevation_Fill_Trials_h
@@ -64,8 +64,9 @@ constexpr double FirstQuantile = 0.683;
 constexpr double SecondQuantile = 0.95;
 
 /**
- * By which factor errors grow where the size doubles: where too few places tell it, and the bounds
- * of what they are believed. Noise grows by 1, the smoothest methods' errors by 8.
+ * The factor by which errors grow where the size doubles: what is assumed where too few places were
+ * tried, and the bounds within which the places are believed. Noise grows by 1, the smoothest
+ * methods' errors by 8.
  */
 constexpr double UsualGrowth = 1.5;
 constexpr double LeastGrowth = 1.2;
@@ -95,7 +96,7 @@ public:
   }
 
   /**
-   * @param isCounted  else the place only tells how errors grow, from here to twice the size
+   * @param isCounted  else the place only shows how errors grow, from here to twice the size
    * @return false if a moved point misses the surface
    */
   bool At(double angle, double size, bool isCounted, const Progress& progress)
@@ -231,7 +232,7 @@ private:
   double GrowthOf(const std::vector<double>& misses) const
   {
     const std::size_t probes = this->Probes.size();
-    // Places come last that only tell this.
+    // The places that only show this come last.
     const double halvings =
       this->Places.empty() || this->Places.back().IsCounted ? 0.0 : this->Places.back().Halvings;
     double sums[2] = { 0.0, 0.0 };
@@ -434,7 +435,7 @@ private:
   std::size_t FirstProbe = 0; ///< probes come last
   std::vector<Point2> Points;
   std::vector<Point2> Normalized;
-  std::vector<std::size_t> Order;   ///< around the hole, of those that are no probes
+  std::vector<std::size_t> Order;   ///< around the hole, of those that are not probes
   std::vector<Index> PlaceOfCenter; ///< index in Points of each centre
   std::vector<Index> Probes;        ///< numbers of new vertices
   std::vector<double> Moved;        ///< values where the points are moved to

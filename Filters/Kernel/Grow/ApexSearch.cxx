@@ -116,7 +116,7 @@ Index ApexSearch::Find(Index b, Index end)
   {
     if (known != None && known != this->Best && this->CompareOne(known))
     {
-      this->SetDisc(this->UpperPositionOfBest());
+      this->SetDisc(this->BestUpperPosition());
     }
   }
   if (this->Grid.Bins.HasPlainBins && this->LookIntoBins())
@@ -314,7 +314,7 @@ Index ApexSearch::BestOf(std::uint64_t candidates)
 }
 
 /** An upper bound of s for the circle through the edge and the best point. */
-double ApexSearch::UpperPositionOfBest() const
+double ApexSearch::BestUpperPosition() const
 {
   // s = dot / (2 cross), each with its rounding error.
   const double dot = this->BestDot + 8.0 * UnitRoundoff * this->BestDotMagnitude;
@@ -511,7 +511,7 @@ __attribute__((target("avx2"), always_inline)) inline void ApexSearch::CompareEi
     inside &= inside - 1;
     if (this->CompareOne(slot + next))
     {
-      this->SetDisc(this->UpperPositionOfBest());
+      this->SetDisc(this->BestUpperPosition());
       inside &= this->InDisc(slot) | this->InDisc(slot + 4) << 4;
     }
   }
@@ -627,7 +627,7 @@ void ApexSearch::Compare(Index first, Index count)
   {
     if (this->CompareOne(slot))
     {
-      this->SetDisc(this->UpperPositionOfBest());
+      this->SetDisc(this->BestUpperPosition());
     }
   }
 }

@@ -76,7 +76,7 @@ private:
   bool LookIntoBins();
   bool LookIntoRows(const Region& region);
   Index BestOf(std::uint64_t candidates);
-  double UpperPositionOfBest() const;
+  double BestUpperPosition() const;
   void SetDisc(double s);
   bool HoldsDisc(const BoxTree::Step& step) const;
   void LookInto(const Node& node, unsigned int places);

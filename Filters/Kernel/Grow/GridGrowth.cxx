@@ -103,13 +103,13 @@ public:
     const Point2 pPoint = this->Grid.PointAt(p), qPoint = this->Grid.PointAt(q);
     const bool isRising = IsLower(pPoint, qPoint);
     const Index ends[2] = { q, p };
-    const bool isTold = this->End == this->Grid.NumberOfPoints() ||
+    const bool isInStrip = this->End == this->Grid.NumberOfPoints() ||
       IsLower(isRising ? pPoint : qPoint, this->Grid.PointAt(this->Order[this->End]));
-    if (isTold)
+    if (isInStrip)
     {
       this->Pool[ends[isRising]][isRising] = ends[!isRising];
     }
-    return isTold;
+    return isInStrip;
   }
 
   bool PassCells() { return false; }

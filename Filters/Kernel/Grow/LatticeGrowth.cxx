@@ -219,12 +219,12 @@ public:
 private:
   bool Set(Buffer<Index>& ends, Index rank, Index end) const
   {
-    const bool isTold = rank < this->End;
-    if (isTold)
+    const bool isInStrip = rank < this->End;
+    if (isInStrip)
     {
       ends[rank] = end;
     }
-    return isTold;
+    return isInStrip;
   }
 
   Index StepTo(const Offset& p) const

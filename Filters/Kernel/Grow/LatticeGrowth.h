@@ -38,7 +38,7 @@ namespace elevation
  * @param[in]  options  with LatticeTolerance
  * @param[out] result   as of Triangulate(), with LatticeFound; unchanged on false
  * @param[out] extent   of the points, on false
- * @return false if the points are on no lattice, all on one line, or too few to tell
+ * @return false if the points are on no lattice, all on one line, or too few to decide
  */
 bool TriangulateLattice(
   const PointView& points, const DelaunayOptions& options, Triangulation& result, Extent& extent);

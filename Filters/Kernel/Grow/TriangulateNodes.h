@@ -19,8 +19,8 @@ namespace elevation
  * Triangulates the nodes of points, however far apart they are.
  * @param[in] options  without a limit of edges
  * @param[in] isFilled  whether the lattice may be well filled
- * @throws NotOnLattice if a point is on no node, or two that are not equal on one. Whether triangles
- *         are flat in the coordinates of the points is not checked.
+ * @throws NotOnLattice if a point is on no node, or two that are not equal on one. Whether
+ *         triangles are flat in the coordinates of the points is not checked.
  */
 Triangulation TriangulateNodes(const PointView& points, const SharedLattice& lattice,
   const DelaunayOptions& options, bool isFilled);

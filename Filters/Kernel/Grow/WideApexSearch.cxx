@@ -101,7 +101,7 @@ ELEVATION_WIDE_INLINE WideApexSearch::Candidates WideApexSearch::Search(
     const __m256 dot = _mm256_fnmadd_ps(x, endX, _mm256_fnmadd_ps(y, endY, square));
     crosses[i] = cross;
     dots[i] = dot;
-    // The lowest bits of a quotient are replaced by its lane, so the least one tells its lane.
+    // The lowest bits of a quotient are replaced by its lane, so the least one contains its lane.
     const __m256 quotient =
       _mm256_or_ps(_mm256_andnot_ps(laneBits, _mm256_mul_ps(dot, _mm256_rcp_ps(cross))),
         _mm256_castsi256_ps(lanes));

@@ -18,7 +18,7 @@
  * A first pass guesses the apex by rounded quotients. A second pass compares every point with it:
  *   dot cross' - dot' cross, with an error of at most 24 R^3 e + 32 u R^4,
  * which is not negative for points outside the circle of the edge and the guess, on either side. So
- * points for which it is clearly positive are not the apex. Exact predicates tell which of the
+ * points for which it is clearly positive are not the apex. Exact predicates decide which of the
  * others are on the left. The disc of the guess, enlarged by the error of its quotient, contains
  * the apex's empty circle; if it lies within the window above the vertex, no other point can be the
  * apex.

@@ -711,7 +711,7 @@ std::vector<Point2> FullestPart(std::vector<Point2>&& points, const Progress& pr
 std::vector<Point2> SortedOutwards(
   const LatticeSample& ofAll, const std::vector<Point2>& around, const Point2& middle)
 {
-  const std::uint64_t limit = HashLimit(SampleSize, ofAll.CountOfAll);
+  const std::uint64_t limit = HashLimit(SampleSize, ofAll.CloudSize);
   std::vector<Point2> sample;
   std::copy_if(ofAll.Points.begin(), ofAll.Points.end(), std::back_inserter(sample),
     [limit](const Point2& p) { return HashOf(p) < limit; });
@@ -736,7 +736,7 @@ double StepsBeside(const NodeOfPoint& nodeOf, const Point2& p)
 }
 } // namespace
 
-bool LatticeSample::MayBeOfLattice() const
+bool LatticeSample::MayFitLattice() const
 {
   const double width = this->Width(), height = this->Height();
   // There is no lattice where squares and quotients might leave the range of double.
@@ -768,7 +768,7 @@ LatticeSample SampleForLattice(const PointView& points, double countOfAll, int t
     sets.begin(), sets.end(), picked.begin(), [](const PlaceSet& set) { return set.Places(); });
   LatticeSample sample;
   static_cast<Box&>(sample) = extent;
-  sample.CountOfAll = countOfAll;
+  sample.CloudSize = countOfAll;
   sample.Count = static_cast<double>(points.Count) - static_cast<double>(extent.NotFinite.size());
   sample.Points = JoinPicked(std::move(picked), SubProgress(progress, 0.9, 1.0));
   notFinite = std::move(extent.NotFinite);
@@ -844,7 +844,7 @@ LatticeSearch FindLattice(
   const LatticeSample sample = SampleForLattice(
     points, points.Count, threads, SubProgress(progress, 0.0, 0.55), search.NotFinite);
   static_cast<Box&>(search) = sample;
-  if (sample.MayBeOfLattice())
+  if (sample.MayFitLattice())
   {
     std::vector<Point2> around = DistinctPointsIn(
       FullestPlace(sample), points, search.NotFinite, threads, SubProgress(progress, 0.55, 0.95));
@@ -854,7 +854,7 @@ LatticeSearch FindLattice(
   return search;
 }
 
-Lattice StepsOfGiven(const Lattice& given)
+Lattice CheckedSteps(const Lattice& given)
 {
   const Point2 &u = given.StepU, &v = given.StepV;
   const double sine = std::fabs(given.Area()) / std::sqrt(Dot(u, u) * Dot(v, v));
@@ -915,7 +915,7 @@ LatticeSearch GivenLattice(const PointView& points, const Lattice& given, double
 {
   LatticeSearch search;
   search.Found = true;
-  search.Steps = StepsOfGiven(given);
+  search.Steps = CheckedSteps(given);
   static_cast<Extent&>(search) =
     FindExtent(points, threads, SubProgress(progress, 0.0, 0.4), [](Index, const Point2&) {});
   const Index beside = FirstOffLattice(

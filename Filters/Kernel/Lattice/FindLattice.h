@@ -56,12 +56,12 @@ constexpr double MaximumNodesPerPoint = 64.0;
 /** What the search needs of a cloud, or of a part of it; the box is that of its finite points. */
 struct LatticeSample : Box
 {
-  double CountOfAll = 0.0;    ///< points of the whole cloud, also those that are not finite
+  double CloudSize = 0.0;     ///< points of the whole cloud, also those that are not finite
   double Count = 0.0;         ///< finite points
   std::vector<Point2> Points; ///< the sample, distinct and sorted
 
   /** Whether the search has any prospect. */
-  bool MayBeOfLattice() const;
+  bool MayFitLattice() const;
   /** Adds another part of the same cloud. */
   void Add(LatticeSample&& part);
 };
@@ -91,7 +91,7 @@ LatticeSearch GivenLattice(const PointView& points, const Lattice& given, double
 
 /** @name The same for a cloud in parts, which share the steps, and the errors. @{ */
 /** @throws Error if the steps are parallel or not finite */
-Lattice StepsOfGiven(const Lattice& given);
+Lattice CheckedSteps(const Lattice& given);
 /** The first point that is too far from its node, or None. */
 Index FirstOffLattice(const PointView& points, const std::vector<Index>& notFinite,
   const Lattice& steps, double tolerance, const Progress& progress);
@@ -102,8 +102,9 @@ Error GivenLatticeUnfit();
 
 /**
  * @name The steps of the search, for a cloud in parts.
- * Each part is sampled; the samples are added up; each part tells its points in the fullest place
- * of the sum, which together are fitted, if MayBeOfLattice(). This gives the lattice of the whole.
+ * Each part is sampled; the samples are added up; each part lists its points in the fullest place
+ * of the sum, and the lattice is fitted to these, if MayFitLattice(). It is that of the whole
+ * cloud.
  * @{
  */
 /** @param[out] notFinite  ids of points with a non-finite coordinate, increasing */

@@ -113,8 +113,8 @@ private:
 };
 
 /**
- * The box of a cloud's nodes: that of its bounding box, on a lattice along the axes; on one askew to
- * them, that of the points, which is smaller.
+ * The box of a cloud's nodes: that of its bounding box, on a lattice along the axes; on one askew
+ * to them, that of the points, which is smaller.
  * @param[in] ofPoints  called for the latter
  */
 template <typename OfPoints>

@@ -61,7 +61,7 @@ bool SharedLattice::Set(
       Unit * (std::fabs(origin) + across * std::fabs(alongU) + up * std::fabs(alongV));
   };
   this->Reach = { reach(steps.Origin.X, u.X, v.X), reach(steps.Origin.Y, u.Y, v.Y) };
-  return this->MetricOfSteps.Set(steps) && nodes.IsSmallEnough();
+  return this->StepMetric.Set(steps) && nodes.IsSmallEnough();
 }
 
 LatticeNode SharedLattice::NodeOf(const Point2& p) const
@@ -82,7 +82,7 @@ Box SharedLattice::BoxOfCircle(
   // In the metric M, with nodes relative to a: the centre m has b M m = b M b / 2, and likewise for
   // c. So w = M m is known from a linear system; then m = inverse(M) w, and the radius squared is
   // w m. Along a direction g the circle, an ellipse in nodes, reaches sqrt(g inverse(M) g) radii.
-  const LatticeMetric& metric = this->MetricOfSteps;
+  const LatticeMetric& metric = this->StepMetric;
   const std::int64_t bi = b.I - a.I, bj = b.J - a.J, ci = c.I - a.I, cj = c.J - a.J;
   const double twice = 2.0 * static_cast<double>(bi * cj - bj * ci);
   const auto half = [&](std::int64_t i, std::int64_t j) {

@@ -17,7 +17,9 @@
 namespace elevation
 {
 
-/** Thrown where points do not fit a lattice after all: they are triangulated by their coordinates. */
+/**
+ * Thrown where points do not fit a lattice after all: they are triangulated by their coordinates.
+ */
 struct NotOnLattice
 {
 };
@@ -47,7 +49,7 @@ public:
   bool Set(const Lattice& steps, const Box& cloud, const NodeBox& nodes, double tolerance);
 
   const Lattice& Steps() const { return this->Search.Steps; }
-  const LatticeMetric& Metric() const { return this->MetricOfSteps; }
+  const LatticeMetric& Metric() const { return this->StepMetric; }
   double Tolerance() const { return this->ToleranceInSteps; }
   /** As if found in the whole cloud. */
   const LatticeSearch& AsFound() const { return this->Search; }
@@ -63,7 +65,7 @@ public:
 
 private:
   LatticeSearch Search;
-  LatticeMetric MetricOfSteps;
+  LatticeMetric StepMetric;
   NodeOfPoint ToNode{ Lattice{ { 0.0, 0.0 }, { 1.0, 0.0 }, { 0.0, 1.0 } } };
   double ToleranceInSteps = 0.0;
   Point2 Reach{ 0.0, 0.0 }; ///< how far a point may lie from its node, along x and y

@@ -144,7 +144,7 @@ struct Rings
 
 /**
  * The components of a mesh (with Twins) that are connected by edges. The triangles of a component
- * are on two sides; each edge tells whether it leads to the other side.
+ * are on two sides; each edge knows whether it leads to the other side.
  */
 struct Components
 {
@@ -219,7 +219,7 @@ private:
  * Finds the components in one pass, in which each triangle joins the components of its earlier
  * neighbours. Linear, up to a logarithm of the components joined; fast where neighbours are near in
  * memory.
- * @param[in] relation  relation(h), for a half-edge h that is no border: 0 when the triangles
+ * @param[in] relation  relation(h), for a half-edge h that is not a border: 0 when the triangles
  *                      at h are on the same side, 1 when they are not, below 0 when h does not
  *                      connect them. Called for one half-edge of each edge.
  * @throws Aborted, std::bad_alloc

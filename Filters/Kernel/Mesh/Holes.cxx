@@ -134,7 +134,7 @@ public:
       },
       SubProgress(progress, 0.1, 0.4));
     const Progress sweeping = SubProgress(progress, 0.4, 1.0);
-    std::size_t told = 0;
+    std::size_t nextReport = 0;
     for (std::size_t first = 0; first < this->Events.size();)
     {
       std::size_t last = first + 1;
@@ -148,10 +148,10 @@ public:
         return false;
       }
       first = last;
-      if (first >= told)
+      if (first >= nextReport)
       {
         Report(sweeping, static_cast<double>(first) / this->Events.size());
-        told = first + 4096;
+        nextReport = first + 4096;
       }
     }
     this->MakeHoles();
@@ -353,7 +353,7 @@ private:
   /** Marks holes in which a vertex here lies inside an edge or coincides with another vertex. */
   void MarkContacts(const Point2& p, std::size_t last)
   {
-    // One vertex seen from different empty regions is no contact.
+    // One vertex seen from different empty regions is not a contact.
     const auto vertexAt = [&](const Segment& segment) {
       const Index origin = this->Surface.Origin(segment.HalfEdge);
       return this->Surface.PointOf(origin) == p ? origin
@@ -468,7 +468,7 @@ private:
 };
 } // namespace
 
-Mesh MeshOfBorder(const std::vector<BorderEdge>& border, const PointView& points,
+Mesh MakeBorderMesh(const std::vector<BorderEdge>& border, const PointView& points,
   const Progress& progress, std::vector<Index>& ids)
 {
   Mesh mesh;
@@ -516,11 +516,11 @@ Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
   return holes;
 }
 
-Holes FindHolesOfBorder(
+Holes FindBorderHoles(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
 {
   std::vector<Index> ids;
-  const Mesh mesh = MeshOfBorder(border, points, SubProgress(progress, 0.0, 0.2), ids);
+  const Mesh mesh = MakeBorderMesh(border, points, SubProgress(progress, 0.0, 0.2), ids);
   Holes holes = FindHoles(mesh, 0, SubProgress(progress, 0.2, 1.0));
   for (Index& vertex : holes.Walks.Vertices)
   {
@@ -533,7 +533,7 @@ bool CoversOnce(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
 {
   std::vector<Index> ids;
-  const Mesh mesh = MeshOfBorder(border, points, SubProgress(progress, 0.0, 0.5), ids);
+  const Mesh mesh = MakeBorderMesh(border, points, SubProgress(progress, 0.0, 0.5), ids);
   Holes holes;
   holes.Walks = TraceBorder(mesh, SubProgress(progress, 0.5, 0.75));
   StartAtLowest(mesh, holes.Walks);

@@ -5,14 +5,14 @@
  * Finds the holes of an elevation surface, as distinct from its outer boundaries, and proves that
  * it is an elevation surface.
  *
- * In: a mesh with counter-clockwise triangles and Twins. Out: its border walks (HalfEdgeMesh.h), and
- * which of them bound which hole. The passes:
+ * In: a mesh with counter-clockwise triangles and Twins. Out: its border walks (HalfEdgeMesh.h),
+ * and which of them bound which hole. The passes:
  *   1. Trace the border. Each walk has one empty region of the plane on its right.
  *   2. Classify each walk. Where the empty wedge at its lowest vertex opens downwards, the walk is
  *      the outside of a component, else the rim of a hole. A pinched walk has several wedges there.
  *   3. Sweep a line upwards over all border edges, sorted from left to right. From the left, edges
  *      must enter the surface and leave it in turn, and must not cross. The edge left of a
- *      component's lowest vertex tells the empty region around the component: the outside, or a
+ *      component's lowest vertex bounds the empty region around the component: the outside, or a
  *      hole, in which the component is an island.
  *
  * This proves that no place is covered twice, in the interior either: triangles are
@@ -130,16 +130,17 @@ Holes FindHoles(const Mesh& mesh, Index firstCell = 0, const Progress& progress 
 /**
  * The same by the border alone, which may be that of parts: edges in the order of their triangles.
  * Contacts do not name vertices.
- * @throws Error if the border does not prove that no place is covered twice; Aborted; std::bad_alloc
+ * @throws Error if the border does not prove that no place is covered twice; Aborted;
+ *         std::bad_alloc
  */
-Holes FindHolesOfBorder(
+Holes FindBorderHoles(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress);
 
 /**
  * A mesh in which half-edge 3i is border edge i, and nothing else is meaningful.
  * @param[out] ids  of its points
  */
-Mesh MeshOfBorder(const std::vector<BorderEdge>& border, const PointView& points,
+Mesh MakeBorderMesh(const std::vector<BorderEdge>& border, const PointView& points,
   const Progress& progress, std::vector<Index>& ids);
 
 /**

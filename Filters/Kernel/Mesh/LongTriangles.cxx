@@ -17,7 +17,9 @@ namespace elevation
 
 namespace
 {
-/** Of a gap, per distance from the point that has it: ten times the growth of spacings (Patch.h). */
+/**
+ * Of a gap, per distance from the point that has it: ten times the growth of spacings (Patch.h).
+ */
 constexpr double DecayOfGaps = 2.0;
 
 /** One run; the members carry data between its passes. */
@@ -47,7 +49,7 @@ public:
     return true;
   }
 
-  /** Of a mesh of borders (MeshOfBorder), with the regions on the right of their edges. */
+  /** Of a mesh of borders (MakeBorderMesh), with the regions on the right of their edges. */
   void RunOnBorder(const std::vector<Index>& regionOf, const Progress& progress)
   {
     std::vector<Index>& vertices = this->Result.Walks.Vertices;
@@ -140,10 +142,12 @@ private:
   {
     this->StartAtLowest(first);
     this->Result.Walks.Offsets.push_back(static_cast<Index>(this->Result.Walks.Vertices.size()));
-    this->RegionOfWalk.push_back(region);
+    this->WalkRegions.push_back(region);
   }
 
-  /** Whether edge ab is lower than edge cd: by origin, then, at pinched vertices, by destination. */
+  /**
+   * Whether edge ab is lower than edge cd: by origin, then, at pinched vertices, by destination.
+   */
   bool IsLowerEdge(Index a, Index b, Index c, Index d) const
   {
     const IsLowerPoint isLower{ this->Surface };
@@ -171,19 +175,19 @@ private:
   void FindRims()
   {
     Holes& holes = this->Result;
-    std::vector<Index> walks(this->RegionOfWalk.size());
+    std::vector<Index> walks(this->WalkRegions.size());
     std::iota(walks.begin(), walks.end(), 0);
     std::sort(walks.begin(), walks.end(), [&](Index a, Index b) {
       const Index* u = holes.Walks.Begin(this->FirstWalk + a);
       const Index* v = holes.Walks.Begin(this->FirstWalk + b);
-      return this->RegionOfWalk[a] != this->RegionOfWalk[b]
-        ? this->RegionOfWalk[a] < this->RegionOfWalk[b]
+      return this->WalkRegions[a] != this->WalkRegions[b]
+        ? this->WalkRegions[a] < this->WalkRegions[b]
         : this->IsLowerEdge(u[0], u[1], v[0], v[1]);
     });
     std::size_t i = 0;
     for (Index region = 0; region < this->NumberOfRegions; ++region)
     {
-      for (; i < walks.size() && this->RegionOfWalk[walks[i]] == region; ++i)
+      for (; i < walks.size() && this->WalkRegions[walks[i]] == region; ++i)
       {
         holes.Loops.push_back(this->FirstWalk + walks[i]);
       }
@@ -322,7 +326,7 @@ private:
   Index FirstRegion = 0; ///< its number as a hole
   Index NumberOfRegions = 0;
   Index FirstWalk = 0;
-  std::vector<Index> RegionOfWalk; ///< one a walk from FirstWalk on, counted from FirstRegion
+  std::vector<Index> WalkRegions;  ///< one a walk from FirstWalk on, counted from FirstRegion
   std::vector<char> OnBorder;      ///< one a vertex: 1 on the border of a region
 };
 } // namespace
@@ -386,7 +390,7 @@ void AddRegionsOfBorder(const std::vector<BorderEdge>& border, const std::vector
   }
   std::vector<Index> ids;
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(holes.Walks.Vertices.size());
-  const Mesh mesh = MeshOfBorder(reversed, points, SubProgress(progress, 0.0, 0.3), ids);
+  const Mesh mesh = MakeBorderMesh(reversed, points, SubProgress(progress, 0.0, 0.3), ids);
   RegionFinder(mesh, holes.LongestEdge, holes)
     .RunOnBorder(regionOf, SubProgress(progress, 0.3, 1.0));
   std::for_each(holes.Walks.Vertices.begin() + first, holes.Walks.Vertices.end(),

@@ -17,8 +17,8 @@
  * A vertex of a region that is not on its border is a point inside: all of its triangles are long,
  * as those of survey lines far apart. The inner edges of a region keep these points: the edges
  * inside that are not long and end in such a point, as those along a survey line; and an edge from
- * the point to itself where there are none. They are sorted by position. The gaps tell how far the
- * next line is.
+ * the point to itself where there are none. They are sorted by position. The gaps are the
+ * distances to the next line.
  *
  * Regions are in the order of their first triangles. Nothing else depends on the order of points
  * and triangles. Lengths are compared as in EdgeLimit.h.
@@ -46,7 +46,9 @@ namespace elevation
 bool OpenLongTriangles(const Mesh& mesh, double longest, Holes& holes, Mesh& rest,
   const Progress& progress = Progress());
 
-/** @return for each triangle the number of its region, counted from 0, or None; empty: none is long */
+/**
+ * @return for each triangle the number of its region, counted from 0, or None; empty: none is long
+ */
 std::vector<Index> NumberRegions(
   const Mesh& mesh, double longest, const Progress& progress = Progress());
 
@@ -58,14 +60,14 @@ double LargestHeight(const Mesh& mesh, Index triangle);
  * inner edges.
  * @param[in]     border    edges of long triangles, which are on their left
  * @param[in]     regionOf  of each edge, counted from 0
- * @param[in,out] holes     from FindHolesOfBorder()
+ * @param[in,out] holes     from FindBorderHoles()
  */
 void AddRegionsOfBorder(const std::vector<BorderEdge>& border, const std::vector<Index>& regionOf,
   const PointView& points, Holes& holes, const Progress& progress = Progress());
 
 /**
- * Takes regions back: they are holes no more, and none of their triangles is in a region. The numbers
- * of later regions become lower; Walks stay. Linear.
+ * Takes regions back: they are holes no more, and none of their triangles is in a region. The
+ * numbers of later regions become lower; Walks stay. Linear.
  * @param keep  one flag a hole; 0 only for regions
  */
 void KeepRegions(const std::vector<char>& keep, Holes& holes);

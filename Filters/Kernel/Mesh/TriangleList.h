@@ -30,7 +30,7 @@ struct TriangleList
     this->Points.Double ? Prefetch(this->Points.Double + k) : Prefetch(this->Points.Float + k);
   }
   /** A triangle's area divided by a square's; bit for bit the same for any first corner. */
-  double ShareOfSquare(Index t, double side) const
+  double SquareShare(Index t, double side) const
   {
     Point2 a = this->Points.At(this->CornersOf(t)[0]);
     Point2 b = this->Points.At(this->CornersOf(t)[1]);

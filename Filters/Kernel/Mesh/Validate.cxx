@@ -226,14 +226,14 @@ std::vector<Finding> Validate(const Mesh& mesh, const ValidateOptions& options)
 
 namespace
 {
-constexpr long double UnitOfLong = 16.0L * std::numeric_limits<long double>::epsilon();
+constexpr long double LongUnit = 16.0L * std::numeric_limits<long double>::epsilon();
 // Some needles need more digits than long double has. This takes twenty times as long.
 #ifdef __SIZEOF_FLOAT128__
 __extension__ typedef __float128 Widest;
-constexpr Widest UnitOfWidest = 0x1p-108;
+constexpr Widest WidestUnit = 0x1p-108;
 #else
 using Widest = long double;
-constexpr Widest UnitOfWidest = UnitOfLong;
+constexpr Widest WidestUnit = LongUnit;
 #endif
 
 /** IsWithin() for a point on an edge: its triangles may be too thin for a plane. */
@@ -249,7 +249,7 @@ bool IsWithinOfEdge(double most, const PointView& points, Index from, Index to, 
     points.Elevation(from) - static_cast<long double>(points.Elevation(point));
   const long double along =
     share * (static_cast<long double>(points.Elevation(to)) - points.Elevation(from));
-  return std::fabs(down + along) + UnitOfLong * (std::fabs(down) + std::fabs(along)) <= most;
+  return std::fabs(down + along) + LongUnit * (std::fabs(down) + std::fabs(along)) <= most;
 }
 
 /**
@@ -325,8 +325,8 @@ std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points,
       if (isLeftOf(c[0], c[1], p, by) && isLeftOf(c[1], c[2], p, by) && isLeftOf(c[2], c[0], p, by))
       {
         isCovered = true;
-        isNear = isNear || IsWithin(most, UnitOfLong, points, c, point) ||
-          IsWithin(most, UnitOfWidest, points, c, point);
+        isNear = isNear || IsWithin(most, LongUnit, points, c, point) ||
+          IsWithin(most, WidestUnit, points, c, point);
         for (int k = 0; k < 3 && !isNear; ++k)
         {
           const Index from = c[k], to = c[(k + 1) % 3];

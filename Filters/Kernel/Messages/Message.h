@@ -4,11 +4,11 @@
  * @file
  * One warning or error: data for programs, from which the sentence for people is made.
  *
- * A Sentence (Sentences.h) is a code with a text that has places for values, {points}, and for names
- * of properties, {property:Spacing}. A Message has the values too. So a program need not read English:
- * it looks for the code, takes the values by their names, or makes the sentence with other names of
- * properties. Guarantee: the compiler refuses a message without a code, and one with more or fewer
- * values than its text has places. Only an Error may be made of words alone.
+ * A Sentence (Sentences.h) is a code with a text that has places for values, {points}, and for
+ * names of properties, {property:Spacing}. A Message has the values too. So a program need not read
+ * English: it looks for the code, takes the values by their names, or makes the sentence with other
+ * names of properties. Guarantee: the compiler refuses a message without a code, and one with more
+ * or fewer values than its text has places. Only an Error may be made of words alone.
  */
 #ifndef elevation_Messages_Message_h
 #define elevation_Messages_Message_h
@@ -124,8 +124,8 @@ public:
 
 /**
  * The message of a sentence.
- * @param[in] values  in the order in which the text first names them. Another message may be one: its
- *                    text takes the place, and its values are named {place}_{name}.
+ * @param[in] values  in the order in which the text first names them. Another message may be one:
+ *                    its text takes the place, and its values are named {place}_{name}.
  */
 template <const Sentence& sentence, typename... Values>
 Message MakeMessage(const Values&... values)

@@ -4,9 +4,9 @@
  * @file
  * All warnings, and all errors that a program may want as data: what they say, and what they name.
  *
- * Names of values are lower-case words; {input} is "constraints" or "boundary". A property is named as
- * the filters name it. The headers of the filters list the codes that each may give, so that a code
- * stays once it is there; its text may change.
+ * Names of values are lower-case words; {input} is "constraints" or "boundary". A property is named
+ * as the filters name it. The headers of the filters list the codes that each may give, so that a
+ * code stays once it is there; its text may change.
  */
 #ifndef elevation_Messages_Sentences_h
 #define elevation_Messages_Sentences_h
@@ -218,7 +218,7 @@ ELEVATION_SENTENCE(MoreThanAllPoints,
   "It would take up to {points} new points at a spacing of {spacing}, but the largest number of "
   "points, {limit}, leaves room for {room}; a larger spacing helps.");
 ELEVATION_SENTENCE(SpacingTooSmall,
-  "The spacing of {spacing} is below what the coordinates can tell apart; a larger spacing helps.");
+  "The spacing of {spacing} is below the precision of the coordinates; use a larger spacing.");
 ELEVATION_SENTENCE(PointsCoincide, "Inserted points coincide; use a larger spacing.");
 /** @} */
 
@@ -243,8 +243,8 @@ ELEVATION_SENTENCE(BoundaryNotInPieces,
   "The boundary cannot be followed in pieces, as with coordinates above 1e100; trim the surface in "
   "memory.");
 ELEVATION_SENTENCE(OutlineNotInPieces,
-  "What is near the borders of pieces does not tell the outline, as in surveys along lines: give a "
-  "{property:GapTolerance} or the boundary, or trim the surface in memory.");
+  "The outline cannot be found from what is near the borders of the pieces, as in surveys along "
+  "lines: give a {property:GapTolerance} or the boundary, or trim the surface in memory.");
 /** @} */
 
 #undef ELEVATION_SENTENCE

@@ -222,7 +222,7 @@ private:
   const double Error;
 };
 
-/** Whether a place that is no end is within twice the distance of a stretch's own places. */
+/** Whether a place that is not an end is within twice the distance of a stretch's own places. */
 bool IsNear(const PlacedPoints& placed, const Stretch& one, Index place)
 {
   const Point2 a = placed.At(one.Begin()), b = placed.At(one.End()), p = placed.At(place);

@@ -17,7 +17,8 @@ constexpr double LeastSample = 2000.0;
 constexpr double PointsPerVertex = 12.0; // of a sample, where it ends
 constexpr double VertexRowsPerStrip = 16.0;
 constexpr Index MostStrips = 64;
-// A strip takes faces in stretches of which the last is not full, in three runs for each of few samples.
+// A strip takes faces in stretches of which the last is not full, in three runs for each of few
+// samples.
 constexpr std::size_t SpareFaces = 32 * InsertionStrip::FacesAtOnce * MostStrips;
 
 /** Spread evenly over the places of any neighbourhood. */

@@ -5,8 +5,9 @@
  * Few of many points whose triangulation is nearly within an elevation error of all others,
  * by greedy insertion [Garland & Heckbert 1995].
  *
- * In: points in the order of a grid's rows, a first triangulation that covers them. Out: the Delaunay
- * triangulation of chosen points, unique as Triangulate.h, and the triangle of each other point.
+ * In: points in the order of a grid's rows, a first triangulation that covers them. Out: the
+ * Delaunay triangulation of chosen points, unique as Triangulate.h, and the triangle of each other
+ * point.
  *
  * A triangle knows the points in it and the worst of them: that with the largest vertical distance.
  * To insert a point takes away the triangles whose circles it is in [Bowyer 1981; Watson 1981], and
@@ -14,24 +15,24 @@
  *
  * The worst point of all would be next. Here it is the worst of any triangle with an error above a
  * level; levels fall by a tenth, from the largest error to the one that is asked for. This needs no
- * queue, and can be done for several strips of the plane at once: a triangle belongs to the strip that
- * has all its corners, and others wait. The strips depend on the points alone, so the result is the
- * same for any number of threads.
+ * queue, and can be done for several strips of the plane at once: a triangle belongs to the strip
+ * that has all its corners, and others wait. The strips depend on the points alone, so the result
+ * is the same for any number of threads.
  *
- * While triangles are large, few of the points in them tell the worst one well enough. So samples are
- * inserted first, each of 16 times as many points as the one before.
+ * While triangles are large, a few of their points are enough to find nearly the worst one. So
+ * samples are inserted first, each of 16 times as many points as the one before.
  *
  * Fixed edges bound what a point can take away, and are cut where it lies on one.
  *
- * Instead of Delaunay edges there may be data-dependent ones [Dyn, Levin & Rippa 1990]: a point takes
- * away the triangle that it lies in alone; then each edge over which it sees another vertex is flipped if
- * that makes the squares of distances in both triangles smaller in sum. Where one of the two ways makes
- * a triangle of less than half of the other one's shape, the better shape counts, as slivers fit few
- * points to come.
+ * Instead of Delaunay edges there may be data-dependent ones [Dyn, Levin & Rippa 1990]: a point
+ * takes away the triangle that it lies in alone; then each edge over which it sees another vertex
+ * is flipped if that makes the squares of distances in both triangles smaller in sum. Where one of
+ * the two ways makes a triangle of less than half of the other one's shape, the better shape
+ * counts, as slivers fit few points to come.
  *
- * The sides of edges and distances are computed in double precision without a bound of errors, which
- * may give a point to the wrong one of two triangles that it is nearly between; before it is inserted,
- * that is put right. Circles are exact.
+ * The sides of edges and distances are computed in double precision without a bound of errors,
+ * which may give a point to the wrong one of two triangles that it is nearly between; before it is
+ * inserted, that is put right. Circles are exact.
  *
  * Cost: of the order of n log k for k chosen points of n. Memory: 36 bytes a point, and 80 a chosen
  * one.
@@ -62,8 +63,8 @@ public:
    * @param[in] places  distinct; rows are one above the other
    * @param[in] rows    the first place of each row, and the number of all
    * @param[in] metric  if not null, places are nodes of a lattice (column, row)
-   * @param[in] first   triangles that cover all places, with Twins: a Delaunay triangulation, constrained
-   *                    by the fixed edges
+   * @param[in] first   triangles that cover all places, with Twins: a Delaunay triangulation,
+   *                    constrained by the fixed edges
    * @param[in] fixed   one flag a half-edge, or none
    * @param[in] edges   which ones are made
    */

@@ -80,7 +80,9 @@ public:
   Sign SideOf(Index from, Index to, Index place) const;
   Sign IsInCircle(const Face& face, Index place) const;
   bool IsInConflict(const Face& face, Index place, int edge) const;
-  /** How far a triangle is from a sliver: its area in parts of the squares of its edges; any unit. */
+  /**
+   * How far a triangle is from a sliver: its area in parts of the squares of its edges; any unit.
+   */
   double ShapeOf(Index a, Index b, Index c) const;
   /** Enters a place in the list of a face. */
   void AddTo(Face& face, Index place, float error);
@@ -103,8 +105,8 @@ private:
 
 /**
  * The face that a place lies in; None if the way leads through a face that may not be entered.
- * Where there are fixed edges, a way may turn in a circle; one that tries edges in no order does not
- * do so for ever [Devillers, Pion & Teillaud 2002, Walking in a Triangulation].
+ * Where there are fixed edges, a way may turn in a circle; one that tries edges in no order does
+ * not do so for ever [Devillers, Pion & Teillaud 2002, Walking in a Triangulation].
  */
 template <typename MayEnter>
 Index InsertionMesh::FaceOf(Index place, Index start, const MayEnter& mayEnter) const

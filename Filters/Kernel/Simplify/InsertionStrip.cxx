@@ -11,8 +11,8 @@ namespace elevation
 
 namespace
 {
-// A point that changes more triangles waits until the whole surface is worked on: beside dense lines most
-// would do so in vain, as one of them is beyond the strip.
+// A point that changes more triangles waits until the whole surface is worked on: beside dense
+// lines most would do so in vain, as one of them is beyond the strip.
 constexpr std::size_t MostInCavity = 64;
 constexpr double LevelFactor = 0.9; // from one level of errors to the next
 constexpr double LeastShape = 0.5;  // of two ways to flip an edge, in parts of the other one's
@@ -20,7 +20,10 @@ constexpr double LeastShape = 0.5;  // of two ways to flip an edge, in parts of 
 constexpr double LeastLevel = 0.5 * std::numeric_limits<float>::denorm_min();
 constexpr float LargestLevel = std::numeric_limits<float>::max();
 
-/** The two triangles beside an edge from P to D: the first one, right of it, with A, the second one with B. */
+/**
+ * The two triangles beside an edge from P to D: the first one, right of it, with A, the second one
+ * with B.
+ */
 struct TwoTriangles
 {
   TwoTriangles(
@@ -59,8 +62,8 @@ Index InsertionStrip::NewFace()
 }
 
 /**
- * Whether the cavity of a place can be found from a face on: it is in conflict, and no line between. With
- * edges by data, the place lies in the face.
+ * Whether the cavity of a place can be found from a face on: it is in conflict, and no line
+ * between. With edges by data, the place lies in the face.
  */
 bool InsertionStrip::MayBegin(Index place, const Face& face) const
 {
@@ -300,8 +303,9 @@ bool InsertionStrip::Insert(Index place, Index face)
 }
 
 /**
- * Whether the edge over which a new place, the last corner of a face, sees the next vertex had better
- * be flipped: for the shape of the triangles, or if neither is much worse, for the squares of distances.
+ * Whether the edge over which a new place, the last corner of a face, sees the next vertex had
+ * better be flipped: for the shape of the triangles, or if neither is much worse, for the squares
+ * of distances.
  */
 bool InsertionStrip::IsBetterFlipped(Index face) const
 {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Points without duplicates in the order of the nodes of a lattice, or of the bins of a grid, row after
- * row; and the corners of their convex hull.
+ * Points without duplicates in the order of the nodes of a lattice, or of the bins of a grid, row
+ * after row; and the corners of their convex hull.
  */
 #ifndef elevation_Simplify_PlacedPoints_h
 #define elevation_Simplify_PlacedPoints_h

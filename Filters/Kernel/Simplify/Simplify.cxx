@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Simplify.h"
 
+#include "FacePlane.h"
 #include "FewerPieces.h"
 #include "GreedyInsertion.h"
 #include "Kernel/Grow/Grow.h"
 #include "PlacedPoints.h"
-#include "PlaneOfFace.h"
 
 #include <algorithm>
 #include <cmath>
@@ -94,7 +94,7 @@ private:
     return this->Placed.Metric ? this->Points.At(this->Placed.Ids[place]) : this->Placed.At(place);
   }
   double ElevationOf(Index place) const { return this->Placed.Places[place].Z; }
-  PlaneOfFace PlaneOf(const Face& face) const
+  FacePlane PlaneOf(const Face& face) const
   {
     const Index* const c = face.Corners;
     return { this->At(c[0]), this->ElevationOf(c[0]), this->At(c[1]), this->ElevationOf(c[1]),
@@ -114,7 +114,7 @@ private:
     {
       return; // no plane is needed
     }
-    const PlaneOfFace plane = this->PlaneOf(face);
+    const FacePlane plane = this->PlaneOf(face);
     for (Index place = face.First; place != None; place = this->Mesh.Next(place))
     {
       const Point2 p = this->At(place);
@@ -245,7 +245,7 @@ Buffer<Index> TrianglesOf(
   return corners;
 }
 
-/** Lists all points that are no vertices. @param[in] mesh  nullptr: there are no triangles */
+/** Lists all points that are not vertices. @param[in] mesh  nullptr: there are no triangles */
 void ListUnused(Index count, const PlacedPoints& placed, const GreedyInsertion* mesh,
   const Progress& progress, Triangulation& result)
 {

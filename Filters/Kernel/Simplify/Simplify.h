@@ -9,16 +9,16 @@
  *   1. Put the points in the order of the nodes of a lattice, if there is one, else of a grid; set
  *      duplicates aside.
  *   2. Leave out points of lines that the lines do not need, if this is asked for (FewerPieces.h).
- *      Triangulate the corners of the convex hull and the ends of lines, make lines edges, and insert
- *      points (GreedyInsertion.h).
- *   3. Measure the vertical distance of each point that is left out from the triangle that it lies in,
- *      and bound what rounding may have taken from it. Points that may be too far are inserted, too,
- *      until there are none.
+ *      Triangulate the corners of the convex hull and the ends of lines, make lines edges, and
+ *      insert points (GreedyInsertion.h).
+ *   3. Measure the vertical distance of each point that is left out from the triangle that it lies
+ *      in, and bound what rounding may have taken from it. Points that may be too far are inserted,
+ *      too, until there are none.
  *
- * Guarantees: no finite point that is not a duplicate is farther from the surface, as LargestError
- * tells. Topology is exact. With Delaunay edges it is unique as in Triangulate.h: the triangles are those
- * of Triangulate() for the chosen points. The choice depends on the positions of the points alone, not on their order, nor
- * on the number of threads.
+ * Guarantees: no finite point that is not a duplicate is farther from the surface; LargestError is
+ * the largest distance. Topology is exact. With Delaunay edges it is unique as in Triangulate.h:
+ * the triangles are those of Triangulate() for the chosen points. The choice depends on the
+ * positions of the points alone, not on their order, nor on the number of threads.
  *
  * Pass 3 takes the points by their coordinates. On a lattice they may lie beside their nodes. A
  * triangle that is flat or inverted by coordinates sends everything back to the start, without a
@@ -39,9 +39,9 @@ namespace elevation
 /**
  * Triangulates.
  * @param[in] options  with MaximumElevationError
- * @param[in] pieces   between points, by ids: they become edges, and their ends are chosen, except for
- *                     those that SimplifyConstraints leaves out. They neither cross nor run through a
- *                     point, as those of CutLines(). With pieces, points are
+ * @param[in] pieces   between points, by ids: they become edges, and their ends are chosen, except
+ *                     for those that SimplifyConstraints leaves out. They neither cross nor run
+ *                     through a point, as those of CutLines(). With pieces, points are
  *                     triangulated by coordinates, and the triangles are those of
  *                     TriangulateConstrained() for the chosen points.
  * @throws as Triangulate()

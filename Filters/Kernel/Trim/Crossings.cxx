@@ -117,7 +117,7 @@ private:
     std::vector<PieceCut> cuts;
     // In a crowded cell, a place that occurs many times is looked up only once.
     constexpr std::ptrdiff_t many = 64;
-    std::unordered_set<Point2, HashOfPoint> known;
+    std::unordered_set<Point2, PointHash> known;
     const Progress cutting = SubProgress(progress, 0.0, 0.6);
     WorkReporter work(cutting);
     for (std::size_t i = 0; i < edges.size(); ++i)

@@ -109,8 +109,8 @@ private:
   static std::pair<Index, Index> EdgeOf(Index a, Index b) { return std::minmax(a, b); }
 
   /**
-   * Makes an edge between two vertices of a chain, if there is none, and fixes it. What it replaces is
-   * within one original triangle, or all of it thin.
+   * Makes an edge between two vertices of a chain, if there is none, and fixes it. What it replaces
+   * is within one original triangle, or all of it thin.
    */
   void Link(Index from, Index to)
   {
@@ -127,9 +127,9 @@ private:
   Index OriginalOf(Index t) const { return this->IsLoose(t) ? ~t : this->Cutter.Parent(t); }
 
   /**
-   * Goes from a vertex across edges to the first that has to be cut, which gets a vertex, or to an end
-   * of one of them in reach. Edges within one original triangle need no vertex, as it is flat. Where
-   * both triangles of an edge are too thin to be cut, goes on to the next one.
+   * Goes from a vertex across edges to the first that has to be cut, which gets a vertex, or to an
+   * end of one of them in reach. Edges within one original triangle need no vertex, as it is flat.
+   * Where both triangles of an edge are too thin to be cut, goes on to the next one.
    */
   Index Pass(Index from, Index crossed, const FollowedSegment& followed, WorkReporter& work)
   {
@@ -207,8 +207,8 @@ private:
 
   /**
    * Cuts an edge at a place, within rounding. Where a triangle of it is too thin for that, cuts the
-   * other one beside the edge, if the edge may still be replaced. Triangles that are too thin become
-   * loose. @return the new vertex; None if there is no place for it
+   * other one beside the edge, if the edge may still be replaced. Triangles that are too thin
+   * become loose. @return the new vertex; None if there is no place for it
    */
   Index CutNear(Index h, Point2 place, const std::function<bool(const Point2&)>& isUsable)
   {
@@ -247,8 +247,8 @@ private:
   }
 
   /**
-   * Where an edge cannot be cut: an end of it that only rounding separates from the place, unless the
-   * chain has been there; or None.
+   * Where an edge cannot be cut: an end of it that only rounding separates from the place, unless
+   * the chain has been there; or None.
    */
   Index EndAt(Index h, const Point2& place, const FollowedSegment& followed) const
   {

@@ -6,26 +6,26 @@
  *
  * In: a mesh with Twins, and segments between its vertices. Out: the mesh with more vertices, and
  * each segment as a chain of its edges. Each segment is walked from its lower end:
- *   - An edge between two original triangles, or of another chain, is cut where it is crossed, at the
- *     crossing rounded to doubles. Each triangle beside it becomes two.
- *   - Edges within one original triangle, which is flat, need no vertex: the next edge of the chain is
- *     recovered across them (Recovery.h).
+ *   - An edge between two original triangles, or of another chain, is cut where it is crossed, at
+ *     the crossing rounded to doubles. Each triangle beside it becomes two.
+ *   - Edges within one original triangle, which is flat, need no vertex: the next edge of the chain
+ *     is recovered across them (Recovery.h).
  *   - The chain goes through a vertex that the segment runs through or passes within rounding
- *     (SnapRounding.h), such as one where another segment has been cut; along a border that rounding
- *     puts before it.
+ *     (SnapRounding.h), such as one where another segment has been cut; along a border that
+ *     rounding puts before it.
  *   - Where segments cross, the later one cuts an edge of the earlier one's chain.
  *   - Between triangles too thin to be cut, no edge needs a vertex: they are replaced, too. At the
  *     edge of a thicker one, that one is cut right beside the edge, within rounding; what it leaves
  *     there is thin and replaced with the others.
  *
- * Guarantees: interpolated elevations give the same surface as before, to rounding, but for what has
- * no width but rounding: triangles in which no place within 64 units in the last place of a crossing
- * is a double. One exception is known: a given corner of a segment within such triangles, where it
- * is between surfaces of different heights, may take a thicker triangle beside it along.
+ * Guarantees: interpolated elevations give the same surface as before, to rounding, but for what
+ * has no width but rounding: triangles in which no place within 64 units in the last place of a
+ * crossing is a double. One exception is known: a given corner of a segment within such triangles,
+ * where it is between surfaces of different heights, may take a thicker triangle beside it along.
  * A chain leaves its segment by rounding alone. The result does not depend on the order and
  * direction of the segments.
- * Cost: log n for each of n segments, plus the edges that they cross, plus those that earlier chains
- * have made in the same triangles.
+ * Cost: log n for each of n segments, plus the edges that they cross, plus those that earlier
+ * chains have made in the same triangles.
  */
 #ifndef elevation_Trim_FollowSurface_h
 #define elevation_Trim_FollowSurface_h
@@ -50,14 +50,14 @@ struct FollowedSegment
 
   Segment Ends;               ///< vertices
   std::vector<Index> Between; ///< the vertices of the chain between the ends, from A to B
-  bool IsMissing = false;     ///< whether the segment was no chain of edges
+  bool IsMissing = false;     ///< whether the segment was not a chain of edges
 };
 
 /**
  * @param[in,out] mesh      with Twins
  * @param[in,out] cutter    of the mesh
- * @param[in,out] segments  sorted, each once, the lower end first; one that begins outside of the mesh
- *                          stays as it is
+ * @param[in,out] segments  sorted, each once, the lower end first; one that begins outside of the
+ *                          mesh stays as it is
  * @throws Error naming the two points of a segment that leaves the mesh on its way; one where the
  *         mesh would exceed the limit of points. Aborted; std::bad_alloc.
  */

@@ -135,7 +135,7 @@ private:
       ++bits;
     }
     const auto bitOf = [=](const Point2& p) {
-      return static_cast<Index>(HashOfPoint()(p) >> (64 - bits));
+      return static_cast<Index>(PointHash()(p) >> (64 - bits));
     };
     IdSet sieve(Index(1) << bits);
     for (const auto& entry : this->VertexAt)
@@ -266,8 +266,8 @@ private:
     std::sort(this->Located.begin(), this->Located.end(), [&](const Place& a, const Place& b) {
       const Point2& p = this->Points[a.Point];
       const Point2& q = this->Points[b.Point];
-      const std::uint64_t mixedP = HashOfPoint()(p);
-      const std::uint64_t mixedQ = HashOfPoint()(q);
+      const std::uint64_t mixedP = PointHash()(p);
+      const std::uint64_t mixedQ = PointHash()(q);
       return std::tie(mixedP, p.X, p.Y) < std::tie(mixedQ, q.X, q.Y);
     });
     // Weights in the triangles before they are cut.
@@ -312,8 +312,8 @@ private:
   }
 
   /**
-   * Whether a triangle is so thin that within reach of an edge its elevations differ from those of the
-   * edge by more than rounding. A point that the edge is moved to then takes those of the edge.
+   * Whether a triangle is so thin that within reach of an edge its elevations differ from those of
+   * the edge by more than rounding. A point that the edge is moved to then takes those of the edge.
    */
   bool IsThin(Index t, Index on) const
   {
@@ -359,7 +359,10 @@ private:
     return parts;
   }
 
-  /** After a cut at a located point, hands the points that wait in the parts to those that hold them. */
+  /**
+   * After a cut at a located point, hands the points that wait in the parts to those that hold
+   * them.
+   */
   void Redistribute(Index done, const std::vector<Index>& parts)
   {
     std::vector<Index> moving;
@@ -891,7 +894,7 @@ private:
   const Following Follow;
   InsertedRings& Result;
   MeshCutter Cutter;
-  std::unordered_map<Point2, Index, HashOfPoint> VertexAt;
+  std::unordered_map<Point2, Index, PointHash> VertexAt;
   std::vector<Place> Located;
   std::unordered_map<Index, std::vector<Index>> Waiting; ///< by triangle: indices in Located
   std::vector<Point2> OutsidePoints;

@@ -104,7 +104,9 @@ public:
   bool MoveToCut(
     Index h, Point2& place, const std::function<bool(const Point2&)>& isUsable = {}) const;
 
-  /** The same for a place inside the triangle of h, which is to be cut there and not at its edge. */
+  /**
+   * The same for a place inside the triangle of h, which is to be cut there and not at its edge.
+   */
   bool MoveInside(Index h, Point2& place, const std::function<bool(const Point2&)>& isUsable) const;
 
   /** The number, after the cuts, of a border half-edge; if it was cut, of its first part. */
@@ -115,8 +117,8 @@ public:
 
 private:
   /**
-   * Moves a place on the edge of h, within rounding, to the nearest that will do, or further away to
-   * one side of the edge. @return whether one was found
+   * Moves a place on the edge of h, within rounding, to the nearest that will do, or further away
+   * to one side of the edge. @return whether one was found
    */
   bool MoveNear(
     Index h, Point2& place, bool outwards, const std::function<bool(const Point2&)>& isPlace) const;

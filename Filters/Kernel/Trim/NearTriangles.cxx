@@ -215,7 +215,7 @@ struct Classifier
   char* Flags;
   std::vector<Index> Near;
   const double Reach;
-  double ReachOfLast = 0.0;
+  double LastReach = 0.0;
   char Around = RingRaster::Near;
 
   static double ReachOf(Point2 p, Point2 q)
@@ -226,15 +226,15 @@ struct Classifier
   void Begin(const Vertex& p, const Vertex& a)
   {
     this->Around = this->Raster.KindAround(p.Place);
-    this->ReachOfLast = ReachOf(p.Place, a.Place);
+    this->LastReach = ReachOf(p.Place, a.Place);
   }
 
   void Visit(Index t, const Vertex& first, const Vertex& second, const Vertex& third)
   {
     const Point2 p = first.Place, a = second.Place, b = third.Place;
     const double reach = ReachOf(p, b);
-    const bool isShort = (reach <= this->Reach) & (this->ReachOfLast <= this->Reach);
-    this->ReachOfLast = reach;
+    const bool isShort = (reach <= this->Reach) & (this->LastReach <= this->Reach);
+    this->LastReach = reach;
     if (isShort & (this->Around != RingRaster::Near))
     {
       this->Flags[t] = this->Around;

@@ -11,7 +11,7 @@
  *   3. Prove by the border alone that nothing is covered twice (Holes.h).
  *
  * Cost: linear in the triangles and the cells that the rings touch. The other indexes find edges
- * near a triangle; only the raster also tells whether a triangle without any is inside.
+ * near a triangle; only the raster also decides whether a triangle without any is inside.
  */
 #ifndef elevation_Trim_NearTriangles_h
 #define elevation_Trim_NearTriangles_h
@@ -24,7 +24,7 @@
 namespace elevation
 {
 
-/** What the sweep tells of the triangles of a list. */
+/** What the sweep finds about a list of triangles. */
 struct SweptAlongRings
 {
   std::vector<Index> Near;        ///< the triangles near the rings; increasing
@@ -46,7 +46,8 @@ std::optional<SweptAlongRings> SweepAlongRings(const TriangleList& list,
 
 /**
  * All passes, for a whole mesh.
- * @return nothing if SweepAlongRings() returns nothing, or the triangles are not proven to be a mesh
+ * @return nothing if SweepAlongRings() returns nothing, or the triangles are not proven to be a
+ *         mesh
  * @throws Aborted; std::bad_alloc
  */
 std::optional<SweptAlongRings> FindNearTriangles(const TriangleList& list,

@@ -38,7 +38,7 @@ constexpr double LeastHeight = 0.1;
 
 /** The parts of triangles with equal values of flagOf(t), connected by edges. */
 template <typename FlagOf>
-Components PartsOfFlags(const Mesh& mesh, FlagOf&& flagOf, const Progress& progress)
+Components FindFlagParts(const Mesh& mesh, FlagOf&& flagOf, const Progress& progress)
 {
   return FindComponents(mesh, progress, [&](Index h) {
     return flagOf(Mesh::Triangle(h)) == flagOf(Mesh::Triangle(mesh.Twin(h))) ? 0 : -1;
@@ -55,8 +55,8 @@ enum Flag : char
 };
 
 /**
- * In whole numbers, so that a sum does not depend on the order. Shares above 1 count as 1, and those
- * below 0, of needles whose area rounding has turned, as 0.
+ * In whole numbers, so that a sum does not depend on the order. Shares above 1 count as 1, and
+ * those below 0, of needles whose area rounding has turned, as 0.
  */
 constexpr std::int64_t Whole = std::int64_t(1) << 30;
 std::int64_t ToWhole(double share)
@@ -98,7 +98,7 @@ template <typename ShareOf>
 void CloseSmallLakes(
   const Mesh& mesh, ShareOf&& shareOf, std::vector<char>& keep, const Progress& progress)
 {
-  const Components parts = PartsOfFlags(
+  const Components parts = FindFlagParts(
     mesh, [&](Index t) { return keep[t] == Surface; }, SubProgress(progress, 0.0, 0.6));
   std::vector<Opening> openings(parts.Count());
   const auto isOpen = [&](Index t) { return keep[t] != Surface; };
@@ -124,7 +124,7 @@ template <typename ShareOf>
 void CloseSmallBays(
   const Mesh& mesh, ShareOf&& shareOf, std::vector<char>& keep, const Progress& progress)
 {
-  const Components parts = PartsOfFlags(
+  const Components parts = FindFlagParts(
     mesh, [&](Index t) { return keep[t]; }, SubProgress(progress, 0.0, 0.5));
   std::vector<Opening> openings(parts.Count());
   const auto isOpen = [&](Index t) { return keep[t] == Bay; };
@@ -164,7 +164,9 @@ Index LongestEdge(const Mesh& mesh, Index t)
   return longest;
 }
 
-/** Makes slivers surface that lean with their longest edge on it, and those that then do. Linear. */
+/**
+ * Makes slivers surface that lean with their longest edge on it, and those that then do. Linear.
+ */
 void RestoreSlivers(const Mesh& mesh, const std::vector<Index>& slivers, std::vector<char>& keep,
   const Progress& progress)
 {
@@ -242,10 +244,10 @@ void DropSlivers(
 std::vector<Index> DropSmallPieces(
   const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
 {
-  const Components parts = PartsOfFlags(
+  const Components parts = FindFlagParts(
     mesh, [&](Index t) { return keep[t]; }, SubProgress(progress, 0.0, 0.5));
   // More triangles than so few vertices can form.
-  constexpr Index many = 3 * NeighborOfSpacing + 1;
+  constexpr Index many = 3 * SpacingNeighbor + 1;
   std::vector<Index> sizes(parts.Count(), 0);
   std::vector<char> goesOn(parts.Count(), 0);
   const Index count = mesh.NumberOfTriangles();
@@ -279,7 +281,7 @@ std::vector<Index> DropSmallPieces(
   {
     const auto last = std::find_if(first, corners.end(),
       [&](const std::pair<Index, Index>& corner) { return corner.first != first->first; });
-    const bool isFew = last - first <= NeighborOfSpacing;
+    const bool isFew = last - first <= SpacingNeighbor;
     for (auto corner = first; isFew && goesOn[first->first] && corner != last; ++corner)
     {
       unknown.push_back(corner->second);
@@ -506,7 +508,7 @@ struct BorderOfMesh
  * @param[in]     near       the corners at the border of the surface found so far
  * @param[in]     dropSmall  whether to drop small pieces
  * @param[in,out] result     in: a Flag for each triangle; out: Outside or Surface, and the rings
- * @return false if the triangles are a part of a mesh that does not tell which pieces are small
+ * @return false if the triangles are a part of a mesh, too small to decide which pieces are small
  */
 template <typename SpacingOfTriangle>
 bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
@@ -517,7 +519,7 @@ bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
   std::vector<char>& keep = result.IsSurface;
   const auto isSliverOver = [&](Index t, double length) {
     const double spacing = SpacingOf(measured.ShortSpacings, list.CornersOf(t));
-    return 2.0 * list.ShareOfSquare(t, spacing) * spacing < LeastHeight * length;
+    return 2.0 * list.SquareShare(t, spacing) * spacing < LeastHeight * length;
   };
   // Slivers have two corners at the border, or at flat triangles with a corner there. Then the mesh
   // includes all their neighbours.
@@ -550,7 +552,7 @@ bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
     // and their spacings are not known.
     const auto shareOf = [&](Index i) {
       const Index t = mesh.Triangles[i];
-      return keep[t] == Surface ? 0.0 : list.ShareOfSquare(t, spacingOf(t));
+      return keep[t] == Surface ? 0.0 : list.SquareShare(t, spacingOf(t));
     };
     const auto isSliver = [&](Index h) {
       const Index t = mesh.Triangles[Mesh::Triangle(h)];
@@ -603,7 +605,7 @@ public:
   }
 
   /** For a part of a mesh. @param[in] numbers  of the ids of points, in the measured triangles */
-  OutlineSearch(MeasuredTriangles measured, const ExtractOptions& options, MeshOfParts&& mesh,
+  OutlineSearch(MeasuredTriangles measured, const ExtractOptions& options, OutlineMesh&& mesh,
     const std::vector<Index>& numbers)
     : OutlineSearch(std::move(measured), options)
   {
@@ -625,7 +627,7 @@ public:
     }
   }
 
-  /** @return nothing only if the triangles are a part of a mesh that does not tell the outline */
+  /** @return nothing only if the triangles are a part of a mesh, too small to find the outline */
   std::optional<ExtractedBoundary> Run(const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
@@ -638,8 +640,8 @@ public:
     this->KeepCertainTriangles(SubProgress(progress, 0.15, 0.2));
     std::vector<Index> doubtful = this->FindDoubtful(SubProgress(progress, 0.2, 0.32));
     Report(progress, 0.32);
-    // How long the next steps take depends on how many are doubtful. Where these are few, no step has
-    // so large a share that progress jumps.
+    // How long the next steps take depends on how many are doubtful. Where these are few, no step
+    // has so large a share that progress jumps.
     const double share =
       std::clamp(20.0 * static_cast<double>(doubtful.size()) / list.Count, 0.6, 1.0);
     const double scaled = 0.32 + (this->IsAutomatic ? 0.25 * share : 0.0);
@@ -664,7 +666,8 @@ public:
     const auto middle = doubtful.insert(doubtful.end(), outside.begin(), outside.end());
     std::inplace_merge(doubtful.begin(), middle, doubtful.end());
     doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
-    if (!this->FindSpacingsOf(doubtful, neighbors, SubProgress(progress, scaled, decided - 0.03)))
+    if (!this->FindCornerSpacings(
+          doubtful, neighbors, SubProgress(progress, scaled, decided - 0.03)))
     {
       return std::nullopt;
     }
@@ -693,8 +696,8 @@ public:
     return std::move(this->Result);
   }
 
-  /** FindPartOfOutline() */
-  PartOfOutline FindPart(int margin, const Progress& progress)
+  /** FindOutlinePart() */
+  OutlinePart FindPart(int margin, const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
     const IdSet& border = this->Border.Vertices;
@@ -791,7 +794,7 @@ private:
   }
 
   /** What is around the border and some vertices, for FindPart(). */
-  PartOfOutline PartNear(
+  OutlinePart PartNear(
     const IdSet& vertices, int margin, const std::vector<Known>& states, const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
@@ -801,7 +804,7 @@ private:
     Report(progress, 0.4);
     near.Add(vertices, both);
     this->Widen(around, Progress(), near);
-    PartOfOutline part;
+    OutlinePart part;
     part.Triangles = TrianglesAt(list, near, SubProgress(progress, 0.7, 0.9));
     for (const Index t : part.Triangles)
     {
@@ -849,9 +852,9 @@ private:
 
   /**
    * Finds the spacings at the corners of triangles.
-   * @return false if the triangles are a part of a mesh that does not tell one
+   * @return false if the triangles are a part of a mesh, too small to find one
    */
-  bool FindSpacingsOf(
+  bool FindCornerSpacings(
     const std::vector<Index>& triangles, const Neighbors& neighbors, const Progress& progress)
   {
     Report(progress, 0.0);
@@ -946,7 +949,7 @@ private:
     });
     const auto shareOf = [&](Index t) {
       const double spacing = SpacingOf(this->Measured.ShortSpacings, list.CornersOf(t));
-      return list.ShareOfSquare(t, SmallGroup * this->Tolerance * spacing);
+      return list.SquareShare(t, SmallGroup * this->Tolerance * spacing);
     };
     const std::vector<Index> others = DropSmallGroups(
       list, this->Border.Vertices, inGroups, shareOf, keep, SubProgress(progress, 0.2, 1.0));
@@ -1071,7 +1074,7 @@ private:
 
   /**
    * Finds what is left out, and if it is much, the tolerance that would keep it.
-   * @return false as FindSpacingsOf()
+   * @return false as FindCornerSpacings()
    */
   bool MeasureLoss(const Neighbors& neighbors, const Progress& progress)
   {
@@ -1082,7 +1085,7 @@ private:
     for (auto t = keep.begin(); (t = std::find(t, keep.end(), char(Outside))) != keep.end(); ++t)
     {
       outward.push_back(static_cast<Index>(t - keep.begin()));
-      area += list.ShareOfSquare(outward.back(), 1.0);
+      area += list.SquareShare(outward.back(), 1.0);
     }
     const IdSet leftOut = CornersLeftOut(list, outward, keep, SubProgress(progress, 0.0, 0.6));
     this->Result.NumberOfPointsLeftOut = leftOut.Count();
@@ -1095,7 +1098,7 @@ private:
     {
       return true;
     }
-    if (!this->FindSpacingsOf(outward, neighbors, SubProgress(progress, 0.6, 1.0)))
+    if (!this->FindCornerSpacings(outward, neighbors, SubProgress(progress, 0.6, 1.0)))
     {
       return false;
     }
@@ -1124,7 +1127,7 @@ private:
         needed = ratio;
       }
       missing.RemoveAll(list.CornersOf(t));
-      area -= list.ShareOfSquare(t, 1.0);
+      area -= list.SquareShare(t, 1.0);
     }
     // A little more, for what is rounded on the way to the user and back.
     return 1.01 * needed;
@@ -1151,10 +1154,10 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
   return *OutlineSearch(std::move(measured), options).Run(options.Monitor);
 }
 
-bool FindPartOfOutline(
-  const TriangleList& list, int margin, const ExtractOptions& options, PartOfOutline& part)
+bool FindOutlinePart(
+  const TriangleList& list, int margin, const ExtractOptions& options, OutlinePart& part)
 {
-  part = PartOfOutline();
+  part = OutlinePart();
   part.Spacings.assign(list.Points.Count, std::numeric_limits<double>::quiet_NaN());
   MeasuredTriangles measured;
   if (list.Count == 0)
@@ -1172,8 +1175,8 @@ bool FindPartOfOutline(
   return true;
 }
 
-std::optional<ExtractedBoundary> FindOutlineOfParts(
-  const TriangleList& list, MeshOfParts&& mesh, const ExtractOptions& options)
+std::optional<ExtractedBoundary> FindSharedOutline(
+  const TriangleList& list, OutlineMesh&& mesh, const ExtractOptions& options)
 {
   MeasuredTriangles measured;
   if (list.Count == 0 ||

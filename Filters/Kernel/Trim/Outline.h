@@ -27,7 +27,9 @@ struct ExtractOptions
    * The largest gap that is still surface, in local spacings; 0: from the data.
    */
   double GapTolerance = 0.0;
-  /** The steps of a grid, some of whose nodes are missing; not set: none. The origin is not used. */
+  /**
+   * The steps of a grid, some of whose nodes are missing; not set: none. The origin is not used.
+   */
   Lattice Grid;
   /** Threads to use; 0: all there are. The result is the same. */
   int NumberOfThreads = 1;
@@ -58,8 +60,8 @@ enum class Known : char
   Nothing
 };
 
-/** The triangles of a part of a mesh that tell, with those of the other parts, the outline of all. */
-struct PartOfOutline
+/** The triangles of a part of a mesh that decide, with those of other parts, the outline of all. */
+struct OutlinePart
 {
   std::vector<Index> Triangles;         ///< increasing; all others are surface
   std::vector<Known> States;            ///< one per triangle
@@ -68,8 +70,8 @@ struct PartOfOutline
   std::int64_t NumberOfInnerPoints = 0; ///< corners that are not at the border of the part
 };
 
-/** What FindOutlineOfParts() needs to know of the mesh. */
-struct MeshOfParts
+/** What FindSharedOutline() needs to know of the mesh. */
+struct OutlineMesh
 {
   const std::vector<Known>& States;    ///< one per triangle of the list
   const std::vector<double>& Spacings; ///< one per point of the list; NaN: not known
@@ -82,7 +84,8 @@ struct MeshOfParts
  * For parts of a mesh that are in different places: what ExtractBoundary() needs to see of each.
  *   1. Triangles are tested, and spacings found, where all is known: away from the border.
  *   2. All triangles are taken at vertices up to three edges away from triangles that are not
- *      surface: so far slivers reach, and what is beside them. The same at lonely vertices (Scales.h).
+ *      surface: so far slivers reach, and what is beside them. The same at lonely vertices
+ *      (Scales.h).
  *   3. All triangles are taken some edges around the border of the part.
  * If the tolerance is chosen from the data, all scales are taken for 1.
  * @param[in] margin  how many edges: three and more. The search for the 6th nearest vertex seldom
@@ -90,17 +93,17 @@ struct MeshOfParts
  * @return false if the sweep fails: the triangles are not proven to be part of a mesh
  * @throws Aborted, std::bad_alloc
  */
-bool FindPartOfOutline(
-  const TriangleList& list, int margin, const ExtractOptions& options, PartOfOutline& part);
+bool FindOutlinePart(
+  const TriangleList& list, int margin, const ExtractOptions& options, OutlinePart& part);
 
 /**
- * ExtractBoundary() for the triangles that FindPartOfOutline() has taken of all parts of a mesh.
- * @return nothing if the sweep fails, or these triangles do not tell the outline: the margin is too
- *         small, there are points whose scale is not 1, or pieces that look too small
+ * ExtractBoundary() for the triangles that FindOutlinePart() has taken of all parts of a mesh.
+ * @return nothing if the sweep fails, or these triangles do not decide the outline: the margin is
+ *         too small, there are points whose scale is not 1, or pieces that look too small
  * @throws Aborted, std::bad_alloc
  */
-std::optional<ExtractedBoundary> FindOutlineOfParts(
-  const TriangleList& list, MeshOfParts&& mesh, const ExtractOptions& options);
+std::optional<ExtractedBoundary> FindSharedOutline(
+  const TriangleList& list, OutlineMesh&& mesh, const ExtractOptions& options);
 
 /** ExtractBoundary() for measured triangles, at least one. */
 ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& options);
@@ -132,10 +135,10 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
  *     others is left out, even if it wavers (unless no triangle would be left).
  *   - An opening between surface triangles is a lake only if it is larger than a square with a side
  *     of GapTolerance spacings; a smaller one is closed.
- *   - Bays: slivers, and triangles that are not surface, with edges of at most 1.6 GapTolerance times
- *     the largest spacing of a corner (times its scale); not in lakes of less than four such squares.
- *     What is connected of them is surface if it is smaller than that square and has surface along
- *     at least half of its border. So the outline does not follow each point inwards.
+ *   - Bays: slivers, and triangles that are not surface, with edges of at most 1.6 GapTolerance
+ *     times the largest spacing of a corner (times its scale); not in lakes of less than four such
+ *     squares. What is connected of them is surface if it is smaller than that square and has
+ *     surface along at least half of its border. So the outline does not follow each point inwards.
  *   - A piece with 6 vertices or fewer, too few for spacings of their own, is not surface, unless
  *     all pieces are as small.
  *   - With a Grid, triangles that are reached from the border of the mesh across edges of more than
@@ -143,8 +146,8 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
  *     rules say. Pieces that this separates stay, however small.
  * The result does not depend on the order of points or triangles. Rings are simple, start at their
  * lowest vertex, and are sorted by it.
- * Cost: linear, plus a sort of the rings, plus that of Scales.h. About 20 neighbours are looked at for
- * a small part of the vertices; for all of them if GapTolerance is small.
+ * Cost: linear, plus a sort of the rings, plus that of Scales.h. About 20 neighbours are looked at
+ * for a small part of the vertices; for all of them if GapTolerance is small.
  * @return no ring if no triangle is surface
  * @throws Aborted, std::bad_alloc
  */

@@ -264,7 +264,7 @@ private:
   const BoundaryLines& Lines;
   const std::vector<Piece>& Pieces;
   std::vector<std::size_t> Partners; ///< one per end
-  std::unordered_map<Point2, std::vector<std::size_t>, HashOfPoint> EndsAt;
+  std::unordered_map<Point2, std::vector<std::size_t>, PointHash> EndsAt;
 };
 
 } // namespace

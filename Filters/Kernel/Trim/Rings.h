@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Closed rings around a surface: joins them from lines, and tells what they enclose.
+ * Closed rings around a surface: joins them from lines, and finds what they enclose.
  *
  * Several rings bound a region by the even-odd rule: a place is inside when an odd number of rings
  * goes around it. So rings may nest (lake, island in the lake), in any direction and order, and may
@@ -24,8 +24,8 @@ namespace elevation
 std::vector<Ends> EdgesOf(const std::vector<Point2>& points, const Rings& rings);
 
 /**
- * Tells which triangles lie inside rings, by the even-odd rule. A query casts a ray along x. So the
- * grid has one column, and a query tests all edges in its row. Linear set-up.
+ * Decides which triangles lie inside rings, by the even-odd rule. A query casts a ray along x. So
+ * the grid has one column, and a query tests all edges in its row. Linear set-up.
  */
 class RingLocator
 {
@@ -62,8 +62,8 @@ void TakePoints(const PointView& points, BoundaryLines& lines);
 /**
  * Joins lines to rings. A line is a ring if it returns to its first point (the same id or the same
  * x,y). Other lines are chained where their ends meet; where more than two meet, so that the rings
- * do not cross. Two lines along the same edge, which form a ring of two points, cancel out. Of lines
- * that are the same ring, from whatever point and in whatever direction, the first counts.
+ * do not cross. Two lines along the same edge, which form a ring of two points, cancel out. Of
+ * lines that are the same ring, from whatever point and in whatever direction, the first counts.
  * Linear, plus a sort of the edges of closed lines, and of the lines that end at the same place.
  * @param[out] repeated  a warning of rings that are there more than once; else empty
  * @return rings of numbers of the lines' points; consecutive points differ in x,y

@@ -16,8 +16,8 @@ namespace elevation
 namespace
 {
 
-// The constants of the rule (Scales.h), found by trials: survey lines 2 to 200 times as far apart as
-// their points, even and uneven, with and without cross lines, jittered by up to half a spacing;
+// The constants of the rule (Scales.h), found by trials: survey lines 2 to 200 times as far apart
+// as their points, even and uneven, with and without cross lines, jittered by up to half a spacing;
 // tracks that cross at random; roads of 3 to 15 rows of points; swaths beside and across lines.
 constexpr Index ManyLonely = 50;
 constexpr std::int64_t Block = 1024;
@@ -145,7 +145,7 @@ public:
     this->Tops[a] = this->Tops[b] = this->Add(sum);
   }
 
-  /** Tells that a part touches a core. */
+  /** Records that a part touches a core. */
   void Touch(Index part, double length)
   {
     const Index top = this->TopOf(part);
@@ -165,7 +165,7 @@ public:
     top.Border += border;
   }
 
-  /** Tells that everything up to a length has been added. */
+  /** Call this when everything up to a length has been added. */
   void Finish(Index part, double length)
   {
     const Index top = this->TopOf(part);
@@ -194,7 +194,7 @@ public:
     for (std::size_t i = this->Parts.size(); i-- > 0;)
     {
       const JoiningPart& part = this->Parts[i];
-      // Of a part that is no surface, only what comes before its last join.
+      // Of a part that is not a surface, only what comes before its last join.
       surface[i] = !isTop(part) ? surface[part.Parent] : hasSurface ? part.Surface : 1.0;
       sums[i] = !isTop(part) ? part.Integral + sums[part.Parent] : hasSurface ? part.Best : 0.0;
     }
@@ -495,7 +495,7 @@ private:
                            : this->LengthOf(h) / this->Units[t];
       }
       this->Parts.Open(
-        part, this->List.ShareOfSquare(this->Partial.Triangles[t], this->Units[t]), border);
+        part, this->List.SquareShare(this->Partial.Triangles[t], this->Units[t]), border);
     }
   }
 

@@ -11,8 +11,9 @@
  * The rule. The length of a triangle is its longest edge in the largest spacing of its corners,
  * halved: about 1 on a square lattice.
  *   - An inner vertex has only triangles that are surface at scale 1. Connected inner vertices and
- *     their neighbours form a core if there are 50 inner ones, and at least twice as many as others:
- *     about six rows of points, or a disc with a radius of five steps. Vertices of cores have scale
+ *     their neighbours form a core if there are 50 inner ones, and at least twice as many as
+ *     others: about six rows of points, or a disc with a radius of five steps. Vertices of cores
+ *     have scale
  *     1. All others are called thin.
  *   - All scales are 1 if no 30 vertices without an inner neighbour are connected by edges, and at
  *     most one in 50 vertices has none.
@@ -31,8 +32,8 @@
  *   - The scale of a vertex is the length at which its part becomes a surface: more precisely the
  *     integral over the length of what the part lacks to be a surface; but at least 1.
  *   - A part that never becomes all of a surface has the same times what it has become: scale 1 if
- *     that is nothing, as of single lines and lone points. If there is no surface at all, parts have
- *     the length at which they joined last.
+ *     that is nothing, as of single lines and lone points. If there is no surface at all, parts
+ *     have the length at which they joined last.
  * The scale is continuous where triangles grow: a part that is nearly a surface gets little from
  * what it joins. The result does not depend on the order of points and triangles.
  *

@@ -94,7 +94,7 @@ public:
     this->Vertex = v;
     this->Place = this->List.Points.At(v);
     this->IsCut = false;
-    std::fill_n(this->Nearest, NeighborOfSpacing,
+    std::fill_n(this->Nearest, SpacingNeighbor,
       Candidate{ std::numeric_limits<double>::infinity(), None, false });
     this->Known[static_cast<std::uint32_t>(v) % Places] = KeyOf(v, v);
     this->Expand(v);
@@ -115,7 +115,7 @@ private:
     Index Vertex;
     bool IsExpanded;
   };
-  static constexpr int Last = NeighborOfSpacing - 1;
+  static constexpr int Last = SpacingNeighbor - 1;
   static constexpr std::uint32_t Places = 1024;
 
   static std::uint64_t KeyOf(Index v, Index w) { return std::uint64_t(v) << 32 | std::uint32_t(w); }
@@ -192,7 +192,7 @@ private:
         ++next;
         continue;
       }
-      Index equal[NeighborOfSpacing];
+      Index equal[SpacingNeighbor];
       int numberOfEqual = 0;
       const double squared = next->Squared;
       for (; next != this->Nearest + Last && next->Squared == squared; ++next)
@@ -217,7 +217,7 @@ private:
   bool IsCut = false; ///< an incomplete vertex has been expanded
   Index Vertex = None;
   Point2 Place{ 0.0, 0.0 };
-  Candidate Nearest[NeighborOfSpacing];
+  Candidate Nearest[SpacingNeighbor];
   std::vector<Index> Found;
   // A cache of the vertices that have been among the nearest of Vertex. One that has lost its slot
   // to another is compared with the nearest themselves.

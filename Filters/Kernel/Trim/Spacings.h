@@ -23,7 +23,7 @@
 namespace elevation
 {
 
-constexpr int NeighborOfSpacing = 6;
+constexpr int SpacingNeighbor = 6;
 constexpr double SpacingPerNeighborDistance = 0.5;
 /** A lower bound, so that no spacing is 0 and squares stay in the range of double. */
 constexpr double LeastSpacing = 1e-150;

@@ -139,8 +139,8 @@ std::vector<Index> VerticesOf(
 }
 
 /**
- * Marks the borders that rings have around them where they are outside of the mesh: of each stretch of
- * points outside, the edge on the right of the first. So a ring wholly in a hole marks the hole.
+ * Marks the borders that rings have around them where they are outside of the mesh: of each stretch
+ * of points outside, the edge on the right of the first. So a ring wholly in a hole marks the hole.
  * @param[in]     firstOutside  the first vertex of rings that no triangle uses
  * @param[in,out] onBoundary    increasing
  */
@@ -358,7 +358,7 @@ std::vector<char> OutwardOf(std::vector<char>&& isSurface)
   return isOutward;
 }
 
-/** What is told of an outline, which has a ring; all but the flags of triangles. */
+/** Moves what is reported of an outline, which has a ring: all but the flags of triangles. */
 void TakeOutline(ExtractedBoundary&& found, Trimmed& result)
 {
   result.Boundary = std::move(found.Vertices);
@@ -578,9 +578,9 @@ Trimmed SplitAlong(
 }
 
 std::optional<Trimmed> TrimNearOutline(
-  const TriangleList& triangles, MeshOfParts&& mesh, const TrimOptions& options)
+  const TriangleList& triangles, OutlineMesh&& mesh, const TrimOptions& options)
 {
-  std::optional<ExtractedBoundary> found = FindOutlineOfParts(
+  std::optional<ExtractedBoundary> found = FindSharedOutline(
     triangles, std::move(mesh), ExtractionOf(options, SubProgress(options.Monitor, 0.0, 0.95)));
   if (!found || found->Vertices.Count() == 0)
   {

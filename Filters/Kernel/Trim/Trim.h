@@ -42,7 +42,7 @@ enum class OutwardTest
   InwardNormal ///< the published test; see ApplyInwardNormalTest()
 };
 
-/** What becomes of an edge of the boundary that is no edge of the mesh. */
+/** What becomes of an edge of the boundary that is not an edge of the mesh. */
 enum class BoundaryEdges
 {
   FollowSurface, ///< it is split where it crosses edges of the mesh, so that the surface stays as it is
@@ -95,8 +95,8 @@ struct Trimmed
   Index NumberOfRecoveredEdges = 0; ///< edges of the boundary that were missing
   Index NumberOfPointsLeftOut = 0;  ///< as in ExtractedBoundary; 0 with InwardNormal
   /**
-   * Of lines: that rings are there more than once. Of an extracted boundary that leaves out much: what,
-   * and what would keep it. Else none.
+   * Of lines: that rings are there more than once. Of an extracted boundary that leaves out much:
+   * what, and what would keep it. Else none.
    */
   Message Warning;
 };
@@ -113,8 +113,8 @@ Trimmed Trim(
   const TriangleList& triangles, const BoundaryLines* boundary, const TrimOptions& options);
 
 /**
- * Trim() along a boundary, for the triangles that SweepAlongRings() has found near it in all parts of a
- * mesh. They are proven, and the boundary may enclose none of them.
+ * Trim() along a boundary, for the triangles that SweepAlongRings() has found near it in all parts
+ * of a mesh. They are proven, and the boundary may enclose none of them.
  * @param[in] border  of the mesh
  */
 Trimmed TrimNear(const TriangleList& triangles, const BoundaryLines& boundary,
@@ -141,13 +141,13 @@ Trimmed SplitAlong(
   const TriangleList& triangles, const BoundaryLines& lines, const TrimOptions& options);
 
 /**
- * Trim() along the extracted outline of a mesh, for the triangles that FindPartOfOutline() has taken
+ * Trim() along the extracted outline of a mesh, for the triangles that FindOutlinePart() has taken
  * of all its parts. The other triangles are inside.
- * @return nothing where FindOutlineOfParts() returns nothing, or no triangle is surface
+ * @return nothing where FindSharedOutline() returns nothing, or no triangle is surface
  * @throws Aborted; std::bad_alloc
  */
 std::optional<Trimmed> TrimNearOutline(
-  const TriangleList& triangles, MeshOfParts&& mesh, const TrimOptions& options);
+  const TriangleList& triangles, OutlineMesh&& mesh, const TrimOptions& options);
 
 } // namespace elevation
 

@@ -689,7 +689,8 @@ TEST(Fill, ExpectsAboutAsManyPointsAsItInserts)
     FillOptions options;
     options.Spacing = spacing;
     const Outcome run = Fill(onNodes, options);
-    const std::vector<HoleNeed> needs = NeedsOfHoles(run.Surface, run.Points(), run.Found, options);
+    const std::vector<HoleNeed> needs =
+      FindHoleNeeds(run.Surface, run.Points(), run.Found, options);
     ASSERT_EQ(needs.size(), 1u);
     const double expected = needs[0].Expected;
     EXPECT_GT(expected, 0.8 * run.Patches.NumberOfPoints());

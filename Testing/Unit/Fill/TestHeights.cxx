@@ -409,8 +409,8 @@ TEST(Heights, MeetALongRim)
 
 TEST(Heights, OfSplinesHaveAllTheirCentersOnALongRim)
 {
-  // Twice as many boundary points as centres. With half the centres the error near the rim is half as
-  // much again, or twice as much.
+  // Twice as many boundary points as centres. With half the centres the error near the rim is half
+  // as much again, or twice as much.
   const Mesh mesh = Sheet(220, Disc(110, 110, 75));
   const std::pair<double, double> largest[] = { { 0.05, 0.025 }, { 0.08, 0.052 } };
   for (const auto& [wave, error] : largest)

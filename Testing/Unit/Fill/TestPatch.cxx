@@ -503,7 +503,8 @@ TEST(Patch, TakesItsSpacingsFromBothSidesOfAVertex)
 
 TEST(Patch, IsAsFineAtAPinchedVertexAsItsFinerSide)
 {
-  // An island touches the rim at the origin. Edges there are short on one side of it, long on the other.
+  // An island touches the rim at the origin. Edges there are short on one side of it, long on the
+  // other.
   for (const double side : { 1.0, -1.0 })
   {
     std::vector<Point2> points{ { 0.0, 0.0 } };

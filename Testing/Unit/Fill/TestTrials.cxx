@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What Adaptive chooses by its trials, and the standard errors that they tell.
+// What Adaptive chooses by its trials, and the standard errors that follow from them.
 #include "FilledSheet.h"
 
 #include <gtest/gtest.h>
@@ -183,7 +183,7 @@ TEST(Trials, OfAdaptiveIgnoreACliffAlongTheRim)
   }
 }
 
-TEST(Trials, TellTheirErrors)
+TEST(Trials, GiveTheirErrors)
 {
   // Hills with noise, ten times others; discs and a ring around an island.
   for (const Interpolation method : { Interpolation::Membrane, Interpolation::ThinPlate,
@@ -219,7 +219,7 @@ TEST(Trials, TellTheirErrors)
   }
 }
 
-TEST(Trials, TellHowErrorsGrowWithTheHole)
+TEST(Trials, ShowHowErrorsGrowWithTheHole)
 {
   // There is room for holes of half the size only. There the errors on waves are a small part of
   // those of the hole, and those of noise as large.
@@ -285,7 +285,7 @@ TEST(Trials, HaveNoErrorsWhereNothingWasTried)
   EXPECT_FALSE(allNaN(Fill(Sheet(60, Disc(30, 30, 8)), Noise, Interpolation::Adaptive)));
 }
 
-TEST(Trials, OfAPartOfTheSurfaceAreThoseOfTheWholeOrTellThatTheyNeedMore)
+TEST(Trials, OfAPartOfTheSurfaceAreThoseOfTheWholeOrReportThatTheyNeedMore)
 {
   const auto elevation = [](const Point2& p) { return std::sin(0.2 * p.X) + 0.05 * Noise(p); };
   const Mesh mesh = Sheet(60, Disc(30, 30, 5));

@@ -90,7 +90,7 @@ TEST(Mesh, RefusesAnEdgeInWhicheverOrderItsTrianglesCome)
   }
 }
 
-TEST(FindComponents, TellsComponentsAndSides)
+TEST(FindComponents, FindsComponentsAndSides)
 {
   // Two pieces that touch in a point, and one apart. The sides: left and right of x = 2.
   const Mesh mesh = Draw({ "#### ##", "## # ##", "#### ##", "    #  " });
@@ -216,8 +216,9 @@ TEST(TraceBorder, SeparatesHolesThatShareAVertex)
 
 TEST(TraceBorder, TurnsIntoTheSlitWhereVeryManyBordersMeet)
 {
-  // Triangles all around a vertex, which is all that they share: behind each is an empty wedge of no
-  // width, and one walk goes through all of these. Also with fewer, which are searched one by one.
+  // Triangles all around a vertex, which is all that they share: behind each is an empty wedge of
+  // no width, and one walk goes through all of these. Also with fewer, which are searched one by
+  // one.
   for (const int count : { 6, 40 })
   {
     for (int first = 0; first < count; ++first)

@@ -463,7 +463,7 @@ TEST(Holes, AreFoundByTheBorderAlone)
   PointView points;
   points.Double = coordinates.data();
   points.Count = mesh.NumberOfPoints();
-  const Holes found = FindHolesOfBorder(border, points, Progress());
+  const Holes found = FindBorderHoles(border, points, Progress());
   EXPECT_GT(found.Count(), 1);
   EXPECT_EQ(found.Offsets, whole.Offsets);
   EXPECT_EQ(found.Loops, whole.Loops);

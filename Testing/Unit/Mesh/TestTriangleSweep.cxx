@@ -40,8 +40,8 @@ bool IsRight(const std::vector<double>& coordinates, const std::vector<Index>& c
 TEST(TriangleSweep, SeesATriangleInAFanThatIsInvertedByOneRounding)
 {
   // The corner of the fan is on a line with two others, or off it by a few units in the last place:
-  // its differences to these are rounded, and their products tell many that are inverted or flat
-  // for counter-clockwise.
+  // its differences to these are rounded, and their products take many that are inverted or
+  // flat for counter-clockwise.
   const double unit = 0.5 * std::numeric_limits<double>::epsilon();
   const double near = 8.8, far = 12.1;
   int numberOfTraps = 0;
@@ -80,8 +80,8 @@ TEST(TriangleList, TheShareOfASquareIsTheSameForAnyFirstCorner)
   const TriangleList list = surface.List();
   for (Index t = 0; t < list.Count; t += 3)
   {
-    const double share = list.ShareOfSquare(t, 0.3);
-    ASSERT_EQ(list.ShareOfSquare(t + 1, 0.3), share);
-    ASSERT_EQ(list.ShareOfSquare(t + 2, 0.3), share);
+    const double share = list.SquareShare(t, 0.3);
+    ASSERT_EQ(list.SquareShare(t + 1, 0.3), share);
+    ASSERT_EQ(list.SquareShare(t + 2, 0.3), share);
   }
 }

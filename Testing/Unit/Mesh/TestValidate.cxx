@@ -59,7 +59,7 @@ TEST(Validate, FindsCornersThatMakeNoTriangle)
   EXPECT_EQ(BrokenRules(mesh), std::vector<Rule>{ Rule::Ids });
 }
 
-TEST(Validate, TellsNoMoreFindingsThanWanted)
+TEST(Validate, ReportsNoMoreFindingsThanWanted)
 {
   Mesh mesh = Square();
   mesh.Triangles = { 0, 1, 4, 0, 2, 5, 0, 3, 6 };

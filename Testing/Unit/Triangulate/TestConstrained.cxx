@@ -846,7 +846,7 @@ TEST(ConstrainedDelaunay, VeryManyThatOverlapAreCutAtAllTheirEnds)
 
 TEST(ConstrainedDelaunay, OfLinesThatOverlapTakesNLogNSteps)
 {
-  // Steps are told by how often they are reported: once in a number of steps.
+  // Steps are counted by their reports: there is one in each so many steps.
   const auto countReports = [](int number) {
     Random random(23);
     Lines lines = OverlappingLines(random, number, 20 * number, 1);

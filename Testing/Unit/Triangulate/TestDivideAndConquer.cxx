@@ -46,7 +46,7 @@ Ids Triangulated(const Cloud& cloud, const DelaunayOptions& options = DelaunayOp
   return Ids(triangulation.Triangles.begin(), triangulation.Triangles.end());
 }
 
-/** Compared as a whole, since a difference of long lists tells nobody anything. */
+/** Compares lists as a whole: a printed difference of long lists helps nobody. */
 void ExpectSame(const Cloud& cloud, const std::string& name)
 {
   SCOPED_TRACE(name);
@@ -64,7 +64,7 @@ void ExpectSameUpToAnEdgeLength(const Cloud& cloud, double length)
   EXPECT_LT(grown.size(), Triangulated(cloud).size());
 }
 
-/** Points on the unit circle, as well as doubles can tell. */
+/** Points on the unit circle, within the precision of doubles. */
 Cloud CircleCloud(std::mt19937_64& random, int count)
 {
   Cloud cloud;

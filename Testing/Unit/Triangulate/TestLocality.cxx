@@ -152,7 +152,8 @@ TEST(Locality, TakingAwayAllPointsOutsideAWindowChangesNoTriangleWhoseCircleLies
 
 TEST(Locality, HoldsOnALatticeThatIsGivenToTheWindowOrFoundInItTheSame)
 {
-  // Turned, with coordinates rounded as in exports: the nodes are triangulated, not the coordinates.
+  // Turned, with coordinates rounded as in exports: the nodes are triangulated, not the
+  // coordinates.
   std::mt19937_64 random(2027);
   DelaunayOptions options;
   options.UseLattice = LatticeMode::Automatic;

@@ -229,13 +229,13 @@ struct FoundInParts
       split[k % parts].Add(p[0], p[1], p[2]);
     }
     LatticeSample sample;
-    sample.CountOfAll = cloud.Count();
+    sample.CloudSize = cloud.Count();
     std::vector<std::vector<Index>> notFinite(parts);
     for (Index k = 0; k < parts; ++k)
     {
       sample.Add(SampleForLattice(split[k].View(), cloud.Count(), 1, Progress(), notFinite[k]));
     }
-    if (!sample.MayBeOfLattice())
+    if (!sample.MayFitLattice())
     {
       return;
     }
@@ -442,7 +442,7 @@ TEST(Pieces, OfALatticeAreTogetherTheTriangulationOfItsNodes)
   EXPECT_GT(found, 200);
 }
 
-TEST(Pieces, TellWhenPointsAreNotOnTheLattice)
+TEST(Pieces, ReportWhenPointsAreNotOnTheLattice)
 {
   std::mt19937_64 random(96);
   const Cloud cloud = TurnedLattice(random, 30, 0.8);

@@ -633,7 +633,7 @@ TEST(Simplify, EveryPointIsWithinTheErrorWhereProductsOfCoordinatesLeaveTheRange
   }
 }
 
-TEST(Simplify, StopsWhenItIsTold)
+TEST(Simplify, StopsAfterAnAbort)
 {
   std::mt19937_64 random(6);
   const Cloud cloud = CloudOf(0, 50000, random);

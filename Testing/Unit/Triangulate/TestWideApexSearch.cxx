@@ -199,7 +199,8 @@ TEST_P(EachInstructionSet, ProvesTheApexInEvenAndUnevenDensity)
 TEST_P(EachInstructionSet, ProvesTheApexThatIsTheLastOfAFullWindow)
 {
   // Six columns and four rows of bins, of which the last point is the apex; the one before is a
-  // little farther away. Sixteen at a time two vectors hold 32 points, eight at a time five hold 40.
+  // little farther away. Sixteen at a time two vectors hold 32 points, eight at a time five hold
+  // 40.
   for (const int count : { 31, 32, 33, 40, 41 })
   {
     BinnedCloud cloud;
@@ -218,7 +219,8 @@ TEST_P(EachInstructionSet, ProvesTheApexThatIsTheLastOfAFullWindow)
 
 TEST_P(EachInstructionSet, ProvesTheApexThatIsTheLastOfASmallerWindow)
 {
-  // Too many for a window of six columns. Of three columns and rows, at most seven vectors of eight.
+  // Too many for a window of six columns. Of three columns and rows, at most seven vectors of
+  // eight.
   for (const int count : { 31, 32, 33, 39, 40, 41, 55, 56, 57 })
   {
     BinnedCloud cloud;

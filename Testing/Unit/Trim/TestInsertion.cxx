@@ -1522,8 +1522,8 @@ double LargestDeviation(const Mesh& before, const Mesh& mesh, const InsertedRing
 
 TEST(InsertRings, SplitsEdgesSoThatTheSurfaceStaysAsItWas)
 {
-  // Random points, and lattices turned and not; rings anywhere, along rows of a lattice, through its
-  // nodes, within a unit in the last place of them, and parcels with edges in common.
+  // Random points, and lattices turned and not; rings anywhere, along rows of a lattice, through
+  // its nodes, within a unit in the last place of them, and parcels with edges in common.
   Random random(36);
   int crossings = 0;
   for (int round = 0; round < 1000; ++round)
@@ -1736,7 +1736,8 @@ TEST(InsertRings, RecoversWhereTrianglesAreTooThinToBeSplit)
 
 TEST(InsertRings, DoesNotDependOnTheOrderOfTriangles)
 {
-  // Corners of rings on edges and in the triangles beside them: whichever comes first cuts differently.
+  // Corners of rings on edges and in the triangles beside them: whichever comes first cuts
+  // differently.
   Random random(38);
   int compared = 0;
   for (int round = 0; round < 200; ++round)

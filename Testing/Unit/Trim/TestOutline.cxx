@@ -410,7 +410,7 @@ TEST(ExtractBoundary, FollowsItsRuleToTheLetter)
         numberOfSliversBack = 0, numberInBays = 0;
   for (int round = 0; round < 4; ++round)
   {
-    // Few enough that all triangles tell the typical one; dense on one side.
+    // Few enough that the typical triangle is found from all of them; dense on one side.
     std::vector<Point2> points;
     while (points.size() < 1000)
     {
@@ -1000,7 +1000,7 @@ TEST(ExtractBoundary, DoesNotDependOnTheOrderOfPoints)
     }
     return rings;
   };
-  // Of the random ones, a sample tells the tolerance.
+  // Of the random ones, a sample decides the tolerance.
   std::vector<Point2> scattered;
   while (scattered.size() < 5000)
   {
@@ -1115,7 +1115,8 @@ TEST(ExtractBoundary, DoesNotDependOnTheOrderOfAnyMesh)
 TEST(ExtractBoundary, RingsBeginAtOneOfTwoVerticesAtTheLowestPlaceByTheNextOnes)
 {
   // A triangle in a triangle, and the land between them slit open from corner to corner: vertices
-  // 0 and 7 are at the lowest place. From 7 the ring goes on inwards, to the lower of the next ones.
+  // 0 and 7 are at the lowest place. From 7 the ring goes on inwards, to the lower of the next
+  // ones.
   const std::vector<Point2> points{ { 0, -4 }, { 4, 4 }, { -4, 4 }, { 0, -1 }, { 1, 1 }, { -1, 1 },
     { 0, -1 }, { 0, -4 } };
   const std::vector<Index> triangles{ 0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4, 2, 7, 6, 2, 6, 5 };
@@ -1153,7 +1154,7 @@ TEST(ExtractBoundary, RingsBeginAtOneOfTwoVerticesAtTheLowestPlaceByTheNextOnes)
   }
 }
 
-TEST(ExtractBoundary, AHubDoesNotTellTheTolerance)
+TEST(ExtractBoundary, AHubDoesNotChangeTheTolerance)
 {
   // A lattice, and a fan of very many triangles, thousands of spacings long. Wherever its middle
   // is: whether a vertex is in the sample depends on that.
@@ -1317,7 +1318,7 @@ TEST(ExtractBoundary, TakesCoordinatesOfAnySize)
 
 TEST(ExtractBoundary, TakesDistancesBelowTheRangeOfSquares)
 {
-  // Most of the points are so near to each other that their spacing is not told from 0.
+  // Most of the points are so near to each other that their spacing does not differ from 0.
   std::vector<Point2> points;
   for (int i = 0; i < 100; ++i)
   {

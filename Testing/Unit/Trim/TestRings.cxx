@@ -31,7 +31,7 @@ Rings MakeRings(const std::vector<std::vector<Index>>& lists)
   return rings;
 }
 
-/** Cells are numbered from 10, to tell them from positions. */
+/** Cells are numbered from 10, to distinguish them from positions. */
 BoundaryLines MakeLines(
   const std::vector<Point2>& points, const std::vector<std::vector<Index>>& lists, bool polygons)
 {

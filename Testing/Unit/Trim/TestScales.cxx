@@ -475,7 +475,7 @@ TEST(Scales, OfMaskedLinesFollowTheMask)
   }
 }
 
-TEST(Scales, OfWhatIsLeftOutTellTheToleranceThatKeepsIt)
+TEST(Scales, OfWhatIsLeftOutGiveTheToleranceThatKeepsIt)
 {
   for (int seed = 1; seed <= Seeds; ++seed)
   {

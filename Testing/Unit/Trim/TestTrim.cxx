@@ -242,7 +242,9 @@ void ExpectSame(const Surface& surface, const Boundary& boundary, Random& random
   EXPECT_TRUE(EverythingOf(rounded, trimmed) == TrimAlong(rounded, boundary));
 }
 
-/** What is extracted is the outline of the mesh, and what is trimmed by it is what is not surface. */
+/**
+ * What is extracted is the outline of the mesh, and what is trimmed by it is what is not surface.
+ */
 Rings ExpectSameOutline(const Surface& surface, double tolerance)
 {
   Mesh mesh = MeshOf(surface);

@@ -4,8 +4,8 @@
  * @file
  * An upper bound of the vertical distance of a point from a triangle's plane.
  */
-#ifndef elevation_Simplify_PlaneOfFace_h
-#define elevation_Simplify_PlaneOfFace_h
+#ifndef elevation_Simplify_FacePlane_h
+#define elevation_Simplify_FacePlane_h
 
 #include "Kernel/Base/Base.h"
 
@@ -17,13 +17,14 @@ namespace elevation
 {
 
 /**
- * Adds to the distance what rounding may have taken from it, for any finite numbers. There is no bound,
- * infinity or not a number, where the triangle is too thin for one, or coordinates differ too much in size.
+ * Adds to the distance what rounding may have taken from it, for any finite numbers. There is no
+ * bound, infinity or not a number, where the triangle is too thin for one, or coordinates differ
+ * too much in size.
  */
-class PlaneOfFace
+class FacePlane
 {
 public:
-  PlaneOfFace(const Point2& a, double az, const Point2& b, double bz, const Point2& c, double cz)
+  FacePlane(const Point2& a, double az, const Point2& b, double bz, const Point2& c, double cz)
     : A(a)
     , Az(az)
   {
@@ -38,10 +39,10 @@ public:
     this->X = (db * cy - dc * by) / d * scale;
     this->Y = (bx * dc - cx * db) / d * scale;
     // Differences are off by u = 2^-53 of themselves, and never too small for that. So the terms of
-    // numerators and denominator are each off by less than 4 u of their sums of absolute values, and by
-    // 2^-1075 for each product; unit times least, 2^-1071, is more than all of these. Where the error is
-    // below 1, the denominator is off by less than a quarter, so that to divide by it costs a third at
-    // most. The rest is a few u of the slopes.
+    // numerators and denominator are each off by less than 4 u of their sums of absolute values,
+    // and by 2^-1075 for each product; unit times least, 2^-1071, is more than all of these. Where
+    // the error is below 1, the denominator is off by less than a quarter, so that to divide by it
+    // costs a third at most. The rest is a few u of the slopes.
     constexpr double unit = 16.0 * 0x1p-53, least = std::numeric_limits<double>::min();
     const double area = std::fabs(d);
     const double error = unit * (1.0 + (std::fabs(bx * cy) + std::fabs(cx * by) + least) / area);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Simplify/PlaneOfFace.h"
+#include "Kernel/Simplify/FacePlane.h"
 #include "PointSets.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ struct Case
 double BoundOf(const Case& of)
 {
   const auto at = [](const Place& p) { return Point2{ p[0], p[1] }; };
-  return PlaneOfFace(at(of.A), of.A[2], at(of.B), of.B[2], at(of.C), of.C[2])
+  return FacePlane(at(of.A), of.A[2], at(of.B), of.B[2], at(of.C), of.C[2])
     .BoundAt(at(of.P), of.P[2]);
 }
 
@@ -75,14 +75,14 @@ Place InsideOf(const Case& of, std::mt19937_64& random)
 }
 } // namespace
 
-TEST(PlaneOfFace, BoundsTheDistanceOfPointsInTheTriangle)
+TEST(FacePlane, BoundsTheDistanceOfPointsInTheTriangle)
 {
   const Case plain{ { 0.0, 0.0, 0.0 }, { 4.0, 0.0, 4.0 }, { 0.0, 4.0, 0.0 }, { 1.0, 1.0, 3.0 } };
   EXPECT_GE(BoundOf(plain), 2.0);
   EXPECT_LT(BoundOf(plain), 2.0 + 1e-13);
 }
 
-TEST(PlaneOfFace, LosesNothingOfCoordinatesThatDifferMuchInSize)
+TEST(FacePlane, LosesNothingOfCoordinatesThatDifferMuchInSize)
 {
   const double tiny = std::numeric_limits<double>::denorm_min();
   for (const Case& one :
@@ -98,7 +98,7 @@ TEST(PlaneOfFace, LosesNothingOfCoordinatesThatDifferMuchInSize)
   }
 }
 
-TEST(PlaneOfFace, BoundsTheDistanceForCoordinatesAndElevationsOfAnySize)
+TEST(FacePlane, BoundsTheDistanceForCoordinatesAndElevationsOfAnySize)
 {
   std::mt19937_64 random(1);
   int finite = 0;

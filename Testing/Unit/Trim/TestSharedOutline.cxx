@@ -122,8 +122,8 @@ Joined Join(const Surface& surface, const std::vector<std::vector<Index>>& parts
       own.Corners.insert(
         own.Corners.end(), surface.Corners.begin() + 3 * t, surface.Corners.begin() + 3 * t + 3);
     }
-    PartOfOutline part;
-    if (!FindPartOfOutline(own.List(), margin, options, part))
+    OutlinePart part;
+    if (!FindOutlinePart(own.List(), margin, options, part))
     {
       joined.IsProven = false; // so scattered that too many edges are open
       return joined;
