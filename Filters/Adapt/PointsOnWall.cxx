@@ -12,7 +12,7 @@ namespace elevation
 
 namespace
 {
-using Place = std::array<double, 3>;
+using Sampled = std::array<double, 3>;
 
 constexpr Index MostSamples = 2000;
 constexpr std::size_t FewestPoints = 20;
@@ -22,22 +22,22 @@ constexpr double Steep = 60.0, Thin = 0.1, Wide = 0.2; // degrees
 /** Points are blunders this many spans of the middle 80 % of x, y or z beside it. */
 constexpr double Outlying = 3.0;
 
-void RemoveBlunders(std::vector<Place>& sample)
+void RemoveBlunders(std::vector<Sampled>& sample)
 {
-  Place low, high;
+  Sampled low, high;
   for (int c = 0; c < 3; ++c)
   {
     const auto quantile = [&](double part) {
       const auto at = sample.begin() + static_cast<std::ptrdiff_t>(part * (sample.size() - 1));
       std::nth_element(sample.begin(), at, sample.end(),
-        [c](const Place& p, const Place& q) { return p[c] < q[c]; });
+        [c](const Sampled& p, const Sampled& q) { return p[c] < q[c]; });
       return (*at)[c];
     };
     const double first = quantile(0.1), last = quantile(0.9);
     low[c] = first - Outlying * (last - first);
     high[c] = last + Outlying * (last - first);
   }
-  const auto isBlunder = [&](const Place& p) {
+  const auto isBlunder = [&](const Sampled& p) {
     return p[0] < low[0] || p[0] > high[0] || p[1] < low[1] || p[1] > high[1] || p[2] < low[2] ||
       p[2] > high[2];
   };
@@ -45,18 +45,18 @@ void RemoveBlunders(std::vector<Place>& sample)
 }
 } // namespace
 
-std::vector<Place> SampleOf(const PointView& points)
+std::vector<Sampled> SampleOf(const PointView& points)
 {
   // Steps of the golden ratio meet no rhythm of rows in the order.
   constexpr double golden = 0.6180339887498949;
   const Index count = std::min(points.Count, MostSamples);
-  std::vector<Place> sample;
+  std::vector<Sampled> sample;
   for (Index i = 0; i < count; ++i)
   {
     const double part = golden * i - std::floor(golden * i);
     const Index at = count == points.Count ? i : static_cast<Index>(part * points.Count);
     const Point2 p = points.At(at);
-    const Place place = { p.X, p.Y, points.Elevation(at) };
+    const Sampled place = { p.X, p.Y, points.Elevation(at) };
     if (std::all_of(place.begin(), place.end(), [](double value) { return std::isfinite(value); }))
     {
       sample.push_back(place);
@@ -65,16 +65,16 @@ std::vector<Place> SampleOf(const PointView& points)
   return sample;
 }
 
-void WarnOfWall(std::vector<Place> sample, std::vector<Message>& warnings)
+void WarnOfWall(std::vector<Sampled> sample, std::vector<Message>& warnings)
 {
   if (sample.size() < FewestPoints)
   {
     return;
   }
   RemoveBlunders(sample);
-  Place middle = {};
+  Sampled middle = {};
   double unit = 0.0; // squares of large coordinates would be infinite
-  for (const Place& p : sample)
+  for (const Sampled& p : sample)
   {
     for (int c = 0; c < 3; ++c)
     {
@@ -83,7 +83,7 @@ void WarnOfWall(std::vector<Place> sample, std::vector<Message>& warnings)
     }
   }
   double squares[3][3] = {};
-  for (const Place& p : sample)
+  for (const Sampled& p : sample)
   {
     for (int c = 0; c < 9 && unit > 0.0; ++c)
     {

@@ -219,9 +219,8 @@ def vertices_of_text(path, word, progress, once=True):
 
 def dimensions_of(grid):
     """Columns, rows and layers of a grid of any kind and VTK."""
-    dimensions = [0, 0, 0]
-    grid.GetDimensions(dimensions)
-    return dimensions
+    extent = grid.GetExtent()
+    return [last - first + 1 for first, last in zip(extent[::2], extent[1::2])]
 
 
 def points_of_grid(path, grid, ids=None):
