@@ -53,6 +53,7 @@ vtkSmartPointer<vtkPolyData> MakeMesh()
 {
   vtkNew<vtkPolyData> cloud;
   vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble(); // with a boundary, points of other types are converted
   vtkNew<vtkIdTypeArray> ids;
   ids->SetName("Id");
   for (vtkIdType i = 0; i < Size * Size; ++i)

@@ -356,7 +356,7 @@ def cloud(count=30):
     data = vtkPolyData()
     data.SetPoints(vtkPoints())
     for i in range(count):
-        data.GetPoints().InsertNextPoint(i % 6, i // 6, i)
+        data.GetPoints().InsertNextPoint(i % 6, i // 6, 0.1 * i)
     return data
 
 
