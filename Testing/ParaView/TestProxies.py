@@ -24,6 +24,7 @@ OTHER_VALUES = {
         "Lattice": [0.0, 0.0, 25.0, 0.0, 0.0, 25.0],
         "LatticeTolerance": 0.05,
         "RemoveUnusedPoints": 1,
+        "OutputPointsPrecision": "Single",
         "NumberOfThreads": 2,
     },
     "TrimOutwardTriangles": {
@@ -33,6 +34,7 @@ OTHER_VALUES = {
         "RecoverBoundary": 0,
         "BoundaryEdges": "Straight",
         "RemoveUnusedPoints": 1,
+        "OutputPointsPrecision": "Single",
         "NumberOfThreads": 2,
     },
     "FillElevationHoles": {
@@ -46,6 +48,7 @@ OTHER_VALUES = {
         "Interpolation": "Thin Plate",
         "InterpolatePointData": 0,
         "RemoveUnusedPoints": 1,
+        "OutputPointsPrecision": "Single",
         "NumberOfThreads": 2,
     },
 }
