@@ -268,7 +268,12 @@ vtkSmartPointer<vtkPointSet> FilterRun::Prepared(
   {
     shown = WithoutHiddenCells(vtkPolyData::SafeDownCast(shown));
   }
-  return this->CleanedOutputs > 0 ? WithOriginalIds(shown, first) : shown;
+  if (this->CleanedOutputs > 0)
+  {
+    shown = WithOriginalIds(shown, first);
+  }
+  CopyMark(input, shown);
+  return shown;
 }
 
 /** Makes the parts of a block what the filter works on. */

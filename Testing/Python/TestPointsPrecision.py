@@ -110,6 +110,18 @@ class Precision(unittest.TestCase):
             self.assertIn("In single precision cell", said, kind)
             self.assertEqual(one.GetOutput().GetNumberOfPoints(), 0)
 
+    def test_a_mesh_without_triangles_is_reported_once_whatever_is_converted(self):
+        mesh, trim = vtkGridDelaunay2D(), vtkTrimOutwardTriangles()
+        mesh.SetInputData(cloud("float32"))
+        mesh.SetMaximumEdgeLength(1e-6)
+        trim.SetInputConnection(mesh.GetOutputPort())
+        trim.SetBoundaryData(meshes.rings([EXACT[:, :2]]))
+        trim.RemoveUnusedPointsOn()
+        said = outcomes.noted(mesh, trim)
+        trim.Update()
+        self.assertEqual(len(said), 1, said)
+        self.assertIn("left without a triangle", said[0][1])
+
     def test_another_value_is_an_error(self):
         self.assertIn("OutputPointsPrecision is 3", refused(cloud(), 3)[1])
 
