@@ -70,6 +70,56 @@ using elevation::Index;
 using elevation::Mesh;
 using elevation::SubProgress;
 using elevation::Report;
+
+/** Fills a block in memory. */
+FillResult FillBlock(
+  FillOptions options, bool interpolates, double openEdgeLength, elevation::Block& block)
+{
+  const elevation::Progress& progress = block.Progress;
+  vtkPolyData* const input = vtkPolyData::SafeDownCast(block.Input);
+  Report(progress, 0.0);
+  elevation::CheckOptions(options, openEdgeLength);
+  elevation::CheckArrays(input);
+  const elevation::DataSetPoints points = elevation::ViewPoints(input);
+  const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
+  Mesh mesh;
+  elevation::ToMesh(input, mesh, SubProgress(progress, 0.0, 0.15));
+  mesh.ConnectTwins(firstPolygon, SubProgress(progress, 0.15, 0.4));
+  Holes found = elevation::FindHoles(mesh, firstPolygon, SubProgress(progress, 0.4, 0.5));
+  Mesh opened;
+  const bool isOpened = openEdgeLength > 0.0 &&
+    elevation::OpenLongTriangles(
+      mesh, openEdgeLength, found, opened, SubProgress(progress, 0.5, 0.55));
+
+  if (interpolates)
+  {
+    options.Attributes = elevation::AttributesOf(input->GetPointData());
+  }
+  options.SinglePrecision = elevation::HasFloatPoints(input);
+  if (vtkUnsignedCharArray* const marks = elevation::BoundaryMarksOf(input->GetPointData()))
+  {
+    options.OnBoundary.assign(
+      marks->GetPointer(0), marks->GetPointer(0) + marks->GetNumberOfTuples());
+  }
+  const double filledAt = found.Count() > 0 ? 0.85 : 0.55;
+  const elevation::Progress filling = SubProgress(progress, 0.55, filledAt);
+  options.Monitor = filling;
+  FillResult patches =
+    elevation::FillHoles(isOpened ? opened : mesh, points.View, std::move(found), options);
+  patches.FirstNumber = elevation::NextHole(input);
+
+  MakeSurface(
+    input, mesh, patches, interpolates, SubProgress(progress, filledAt, 0.97), block.Outputs[0]);
+  MakeReport(input, patches, SubProgress(progress, 0.97, 1.0), block.Outputs[1]);
+  AddHoleCounts(patches, block.Outputs);
+  block.Warnings = WarningsOf(patches);
+  if (mesh.NumberOfTriangles() == 0 && elevation::NeedsWarning(input))
+  {
+    block.Warnings = { elevation::MakeMessage<elevation::sentences::NothingToFill>() };
+  }
+  Report(progress, 1.0);
+  return patches;
+}
 } // namespace
 
 vtkFillElevationHoles::vtkFillElevationHoles()
@@ -111,10 +161,16 @@ int vtkFillElevationHoles::RequestData(
   call.CleanedOutputs = this->RemoveUnusedPoints ? 1 : 0;
   call.Precision = this->OutputPointsPrecision;
   call.Sums = { &this->NumberOfHoles, &this->NumberOfFilledHoles };
-  call.Spread = [this](elevation::Block& block, const elevation::Ranks& ranks) {
+  const FillOptions options = elevation::OptionsOf(this);
+  const bool interpolates = this->InterpolatePointData != 0;
+  // Last, as an abort or an error leaves no counts.
+  const auto addCounts = [this](const FillResult& patches) {
+    this->NumberOfHoles += patches.Found.Count();
+    this->NumberOfFilledHoles += CountFilled(patches);
+  };
+  call.Spread = [&](elevation::Block& block, const elevation::Ranks& ranks) {
     FillResult patches;
-    if (!elevation::FillOnRanks(ranks, elevation::OptionsOf(this), this->InterpolatePointData != 0,
-          this->OpenEdgeLength, block, patches))
+    if (!elevation::FillOnRanks(ranks, options, interpolates, this->OpenEdgeLength, block, patches))
     {
       return false;
     }
@@ -122,59 +178,12 @@ int vtkFillElevationHoles::RequestData(
     block.Warnings = WarningsOf(patches);
     if (ranks.Own() == 0) // all ranks know them
     {
-      this->NumberOfHoles += patches.Found.Count();
-      this->NumberOfFilledHoles += CountFilled(patches);
+      addCounts(patches);
     }
     return true;
   };
-  return call.Run([this](elevation::Block& block) {
-    const elevation::Progress& progress = block.Progress;
-    vtkPolyData* const input = vtkPolyData::SafeDownCast(block.Input);
-    Report(progress, 0.0);
-    FillOptions options = elevation::OptionsOf(this);
-    elevation::CheckOptions(options, this->OpenEdgeLength);
-    elevation::CheckArrays(input);
-    const elevation::DataSetPoints points = elevation::ViewPoints(input);
-    const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
-    Mesh mesh;
-    elevation::ToMesh(input, mesh, SubProgress(progress, 0.0, 0.15));
-    mesh.ConnectTwins(firstPolygon, SubProgress(progress, 0.15, 0.4));
-    Holes found = elevation::FindHoles(mesh, firstPolygon, SubProgress(progress, 0.4, 0.5));
-    Mesh opened;
-    const bool isOpened = this->OpenEdgeLength > 0.0 &&
-      elevation::OpenLongTriangles(
-        mesh, this->OpenEdgeLength, found, opened, SubProgress(progress, 0.5, 0.55));
-    const bool isToBeFilled = found.Count() > 0;
-
-    if (this->InterpolatePointData)
-    {
-      options.Attributes = elevation::AttributesOf(input->GetPointData());
-    }
-    options.SinglePrecision = elevation::HasFloatPoints(input);
-    if (vtkUnsignedCharArray* const marks = elevation::BoundaryMarksOf(input->GetPointData()))
-    {
-      options.OnBoundary.assign(
-        marks->GetPointer(0), marks->GetPointer(0) + marks->GetNumberOfTuples());
-    }
-    const elevation::Progress filling = SubProgress(progress, 0.55, isToBeFilled ? 0.85 : 0.55);
-    options.Monitor = filling;
-    FillResult patches =
-      elevation::FillHoles(isOpened ? opened : mesh, points.View, std::move(found), options);
-    patches.FirstNumber = elevation::NextHole(input);
-
-    MakeSurface(input, mesh, patches, this->InterpolatePointData,
-      SubProgress(progress, isToBeFilled ? 0.85 : 0.55, 0.97), block.Outputs[0]);
-    MakeReport(input, patches, SubProgress(progress, 0.97, 1.0), block.Outputs[1]);
-    AddHoleCounts(patches, block.Outputs);
-    block.Warnings = WarningsOf(patches);
-    if (mesh.NumberOfTriangles() == 0 && elevation::NeedsWarning(input))
-    {
-      block.Warnings = { elevation::MakeMessage<elevation::sentences::NothingToFill>() };
-    }
-    Report(progress, 1.0);
-    // Added last, as an abort or an error leaves no counts.
-    this->NumberOfHoles += patches.Found.Count();
-    this->NumberOfFilledHoles += CountFilled(patches);
+  return call.Run([&](elevation::Block& block) {
+    addCounts(FillBlock(options, interpolates, this->OpenEdgeLength, block));
   });
 }
 

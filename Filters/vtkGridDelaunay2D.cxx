@@ -183,6 +183,65 @@ void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
   }
 }
 
+/** Puts lines onto the surface, which they split. @return how many points that adds */
+vtkIdType Drape(vtkPolyData* lines, const elevation::PointView& points, int threads,
+  const Progress& progress, std::vector<elevation::Message>& warnings, vtkPolyData* surface)
+{
+  elevation::CheckPointArrays(lines, "The constraints'");
+  std::vector<elevation::Message> found;
+  LinesOf(
+    lines, elevation::ViewPoints(lines), points, threads, SubProgress(progress, 0.0, 0.0), found);
+  for (const elevation::Message& message : found)
+  {
+    const bool isOutside = message.GetCode() == elevation::sentences::LinesFarOutside.Code;
+    warnings.push_back(isOutside
+        ? elevation::MakeMessage<elevation::sentences::LinesNotDraped>("constraints")
+        : message);
+  }
+  return elevation::SplitSurface(surface, lines, threads, progress);
+}
+
+/** Triangulates a block in memory. @return the counts */
+elevation::ConstrainedTriangulation TriangulateBlock(
+  const elevation::DelaunayOptions& options, bool drapes, elevation::Block& block)
+{
+  const Progress& progress = block.Progress;
+  vtkPolyData* const output = block.Outputs.front();
+  elevation::Report(progress, 0.0);
+  elevation::CheckOptions(options);
+  elevation::CheckPointArrays(block.Input);
+  const elevation::DataSetPoints points = elevation::ViewPoints(block.Input);
+  vtkPolyData* const draped = drapes ? block.Second : nullptr;
+  vtkPolyData* const source = draped ? nullptr : block.Second;
+  const double split = draped ? 0.7 : 1.0;
+  const double advised = source ? 0.95 : split;
+  // Little, as a limit seldom needs advice.
+  const double triangulated = options.MaximumEdgeLength > 0.0 ? advised - 0.09 : advised;
+  elevation::ConstrainedTriangulation made = TriangulateWith(
+    source, points.View, options, SubProgress(progress, 0.0, triangulated), block.Warnings);
+  elevation::NameHidden(elevation::GhostsOf(block.Input->GetPointData()), made.Result);
+  elevation::WarnOfWall(elevation::SampleOf(points.View), block.Warnings);
+  WarnOfMissing(source, points.View, options, made, SubProgress(progress, triangulated, advised),
+    block.Warnings);
+  elevation::PassPoints(
+    block.Input, source, made.Added, SubProgress(progress, advised, split), output);
+  output->GetFieldData()->PassData(block.Input->GetFieldData());
+  output->SetPolys(elevation::ToCellArray(
+    std::move(made.Result.Triangles), elevation::ResolveNumberOfThreads(options.NumberOfThreads)));
+  if (draped)
+  {
+    made.Added.resize(static_cast<std::size_t>(Drape(draped, points.View, options.NumberOfThreads,
+      SubProgress(progress, split, 1.0), block.Warnings, output)));
+  }
+  elevation::AddReport(made, SubProgress(progress, 1.0, 1.0), output->GetFieldData());
+  if (options.MaximumElevationError > 0.0)
+  {
+    elevation::AddSimplification(made.Result, output->GetFieldData());
+  }
+  elevation::Report(progress, 1.0);
+  return made;
+}
+
 /**
  * Triangulates a block whose points are on several ranks.
  * @return the counts of this rank; crossings of all ranks on the first one
@@ -293,7 +352,18 @@ int vtkGridDelaunay2D::RequestData(
     &this->NumberOfLattices };
   call.Maxima = { &this->LargestElevationError };
   const elevation::DelaunayOptions options = elevation::OptionsOf(this);
-  call.Spread = [this, options](elevation::Block& block, const elevation::Ranks& ranks) {
+  // Last, as an abort or an error leaves no counts.
+  const auto addCounts = [this](const elevation::ConstrainedTriangulation& made) {
+    this->NumberOfDuplicatePoints += made.Result.NumberOfDuplicates;
+    this->NumberOfNonFinitePoints += made.Result.NumberOfNotFinite;
+    this->NumberOfRedundantPoints += made.Result.NumberOfRedundant;
+    this->LargestElevationError =
+      std::max(this->LargestElevationError, made.Result.LargestElevationError);
+    this->NumberOfConstraintCrossings += static_cast<vtkIdType>(made.NumberOfCrossings);
+    this->NumberOfAddedPoints += static_cast<vtkIdType>(made.Added.size());
+    this->NumberOfLattices += made.Result.LatticeFound ? 1 : 0;
+  };
+  call.Spread = [&](elevation::Block& block, const elevation::Ranks& ranks) {
     const bool isDraped = this->DrapeConstraints && block.Second;
     if (options.MaximumElevationError != 0.0 || isDraped)
     {
@@ -301,70 +371,11 @@ int vtkGridDelaunay2D::RequestData(
                                    : elevation::MakeMessage<elevation::sentences::ErrorNeedsAll>();
       return false;
     }
-    const elevation::ConstrainedTriangulation part = TriangulateSpread(ranks, options, block);
-    this->NumberOfDuplicatePoints += part.Result.NumberOfDuplicates;
-    this->NumberOfNonFinitePoints += part.Result.NumberOfNotFinite;
-    this->NumberOfLattices += part.Result.LatticeFound ? 1 : 0;
-    this->NumberOfConstraintCrossings += static_cast<vtkIdType>(part.NumberOfCrossings);
-    this->NumberOfAddedPoints += static_cast<vtkIdType>(part.Added.size());
+    addCounts(TriangulateSpread(ranks, options, block));
     return true;
   };
-  return call.Run([this, options](elevation::Block& block) {
-    const elevation::Progress& progress = block.Progress;
-    vtkPolyData* const output = block.Outputs.front();
-    elevation::Report(progress, 0.0);
-    elevation::CheckOptions(options);
-    elevation::CheckPointArrays(block.Input);
-    const elevation::DataSetPoints points = elevation::ViewPoints(block.Input);
-    vtkPolyData* const draped = this->DrapeConstraints ? block.Second : nullptr;
-    vtkPolyData* const source = draped ? nullptr : block.Second;
-    const double split = draped ? 0.7 : 1.0;
-    const double advised = source ? 0.95 : split;
-    // Little, as a limit seldom needs advice.
-    const double triangulated = this->MaximumEdgeLength > 0.0 ? advised - 0.09 : advised;
-    elevation::ConstrainedTriangulation constrained = TriangulateWith(
-      source, points.View, options, SubProgress(progress, 0.0, triangulated), block.Warnings);
-    elevation::Triangulation& triangulation = constrained.Result;
-    elevation::NameHidden(elevation::GhostsOf(block.Input->GetPointData()), triangulation);
-    elevation::WarnOfWall(elevation::SampleOf(points.View), block.Warnings);
-    WarnOfMissing(source, points.View, options, constrained,
-      SubProgress(progress, triangulated, advised), block.Warnings);
-    elevation::PassPoints(
-      block.Input, source, constrained.Added, SubProgress(progress, advised, split), output);
-    output->GetFieldData()->PassData(block.Input->GetFieldData());
-    output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles),
-      elevation::ResolveNumberOfThreads(this->NumberOfThreads)));
-    if (draped)
-    {
-      elevation::CheckPointArrays(draped, "The constraints'");
-      std::vector<elevation::Message> ofLines;
-      LinesOf(draped, elevation::ViewPoints(draped), points.View, this->NumberOfThreads,
-        SubProgress(progress, split, split), ofLines);
-      for (const elevation::Message& message : ofLines)
-      {
-        const bool isOfOutside = message.GetCode() == elevation::sentences::LinesFarOutside.Code;
-        block.Warnings.push_back(!isOfOutside
-            ? message
-            : elevation::MakeMessage<elevation::sentences::LinesNotDraped>("constraints"));
-      }
-      constrained.Added.resize(static_cast<std::size_t>(elevation::SplitSurface(
-        output, draped, this->NumberOfThreads, SubProgress(progress, split, 1.0))));
-    }
-    elevation::AddReport(constrained, SubProgress(progress, 1.0, 1.0), output->GetFieldData());
-    if (this->MaximumElevationError > 0.0)
-    {
-      elevation::AddSimplification(triangulation, output->GetFieldData());
-    }
-    elevation::Report(progress, 1.0);
-    // Added last, as an abort or an error leaves no counts.
-    this->NumberOfDuplicatePoints += triangulation.NumberOfDuplicates;
-    this->NumberOfNonFinitePoints += triangulation.NumberOfNotFinite;
-    this->NumberOfRedundantPoints += triangulation.NumberOfRedundant;
-    this->LargestElevationError =
-      std::max(this->LargestElevationError, triangulation.LargestElevationError);
-    this->NumberOfConstraintCrossings += static_cast<vtkIdType>(constrained.NumberOfCrossings);
-    this->NumberOfAddedPoints += static_cast<vtkIdType>(constrained.Added.size());
-    this->NumberOfLattices += triangulation.LatticeFound ? 1 : 0;
+  return call.Run([&](elevation::Block& block) {
+    addCounts(TriangulateBlock(options, this->DrapeConstraints, block));
   });
 }
 

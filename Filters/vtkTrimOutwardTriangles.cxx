@@ -99,6 +99,51 @@ void PassSides(vtkPolyData* input, elevation::DataSetTriangles& triangles,
   outward->GetFieldData()->PassData(input->GetFieldData());
 }
 
+/** Trims a block in memory. */
+elevation::TrimCounts TrimBlock(elevation::TrimOptions options, elevation::Block& block)
+{
+  const Progress& progress = block.Progress;
+  vtkPolyData* const input = vtkPolyData::SafeDownCast(block.Input);
+  vtkPolyData* const given = block.Second;
+  Report(progress, 0.0);
+  elevation::CheckArrays(input);
+  elevation::CheckOptions(options);
+  if (given)
+  {
+    elevation::CheckArrays(given, "The boundary's");
+  }
+  elevation::DataSetTriangles triangles = elevation::ViewTriangles(input);
+  const bool isGiven = given && triangles.View.Count > 0;
+  elevation::BoundaryLines lines;
+  if (isGiven)
+  {
+    lines = elevation::ToLines(given, SubProgress(progress, 0.0, 0.02));
+  }
+  // Cell data take time to pass, all else is shared.
+  options.ReturnParents = input->GetCellData()->GetNumberOfArrays() > 0;
+  const double trimmedAt = options.ReturnParents ? 0.85 : 0.95;
+  options.Monitor = SubProgress(progress, 0.02, trimmedAt);
+  Trimmed trimmed = elevation::Trim(triangles.View, given ? &lines : nullptr, options);
+  if (triangles.View.Count == 0 && elevation::NeedsWarning(input))
+  {
+    block.Warnings.push_back(elevation::MakeMessage<elevation::sentences::NothingToTrim>());
+  }
+  if (!trimmed.Warning.IsEmpty())
+  {
+    block.Warnings.push_back(trimmed.Warning);
+  }
+
+  PassSides(input, triangles, isGiven ? &lines : nullptr, options, trimmed,
+    SubProgress(progress, trimmedAt, 0.98), block.Outputs[0], block.Outputs[1]);
+  block.Outputs[2]->GetPointData()->CopyAllOn();
+  elevation::PassRings(
+    trimmed.Boundary, isGiven ? given : input, SubProgress(progress, 0.98, 1.0), block.Outputs[2]);
+  const elevation::TrimCounts counts(trimmed);
+  elevation::AddCounts(counts, block.Outputs);
+  Report(progress, 1.0);
+  return counts;
+}
+
 /**
  * Trims a block that is spread over ranks.
  * @param[out] counts  of this rank
@@ -196,8 +241,8 @@ int vtkTrimOutwardTriangles::RequestData(
   call.Sums = { &this->NumberOfOutwardTriangles, &this->NumberOfRecoveredEdges,
     &this->NumberOfPointsLeftOut, &this->NumberOfInsertedPoints };
   call.Maxima = { &this->EffectiveGapTolerance };
-  elevation::TrimOptions options = elevation::OptionsOf(this);
-  // Added last, as an abort or an error leaves no counts.
+  const elevation::TrimOptions options = elevation::OptionsOf(this);
+  // Last, as an abort or an error leaves no counts.
   const auto addCounts = [this](const elevation::TrimCounts& counts) {
     this->EffectiveGapTolerance = std::max(this->EffectiveGapTolerance, counts.GapTolerance);
     this->NumberOfOutwardTriangles += counts.OutwardTriangles;
@@ -205,7 +250,7 @@ int vtkTrimOutwardTriangles::RequestData(
     this->NumberOfPointsLeftOut += counts.PointsLeftOut;
     this->NumberOfInsertedPoints += counts.InsertedPoints;
   };
-  call.Spread = [options, addCounts](elevation::Block& block, const elevation::Ranks& ranks) {
+  call.Spread = [&](elevation::Block& block, const elevation::Ranks& ranks) {
     if (options.Test != elevation::OutwardTest::Exact)
     {
       block.WhyGathered = elevation::MakeMessage<elevation::sentences::NormalsNeedAll>();
@@ -215,48 +260,7 @@ int vtkTrimOutwardTriangles::RequestData(
     addCounts(counts);
     return isDone;
   };
-  return call.Run([this, options, addCounts](elevation::Block& block) mutable {
-    const elevation::Progress& progress = block.Progress;
-    vtkPolyData* const input = vtkPolyData::SafeDownCast(block.Input);
-    vtkPolyData* const given = block.Second;
-    Report(progress, 0.0);
-    elevation::CheckArrays(input);
-    elevation::CheckOptions(options);
-    if (given)
-    {
-      elevation::CheckArrays(given, "The boundary's");
-    }
-    elevation::DataSetTriangles triangles = elevation::ViewTriangles(input);
-    const bool isGiven = given && triangles.View.Count > 0;
-    elevation::BoundaryLines lines;
-    if (isGiven)
-    {
-      lines = elevation::ToLines(given, SubProgress(progress, 0.0, 0.02));
-    }
-    // Cell data take time to pass, all else is shared.
-    const double trimmedAt = input->GetCellData()->GetNumberOfArrays() > 0 ? 0.85 : 0.95;
-    options.ReturnParents = input->GetCellData()->GetNumberOfArrays() > 0;
-    options.Monitor = SubProgress(progress, 0.02, trimmedAt);
-    Trimmed trimmed = elevation::Trim(triangles.View, given ? &lines : nullptr, options);
-    if (triangles.View.Count == 0 && elevation::NeedsWarning(input))
-    {
-      block.Warnings.push_back(elevation::MakeMessage<elevation::sentences::NothingToTrim>());
-    }
-    if (!trimmed.Warning.IsEmpty())
-    {
-      block.Warnings.push_back(trimmed.Warning);
-    }
-
-    PassSides(input, triangles, isGiven ? &lines : nullptr, options, trimmed,
-      SubProgress(progress, trimmedAt, 0.98), block.Outputs[0], block.Outputs[1]);
-    block.Outputs[2]->GetPointData()->CopyAllOn();
-    elevation::PassRings(trimmed.Boundary, isGiven ? given : input,
-      SubProgress(progress, 0.98, 1.0), block.Outputs[2]);
-    const elevation::TrimCounts counts(trimmed);
-    elevation::AddCounts(counts, block.Outputs);
-    Report(progress, 1.0);
-    addCounts(counts);
-  });
+  return call.Run([&](elevation::Block& block) { addCounts(TrimBlock(options, block)); });
 }
 
 const char* vtkTrimOutwardTriangles::GetOutwardTestAsString() const

@@ -68,6 +68,31 @@ void FillParts::WithPart(int part, const Progress& progress, const Visit& visit)
   }
 }
 
+/** What all ranks will know of a part. Also counts its long triangles. */
+FillParts::KnownPart FillParts::Describe(int part, const FilledPart& one)
+{
+  KnownPart known;
+  for (const Index corner : one.Own.Triangles)
+  {
+    known.Place.Add(one.Own.PointOf(corner));
+  }
+  known.Triangles = one.Own.NumberOfTriangles();
+  known.Points = one.Input->GetNumberOfPoints();
+  known.OwnPoints = one.CountOfOwn();
+  known.LargestId = one.LargestId();
+  known.NextHole = NextHole(one.Input);
+  for (std::size_t t = 0; t < one.RegionOf.size(); ++t)
+  {
+    if (one.RegionOf[t] != None)
+    {
+      ++this->LongTriangles[{ part, one.RegionOf[t] }];
+      known.LargestHeight =
+        std::max(known.LargestHeight, LargestHeight(one.Own, static_cast<Index>(t)));
+    }
+  }
+  return known;
+}
+
 /*
  * A part is looked at once. The points on its border are kept meanwhile, as which of them are on
  * that of the surface is known only when all ranks have sent their edges.
@@ -83,25 +108,7 @@ void FillParts::FindHoles(int partOfRims)
       one.Read(this->Whole.ByIds, this->Whole.LongestEdge, reading);
       AppendBorder(one.Own, one.Shared, one.RegionOf, part, edges);
       borders.push_back(one.PointsOnBorder());
-      KnownPart& known = own[part - this->Crew.FirstOwn()];
-      for (const Index corner : one.Own.Triangles)
-      {
-        known.Place.Add(one.Own.PointOf(corner));
-      }
-      known.Triangles = one.Own.NumberOfTriangles();
-      known.Points = one.Input->GetNumberOfPoints();
-      known.OwnPoints = one.CountOfOwn();
-      known.LargestId = one.LargestId();
-      known.NextHole = NextHole(one.Input);
-      for (std::size_t t = 0; t < one.RegionOf.size(); ++t)
-      {
-        if (one.RegionOf[t] != None)
-        {
-          ++this->LongTriangles[{ part, one.RegionOf[t] }];
-          known.LargestHeight =
-            std::max(known.LargestHeight, LargestHeight(one.Own, static_cast<Index>(t)));
-        }
-      }
+      own[part - this->Crew.FirstOwn()] = this->Describe(part, one);
     });
   });
   if (!this->Crew.IsInFiles())

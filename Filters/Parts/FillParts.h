@@ -111,6 +111,7 @@ private:
   void WithPart(int part, const Progress& progress, const Visit& visit);
   void SendRims(Parts&& borders);
   void FindReaches();
+  KnownPart Describe(int part, const FilledPart& one);
   void FindLattice();
   std::vector<int> PartsOfHoles() const;
   double PointsAround(Index hole, const KnownPart& part) const;

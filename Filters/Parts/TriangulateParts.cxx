@@ -169,6 +169,19 @@ void TriangulateParts::FetchOthers()
   this->Crew->Deliver();
 }
 
+/** The places among its own points of those that other parts have asked a part for. */
+std::vector<vtkIdType> TriangulateParts::RequestedPlaces(int part) const
+{
+  std::vector<vtkIdType> all;
+  this->Crew->At(part, Requests).ForEach([&](const Bytes& bytes) {
+    const char* from = bytes.data() + sizeof(vtkIdType); // beyond the part that asks
+    std::vector<vtkIdType> places;
+    TakeFrom(from, bytes.size() / sizeof(vtkIdType) - 1, places);
+    all.insert(all.end(), places.begin(), places.end());
+  });
+  return all;
+}
+
 /**
  * Leaves out triangles with a longer edge, and counts the vertices without one. Whether a point
  * that another part has asked for is such a vertex is known when all parts have said where they
@@ -204,19 +217,14 @@ void TriangulateParts::LimitEdges(const Progress& progress)
         }
       }
       SendTo(*this->Crew, Covered, covered);
-      // Own points that may still have one elsewhere
-      this->Crew->At(part, Requests).ForEach([&](const Bytes& bytes) {
-        const char* from = bytes.data() + sizeof(vtkIdType); // beyond the part that asks
-        std::vector<vtkIdType> places;
-        TakeFrom(from, bytes.size() / sizeof(vtkIdType) - 1, places);
-        for (const vtkIdType place : places)
+      for (const vtkIdType place : this->RequestedPlaces(part))
+      {
+        // An own point that may still have one elsewhere
+        if (std::exchange(areMissing[place], 0))
         {
-          if (std::exchange(areMissing[place], 0))
-          {
-            open[part].push_back(place);
-          }
+          open[part].push_back(place);
         }
-      });
+      }
       sums[0] += static_cast<vtkIdType>(kept.size() / 3);
       sums[1] += std::count(areMissing.begin(), areMissing.begin() + ownCount, char(1));
     });

@@ -121,6 +121,7 @@ private:
   std::vector<GlobalTriangle> Settle();
   void SendTriangles(std::vector<GlobalTriangle>&& ofSeams);
   void FetchOthers();
+  std::vector<vtkIdType> RequestedPlaces(int part) const;
   void LimitEdges(const Progress& progress);
 
   const Ranks& Everybody;

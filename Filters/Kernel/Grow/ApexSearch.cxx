@@ -519,7 +519,7 @@ __attribute__((target("avx2"), always_inline)) inline void ApexSearch::CompareEi
 
 /**
  * As LookIntoRows(), but as far as the disc reaches at the start: rows do not wait for the points
- * of others, and branches are predictable.
+ * of others, and branches are predictable. In one, as nine constants stay in registers.
  * @return false if nothing was done, because there are too many points or there is no disc
  */
 __attribute__((target("avx2"))) bool ApexSearch::LookIntoRowsWide(const Region& region)

@@ -228,14 +228,9 @@ private:
     return Orientation(this->OriginOf(spoke), this->EndOf(spoke), this->Points[vertex]);
   }
 
-  /**
-   * Merges two triangulations along the line that separates them, from the right common tangent of
-   * their hulls to the left one. Each new edge is the base of the next triangle, whose apex is the
-   * neighbour of either end with an empty circle; edges that it would cross are removed.
-   */
-  HullEnds Merge(HullEnds lower, HullEnds upper)
+  /** Turns two spokes at the hulls of two triangulations to the ends of their common tangent. */
+  void FindTangent(Index& left, Index& right)
   {
-    Index left = lower.FromHighest, right = upper.FromLowest;
     for (;;)
     {
       this->Step();
@@ -249,9 +244,37 @@ private:
       }
       else
       {
-        break;
+        return;
       }
     }
+  }
+
+  /**
+   * Turns a spoke at one end of the base from p to q to the neighbour of that end whose circle with
+   * the base has no other; removes the edges that are passed.
+   */
+  Index FindApex(Index spoke, Index Spoke::*turn, Index last, const Point2& p, const Point2& q)
+  {
+    for (Index next = this->Spokes[spoke].*turn;
+         next != last && this->IsInCircle(q, p, this->EndOf(spoke), this->EndOf(next)) == Positive;
+         next = this->Spokes[spoke].*turn)
+    {
+      this->RemoveEdge(spoke);
+      spoke = next;
+      this->Step();
+    }
+    return spoke;
+  }
+
+  /**
+   * Merges two triangulations along the line that separates them, from the right common tangent of
+   * their hulls to the left one. Each new edge is the base of the next triangle, whose apex is the
+   * neighbour of either end with an empty circle; edges that it would cross are removed.
+   */
+  HullEnds Merge(HullEnds lower, HullEnds upper)
+  {
+    Index left = lower.FromHighest, right = upper.FromLowest;
+    this->FindTangent(left, right);
     Index base = this->Connect(right, left); // from the upper points to the lower
     if (this->Spokes[left].Origin == this->Spokes[lower.FromLowest].Origin)
     {
@@ -270,30 +293,16 @@ private:
         return Orientation(q, p, this->EndOf(spoke)) == Positive;
       };
       Index inLower = this->Spokes[Twin(base)].Next;
+      Index inUpper = this->Spokes[base].Previous;
       const bool hasLower = isAbove(inLower);
       if (hasLower)
       {
-        for (Index next = this->Spokes[inLower].Next; next != Twin(base) &&
-             this->IsInCircle(q, p, this->EndOf(inLower), this->EndOf(next)) == Positive;
-             next = this->Spokes[inLower].Next)
-        {
-          this->RemoveEdge(inLower);
-          inLower = next;
-          this->Step();
-        }
+        inLower = this->FindApex(inLower, &Spoke::Next, Twin(base), p, q);
       }
-      Index inUpper = this->Spokes[base].Previous;
       const bool hasUpper = isAbove(inUpper);
       if (hasUpper)
       {
-        for (Index next = this->Spokes[inUpper].Previous; next != base &&
-             this->IsInCircle(q, p, this->EndOf(inUpper), this->EndOf(next)) == Positive;
-             next = this->Spokes[inUpper].Previous)
-        {
-          this->RemoveEdge(inUpper);
-          inUpper = next;
-          this->Step();
-        }
+        inUpper = this->FindApex(inUpper, &Spoke::Previous, base, p, q);
       }
       if (!hasLower && !hasUpper)
       {

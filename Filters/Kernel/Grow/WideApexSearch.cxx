@@ -327,7 +327,7 @@ struct WidestWindow
   }
 };
 
-/** FollowVectors() for windows of two vectors of sixteen. */
+/** FollowVectors() for windows of two vectors of sixteen. In one, as all of it is in registers. */
 ELEVATION_WIDEST int WideApexSearch::FollowWidest(
   Index b, Index last, Index* neighbors, Candidates& open) const
 {

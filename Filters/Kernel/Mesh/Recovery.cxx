@@ -211,6 +211,17 @@ private:
     }
   }
 
+  void CheckIsFree(Index crossed, const Segment& segment) const
+  {
+    if (this->Constrained[crossed])
+    {
+      const Mesh& mesh = this->Surface;
+      throw Error(NameOfSegment(mesh, segment) + " crosses the fixed edge from " +
+        NameOf(mesh, mesh.Origin(crossed)) + " to " + NameOf(mesh, mesh.Destination(crossed)) +
+        ". Segments may not cross; they may meet in a vertex.");
+    }
+  }
+
   /**
    * Walks along the segment to the next vertex on it, which it returns: collects the crossed
    * triangles and the polygons on either side.
@@ -236,12 +247,7 @@ private:
     // The crossed edge always runs from the right of the segment to its left.
     for (;;)
     {
-      if (this->Constrained[crossed])
-      {
-        throw Error(NameOfSegment(mesh, segment) + " crosses the fixed edge from " +
-          NameOf(mesh, mesh.Origin(crossed)) + " to " + NameOf(mesh, mesh.Destination(crossed)) +
-          ". Segments may not cross; they may meet in a vertex.");
-      }
+      this->CheckIsFree(crossed, segment);
       const Index beyond = mesh.Twin(crossed);
       if (beyond == Mesh::Border)
       {
