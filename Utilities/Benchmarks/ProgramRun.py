@@ -52,12 +52,12 @@ def with_absolute_paths(environment):
     return {**environment, "PYTHONPATH": absolute}
 
 
-def run(points, options):
+def run(points, options, program=("-m", "vtkelevationsurface")):
     """Runs the program beside the file of points. Where it fails, so does this process."""
     folder, name = os.path.split(points)
     before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     done = subprocess.run(
-        [sys.executable, "-m", "vtkelevationsurface", name, "--quiet", *options, "--report", REPORT],
+        [sys.executable, *program, name, "--quiet", *options, "--report", REPORT],
         cwd=folder, env=with_absolute_paths(os.environ), check=False,
     )
     if done.returncode:

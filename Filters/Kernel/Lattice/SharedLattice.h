@@ -51,8 +51,6 @@ public:
   const Lattice& Steps() const { return this->Search.Steps; }
   const LatticeMetric& Metric() const { return this->StepMetric; }
   double Tolerance() const { return this->ToleranceInSteps; }
-  /** As if found in the whole cloud. */
-  const LatticeSearch& AsFound() const { return this->Search; }
 
   /** @throws NotOnLattice if the point is too far from it */
   LatticeNode NodeOf(const Point2& p) const;
