@@ -163,7 +163,6 @@ int vtkFillElevationHoles::RequestData(
   call.Sums = { &this->NumberOfHoles, &this->NumberOfFilledHoles };
   const FillOptions options = elevation::OptionsOf(this);
   const bool interpolates = this->InterpolatePointData != 0;
-  // Last, as an abort or an error leaves no counts.
   const auto addCounts = [this](const FillResult& patches) {
     this->NumberOfHoles += patches.Found.Count();
     this->NumberOfFilledHoles += CountFilled(patches);
@@ -176,7 +175,7 @@ int vtkFillElevationHoles::RequestData(
     }
     AddHoleCounts(patches, block.Outputs);
     block.Warnings = WarningsOf(patches);
-    if (ranks.Own() == 0) // all ranks know them
+    if (ranks.OwnRank() == 0) // all ranks know them
     {
       addCounts(patches);
     }

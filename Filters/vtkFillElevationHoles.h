@@ -331,8 +331,8 @@ public:
    * PointsCoincide), MoreHolesNotFilled, BordersMeet, TooManyPointsToFill, TooManyPointsByDefault,
    * InvalidOpenEdgeLength, InvalidHoleSize, InvalidHoleEdges, InvalidSpacing,
    * InvalidInsertedPoints, InvalidExpectedPoints, InvalidThreads, InvalidPrecision, FoldsInSingle,
-   * EdgeLengthRenamed, ArraysLeftOut, OnOneRank (with a reason: PartsDoNotFit), RankWaits,
-   * NotEnoughMemory, Stopped.
+   * OriginalIdsReplaced, EdgeLengthRenamed, ArraysLeftOut, OnOneRank (with a reason:
+   * PartsDoNotFit), RankWaits, NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 

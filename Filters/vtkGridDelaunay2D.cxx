@@ -170,7 +170,7 @@ void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
 {
   if (constrained.Result.NumberOfHullPoints == 0)
   {
-    elevation::WarnOfNoTriangle(points.Count, warnings);
+    elevation::WarnOfNoTriangle(points.Count, constrained.Result.NumberOfHidden, warnings);
     return;
   }
   try
@@ -254,7 +254,7 @@ elevation::ConstrainedTriangulation TriangulateSpread(
   elevation::TriangulateParts parts(ranks);
   parts.Add(block.Input, options.Monitor);
   parts.Triangulate(block.Outputs.empty() ? 0 : 1, block.Second, options, block.Warnings);
-  const elevation::TriangulateParts::Totals& all = parts.All();
+  const elevation::TriangulateParts::Totals& all = parts.GetTotals();
   elevation::WarnOfLeftOut("point", parts.LeftOut(), block.Warnings);
   std::vector<std::array<double, 3>> sample;
   ranks.Agree([&] {
@@ -283,9 +283,9 @@ elevation::ConstrainedTriangulation TriangulateSpread(
     }
     counts.Result = std::move(part.Result);
     elevation::AddReport(counts, progress, output->GetFieldData());
-    elevation::AddWork(ranks.GetTraffic(), parts.Own(), output->GetFieldData());
+    elevation::AddWork(ranks.GetTraffic(), parts.GetEffort(), output->GetFieldData());
   });
-  counts.NumberOfCrossings = ranks.Own() == 0 ? all.Crossings : 0; // once
+  counts.NumberOfCrossings = ranks.OwnRank() == 0 ? all.Crossings : 0; // once
   return counts;
 }
 } // namespace
@@ -352,7 +352,6 @@ int vtkGridDelaunay2D::RequestData(
     &this->NumberOfLattices };
   call.Maxima = { &this->LargestElevationError };
   const elevation::DelaunayOptions options = elevation::OptionsOf(this);
-  // Last, as an abort or an error leaves no counts.
   const auto addCounts = [this](const elevation::ConstrainedTriangulation& made) {
     this->NumberOfDuplicatePoints += made.Result.NumberOfDuplicates;
     this->NumberOfNonFinitePoints += made.Result.NumberOfNotFinite;

@@ -329,10 +329,10 @@ public:
    * {property:Spacing}); in a composite ("block", the name of the block); and a row for each value.
    * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent,
    * whose text has the same for people, are invoked. Codes, besides those of data that are invalid,
-   * which are "Words": NoTriangle, PointsOnWall, FewTriangles, FewTrianglesAdvice,
+   * which are "Words": NoTriangle, NoTriangleShown, PointsOnWall, FewTriangles, FewTrianglesAdvice,
    * InvalidEdgeLength, InvalidElevationError, InvalidLatticeTolerance, InvalidThreads,
-   * InvalidPrecision, FoldsInSingle, TwoLimits, LatticeNotUsed, NoLines, StripsInLines,
-   * TooManyPointsInLines, NoSuchPointOfLine, NonFinitePointOfLine, LinesElsewhere, LinesFarOutside,
+   * InvalidPrecision, OriginalIdsReplaced, FoldsInSingle, TwoLimits, LatticeNotUsed, NoLines,
+   * StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, NonFinitePointOfLine, LinesElsewhere, LinesFarOutside,
    * PolygonsAreLines, LinesNotDraped, LinesNotSettled, ArraysLeftOut, OnOneRank (with a reason:
    * ErrorNeedsAll, DrapingNeedsAll), RankWaits, NotEnoughMemory, Stopped.
    */

@@ -168,14 +168,14 @@ bool TrimSpread(const elevation::Ranks& ranks, elevation::TrimOptions options,
       {
         block.Warnings.push_back(parts.Warning());
       }
-      elevation::AddCounts(parts.Own(), block.Outputs);
+      elevation::AddCounts(parts.GetRankCounts(), block.Outputs);
       elevation::AddTuple(block.Outputs[0]->GetFieldData(), "WorkOfTrim",
         { { "Triangles", parts.CountOfOwn() }, { "NearTriangles", parts.CountOfNear() },
           { "BytesSent", ranks.GetTraffic().BytesSent },
           { "Exchanges", ranks.GetTraffic().Rounds } });
       Report(progress, 1.0);
     });
-    counts = parts.Own();
+    counts = parts.GetRankCounts();
     return true;
   });
 }
@@ -242,7 +242,6 @@ int vtkTrimOutwardTriangles::RequestData(
     &this->NumberOfPointsLeftOut, &this->NumberOfInsertedPoints };
   call.Maxima = { &this->EffectiveGapTolerance };
   const elevation::TrimOptions options = elevation::OptionsOf(this);
-  // Last, as an abort or an error leaves no counts.
   const auto addCounts = [this](const elevation::TrimCounts& counts) {
     this->EffectiveGapTolerance = std::max(this->EffectiveGapTolerance, counts.GapTolerance);
     this->NumberOfOutwardTriangles += counts.OutwardTriangles;

@@ -288,7 +288,7 @@ public:
    * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent,
    * whose text has the same for people, are invoked. Codes, besides those of data that are invalid,
    * which are "Words": NothingToTrim, InvalidThreads, InvalidPrecision, FoldsInSingle,
-   * InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut, BoundaryLeavesOutAll, RingsRepeated,
+   * OriginalIdsReplaced, InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut, BoundaryLeavesOutAll, RingsRepeated,
    * BoundaryEnclosesNothing (reasons: NothingInRing, NothingBetweenRings, BoundaryElsewhere),
    * StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, ArraysLeftOut, OnOneRank (with a
    * reason: NormalsNeedAll, PartsDoNotFit), RankWaits, NotEnoughMemory, Stopped.

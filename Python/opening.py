@@ -26,7 +26,8 @@ MOST_SAMPLES = 1_000_000  # triangles: of more, about every k-th stands for k
 def lattice_of(ranks, surface):
     """The lattice that was found, or None: a node, two steps, their lengths and their directions.
 
-    Directions are in degrees from x to y.
+    Directions are in degrees from x to y; with plane=best from the first axis of the plane, which is
+    level, to the second, upwards, and the node and the steps have x, y and z.
     """
 
     def own():

@@ -98,3 +98,8 @@ def turn_back(result):
         data = getattr(result, name)
         if data is not None:
             setattr(result, name, result.cloud.plane.back(data))
+    if result.lattice:
+        plane, lattice = result.cloud.plane, result.lattice
+        steps = numpy.array(lattice["steps"]) @ plane.axes[:2]
+        origin = lattice["origin"] @ plane.axes[:2] + plane.middle
+        result.lattice = {**lattice, "origin": origin.tolist(), "steps": steps.tolist()}

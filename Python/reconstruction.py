@@ -33,7 +33,7 @@ from .properties import COLOURS, PROPERTIES, checked
 from .ranks import extremes, total
 from .reading.arrays import cloud_of_columns, cloud_of_grid, columns_of
 from .reading.facing import faces_of, notes_on_faces
-from .spreading import followed, last_id, without_unused
+from .spreading import ORIGINAL_IDS, followed, last_id, original_ids, without_unused
 from .steps import Step, triangulate, trim_along, trim_few
 from .vtkElevationSurface import vtkFillElevationHoles
 
@@ -354,10 +354,21 @@ def run_chain(
     )
     result.removes_unused = given.get("remove_unused_points", True)
     if result.removes_unused:
+        result.notes += replaced_ids(cloud.points)
         result.surface = without_unused(ranks, result.complete, last_id(ranks, cloud.points))
     if cloud.plane:
         turn_back(result)
     return result
+
+
+def replaced_ids(points):
+    """A note on an array that gives way to that of original ids, or none."""
+    if not points.GetPointData().HasArray(ORIGINAL_IDS) or original_ids(points) is not None:
+        return []
+    return [
+        f"the point array {ORIGINAL_IDS} is not one integer for each point, so it is replaced by the "
+        "numbers of the points; rename it to keep it"
+    ]
 
 
 def reconstruct_cloud(cloud, lines, names, given, *, strict=False, ranks=None, **options):

@@ -260,7 +260,8 @@ def triangle_lines(report, line):
                 report["lattice"]["lengths"], report["lattice"]["directions"]
             )
         ]
-        line("lattice", f"steps of {' and '.join(steps)}")
+        where = " in the plane" if len(report["lattice"]["origin"]) > 2 else ""
+        line("lattice", f"steps of {' and '.join(steps)}{where}")
     elif "faults" in report:
         line("lattice", "not looked for, because of the faults")
     elif report["lattice_mode"] == "automatic":

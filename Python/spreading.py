@@ -105,18 +105,25 @@ def followed(ranks, earlier, reasons, later, points):
     return later, numpy.array([reasons.get(one, 0) for one in new.tolist()], dtype="u1")
 
 
+def original_ids(data):
+    """The array OriginalPointIds of points, (n,) of any kind of integers, or None."""
+    array = data.GetPointData().GetArray(ORIGINAL_IDS)
+    numbers = None if array is None else vtk_to_numpy(array)
+    return numbers if numbers is not None and numbers.ndim == 1 and numbers.dtype.kind in "iu" else None
+
+
 def without_unused(ranks, surface, last):
     """A surface without the points that no triangle has, as the filters' RemoveUnusedPoints makes it.
 
     last  last_id() of the input
     """
-    used, data = used_points(ranks, surface), surface.GetPointData()
-    original, ids = data.GetArray(ORIGINAL_IDS), ids_of(ranks, surface)
-    if not isinstance(original, vtkIdTypeArray) or original.GetNumberOfComponents() != 1:
+    used, data, ids = used_points(ranks, surface), surface.GetPointData(), ids_of(ranks, surface)
+    numbers = original_ids(surface)
+    if numbers is None:
         given = data.GetGlobalIds()
         numbers = numpy.where(ids <= last, ids if given is None else vtk_to_numpy(given), -1)
-        original = numpy_to_vtkIdTypeArray(numbers, deep=True)
-        original.SetName(ORIGINAL_IDS)
+    original = numpy_to_vtkIdTypeArray(numbers.astype("i8"), deep=True)
+    original.SetName(ORIGINAL_IDS)
     whole = vtkPolyData()
     whole.ShallowCopy(surface)
     whole.GetPointData().AddArray(original)

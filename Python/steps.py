@@ -6,9 +6,10 @@ import time
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
-from .clouds import bare_lines, coordinates_of, joined, names_of_cells
-from .messages import ElevationSurfaceError, Messages
+from .clouds import bare_lines, coordinates_of, joined, marked_points, names_of_cells
+from .messages import ElevationSurfaceError, Messages, counted
 from .names import PANEL, PYTHON, are_for, argument, option
 from .opening import lattice_of
 from .outline import (
@@ -152,7 +153,10 @@ def triangulate(run, lines, error):
     result.number_of_points = total(ranks, own)
     if result.triangles["delaunay"] == 0:
         limit = run.given.get("maximum_edge_length", 0.0)
-        why = why_no_triangle(ranks, coordinates_of(points), limit, result.warnings)
+        hidden = marked_points(points, vtkDataSetAttributes.HIDDENPOINT)
+        why = why_no_triangle(ranks, coordinates_of(points)[~hidden], limit, result.warnings)
+        count = total(ranks, numpy.count_nonzero(hidden))
+        why += f"; {counted(count, 'point is', 'points are')} marked as hidden" if count else ""
         raise ElevationSurfaceError(together(ranks, lambda: [why])[0])
 
 
@@ -218,7 +222,7 @@ def trim_few(run, boundary, faults):
 def why_no_triangle(ranks, xyz, limit, warnings):
     """The reason in words when the triangulation is empty.
 
-    xyz       (n, 3) points of this rank
+    xyz       (n, 3) points of this rank that are shown
     warnings  those of the filter, which the first rank has
     """
     finite = xyz[numpy.isfinite(xyz).all(axis=1)]
@@ -227,6 +231,8 @@ def why_no_triangle(ranks, xyz, limit, warnings):
     ends = numpy.vstack((distinct[:3], distinct[-1:]))  # of each rank
     ends = numpy.unique(all_values(ranks, ends.ravel(), "f8").reshape(-1, 2), axis=0)
     words = "the only point" if count == 1 else f"all {count:,} points"
+    if count == 0:
+        return "no surface: there is no point to use"
     if number_of_finite == 0:
         return f"no surface: {words} {'is' if count == 1 else 'are'} not finite (NaN or infinite)"
     if count == 1:

@@ -31,7 +31,7 @@ struct Place
    */
   std::string Path;
   std::string NameOfBlock; ///< without the partition; empty for the whole input
-  vtkSmartPointer<vtkDataObject> Own = nullptr; ///< what Input points to, if it was made here
+  vtkSmartPointer<vtkDataObject> Made = nullptr; ///< what Input points to, if it was made here
   bool IsDone = false;                          ///< has its outputs
   Message Warning = Message();                  ///< on how its input has come here, if any
 };

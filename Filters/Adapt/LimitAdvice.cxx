@@ -15,11 +15,12 @@ double RoundedUp(double length)
 }
 } // namespace
 
-void WarnOfNoTriangle(vtkIdType points, std::vector<Message>& warnings)
+void WarnOfNoTriangle(vtkIdType points, vtkIdType hidden, std::vector<Message>& warnings)
 {
   if (points > 0)
   {
-    warnings.push_back(MakeMessage<sentences::NoTriangle>(points));
+    warnings.push_back(hidden > 0 ? MakeMessage<sentences::NoTriangleShown>(points, hidden)
+                                  : MakeMessage<sentences::NoTriangle>(points));
   }
 }
 

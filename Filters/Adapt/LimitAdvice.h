@@ -45,7 +45,7 @@ inline vtkIdType PlaceOfQuantile(double part, vtkIdType count)
 }
 
 /** Warns that points, if there are any, have made no triangle. */
-void WarnOfNoTriangle(vtkIdType points, std::vector<Message>& warnings);
+void WarnOfNoTriangle(vtkIdType points, vtkIdType hidden, std::vector<Message>& warnings);
 
 /** That most points are without a triangle, and which limit would keep them. */
 Message AdviceOnLimit(double limit, const LimitEffect& effect);

@@ -30,6 +30,14 @@ vtkAbstractArray* OriginalIdsOf(vtkPointSet* data)
   return ids && IsOriginalIds(ids) ? ids : nullptr;
 }
 
+/** An array as numbers, if it has one integer for each point. */
+vtkDataArray* IntegersOf(vtkAbstractArray* array)
+{
+  const int type = array->GetDataType();
+  const bool isFit = array->GetNumberOfComponents() == 1 && type != VTK_FLOAT && type != VTK_DOUBLE;
+  return isFit ? vtkDataArray::SafeDownCast(array) : nullptr;
+}
+
 /** Visits the cells of an array: visit(size, ids). */
 template <typename Visit>
 void ForEachCell(vtkCellArray* cells, const Visit& visit)
@@ -62,7 +70,8 @@ bool IsOriginalIds(vtkAbstractArray* array)
     vtkIdTypeArray::SafeDownCast(array) && array->GetNumberOfComponents() == 1;
 }
 
-vtkSmartPointer<vtkPointSet> WithOriginalIds(vtkPointSet* input, vtkIdType first)
+vtkSmartPointer<vtkPointSet> WithOriginalIds(
+  vtkPointSet* input, vtkIdType first, std::vector<Message>& warnings)
 {
   if (input->GetNumberOfPoints() == 0 || OriginalIdsOf(input))
   {
@@ -70,10 +79,17 @@ vtkSmartPointer<vtkPointSet> WithOriginalIds(vtkPointSet* input, vtkIdType first
   }
   auto numbered = vtk::TakeSmartPointer(input->NewInstance());
   numbered->ShallowCopy(input);
-  vtkNew<vtkIdTypeArray> ids;
-  if (vtkDataArray* const globalIds = input->GetPointData()->GetGlobalIds())
+  vtkAbstractArray* const given = input->GetPointData()->GetAbstractArray(NameOfOriginalIds);
+  vtkDataArray* source = given ? IntegersOf(given) : nullptr;
+  if (given && !source)
   {
-    ids->DeepCopy(globalIds);
+    warnings.push_back(MakeMessage<sentences::OriginalIdsReplaced>());
+  }
+  source = source ? source : input->GetPointData()->GetGlobalIds();
+  vtkNew<vtkIdTypeArray> ids;
+  if (source)
+  {
+    ids->DeepCopy(source);
   }
   else
   {

@@ -9,6 +9,7 @@
 #define UsedPoints_h
 
 #include "Kernel/Base/Base.h"
+#include "Kernel/Messages/Messages.h"
 #include "VTKClasses.h"
 
 #include "vtkSmartPointer.h"
@@ -25,11 +26,13 @@ namespace elevation
 bool IsOriginalIds(vtkAbstractArray* array);
 
 /**
- * An input whose points have original ids: the input itself, if it has them from a filter before;
- * else they are its global ids, or else its places.
- * @param[in] first  place of the first point
+ * An input whose points have original ids: those that it has from a filter before, as any kind of
+ * integers; else its global ids, or else its places.
+ * @param[in]     first     place of the first point
+ * @param[in,out] warnings  gets one where the array of this name is something else
  */
-vtkSmartPointer<vtkPointSet> WithOriginalIds(vtkPointSet* input, vtkIdType first);
+vtkSmartPointer<vtkPointSet> WithOriginalIds(
+  vtkPointSet* input, vtkIdType first, std::vector<Message>& warnings);
 
 /** One flag a point: whether a cell has it. */
 std::vector<char> FlagUsed(vtkPolyData* surface);

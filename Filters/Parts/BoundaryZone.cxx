@@ -64,16 +64,17 @@ TrimmedZone::TrimmedZone(const Bytes& bytes)
 void BoundaryZone::JoinAll(const Progress& progress)
 {
   std::vector<Message> warnings; // none: all have the same arrays
-  this->Common =
-    std::make_unique<CommonPoints>(this->Given, PartKind::Mesh, SubProgress(progress, 0.0, 0.3));
-  this->Whole = Join(this->Given, PartKind::Mesh, SubProgress(progress, 0.3, 1.0), warnings);
+  this->Common = std::make_unique<CommonPoints>(
+    this->GivenParts, PartKind::Mesh, SubProgress(progress, 0.0, 0.3));
+  this->JoinedParts =
+    Join(this->GivenParts, PartKind::Mesh, SubProgress(progress, 0.3, 1.0), warnings);
   this->FirstTriangles = { 0 };
-  for (const auto& part : this->Given)
+  for (const auto& part : this->GivenParts)
   {
     this->FirstTriangles.push_back(
       this->FirstTriangles.back() + static_cast<Index>(part->GetNumberOfPolys()));
   }
-  this->Triangles = ViewTriangles(this->Whole);
+  this->Triangles = ViewTriangles(this->JoinedParts);
 }
 
 bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& options)
@@ -87,7 +88,7 @@ bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& option
   TrimOptions ofNear = options;
   ofNear.ReturnParents = true;
   ofNear.Monitor = SubProgress(options.Monitor, 0.4, 0.9);
-  if (vtkDataArray* const ids = this->Whole->GetPointData()->GetGlobalIds())
+  if (vtkDataArray* const ids = this->JoinedParts->GetPointData()->GetGlobalIds())
   {
     const Index count = list.Points.Count;
     std::int64_t largest = 0; // of all parts, each of which has sent its own
@@ -100,7 +101,7 @@ bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& option
     };
   }
   this->Sides = TrimNear(list, boundary, this->Border, ofNear);
-  PassPoints(this->Whole, this->Sides, SubProgress(options.Monitor, 0.9, 1.0), this->Points);
+  PassPoints(this->JoinedParts, this->Sides, SubProgress(options.Monitor, 0.9, 1.0), this->Points);
   return true;
 }
 
@@ -134,9 +135,9 @@ bool BoundaryZone::TrimOutline(
   const TriangleList& list = this->Triangles.View;
   std::vector<Known> states;
   std::vector<double> spacings(list.Points.Count, std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t part = 0; part < this->Given.size(); ++part)
+  for (std::size_t part = 0; part < this->GivenParts.size(); ++part)
   {
-    vtkFieldData* const known = this->Given[part]->GetFieldData();
+    vtkFieldData* const known = this->GivenParts[part]->GetFieldData();
     vtkDataArray* const ofTriangles = known->GetArray(NameOfStates);
     for (vtkIdType i = 0; ofTriangles && i < ofTriangles->GetNumberOfTuples(); ++i)
     {
@@ -169,7 +170,8 @@ bool BoundaryZone::TrimOutline(
   if (trimmed)
   {
     this->Sides = std::move(*trimmed);
-    PassPoints(this->Whole, this->Sides, SubProgress(options.Monitor, 0.95, 1.0), this->Points);
+    PassPoints(
+      this->JoinedParts, this->Sides, SubProgress(options.Monitor, 0.95, 1.0), this->Points);
   }
   return trimmed.has_value();
 }
@@ -192,13 +194,13 @@ bool BoundaryZone::IsProven(
 
 bool BoundaryZone::AreSamePlaces() const
 {
-  for (std::size_t part = 0; part < this->Given.size(); ++part)
+  for (std::size_t part = 0; part < this->GivenParts.size(); ++part)
   {
-    for (vtkIdType i = 0; i < this->Given[part]->GetNumberOfPoints(); ++i)
+    for (vtkIdType i = 0; i < this->GivenParts[part]->GetNumberOfPoints(); ++i)
     {
       double p[3], q[3];
-      this->Given[part]->GetPoint(i, p);
-      this->Whole->GetPoint(this->Common->Place(part, i), q);
+      this->GivenParts[part]->GetPoint(i, p);
+      this->JoinedParts->GetPoint(this->Common->Place(part, i), q);
       const auto isSame = [](double a, double b) {
         return a == b || (std::isnan(a) && std::isnan(b)); // of an unused point
       };
@@ -214,7 +216,7 @@ bool BoundaryZone::AreSamePlaces() const
 std::vector<BorderEdge> BoundaryZone::BordersOfParts() const
 {
   std::vector<BorderEdge> all;
-  auto each = vtk::TakeSmartPointer(this->Whole->GetLines()->NewIterator());
+  auto each = vtk::TakeSmartPointer(this->JoinedParts->GetLines()->NewIterator());
   for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell())
   {
     const vtkIdType* ids = nullptr;
@@ -254,7 +256,7 @@ std::optional<std::vector<BorderEdge>> BoundaryZone::ProvenBorder(
 
 std::vector<TrimmedZone> BoundaryZone::Split(const Progress& progress) const
 {
-  std::vector<TrimmedZone> splits(this->Given.size());
+  std::vector<TrimmedZone> splits(this->GivenParts.size());
   std::vector<char> areOwned(this->Sides.Inserted.size(), 0);
   for (const int side : { 0, 1 })
   {
@@ -281,10 +283,10 @@ std::vector<TrimmedZone> BoundaryZone::Split(const Progress& progress) const
     return !std::binary_search(this->Sides.OnBoundary.begin(), this->Sides.OnBoundary.end(), point);
   };
   far.erase(std::remove_if(far.begin(), far.end(), isInside), far.end());
-  const bool byIds = this->Whole->GetPointData()->GetGlobalIds() != nullptr;
+  const bool byIds = this->JoinedParts->GetPointData()->GetGlobalIds() != nullptr;
   for (TrimmedZone& split : splits)
   {
-    split.FarOnBoundary = KeysOf(this->Whole, byIds, &far);
+    split.FarOnBoundary = KeysOf(this->JoinedParts, byIds, &far);
   }
   std::vector<Index> places(static_cast<std::size_t>(this->Points->GetNumberOfPoints()), None);
   for (std::size_t part = 0; part < splits.size(); ++part)
@@ -307,8 +309,8 @@ std::vector<Index> BoundaryZone::FindOwners(std::vector<TrimmedZone>& splits) co
   {
     for (std::size_t part = 0; part < splits.size(); ++part)
     {
-      vtkUnsignedCharArray* const marks = GhostsOf(this->Given[part]->GetPointData());
-      for (vtkIdType i = 0; i < this->Given[part]->GetNumberOfPoints(); ++i)
+      vtkUnsignedCharArray* const marks = GhostsOf(this->GivenParts[part]->GetPointData());
+      for (vtkIdType i = 0; i < this->GivenParts[part]->GetNumberOfPoints(); ++i)
       {
         std::size_t& owner = owners[this->Common->Place(part, i)];
         const bool isMarked = marks && (marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT);
@@ -338,13 +340,13 @@ std::vector<Index> BoundaryZone::FindOwners(std::vector<TrimmedZone>& splits) co
 void BoundaryZone::PlaceCorners(std::size_t part, std::vector<Index>& places,
   std::vector<char>& areOwned, TrimmedZone& split) const
 {
-  const vtkIdType count = this->Given[part]->GetNumberOfPoints();
+  const vtkIdType count = this->GivenParts[part]->GetNumberOfPoints();
   for (vtkIdType i = count - 1; i >= 0; --i)
   {
     places[this->Common->Place(part, i)] = static_cast<Index>(i);
   }
   std::vector<Index> added;
-  const vtkIdType inserted = this->Whole->GetNumberOfPoints();
+  const vtkIdType inserted = this->JoinedParts->GetNumberOfPoints();
   for (std::vector<Index>& corners : split.Corners)
   {
     for (Index& corner : corners)

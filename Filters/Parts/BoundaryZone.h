@@ -57,7 +57,7 @@ class BoundaryZone
 {
 public:
   explicit BoundaryZone(Parts&& parts)
-    : Given(std::move(parts))
+    : GivenParts(std::move(parts))
   {
   }
 
@@ -82,7 +82,7 @@ public:
   std::vector<TrimmedZone> Split(const Progress& progress) const;
 
   const Trimmed& Result() const { return this->Sides; }
-  vtkPolyData* Joined() const { return this->Whole; }
+  vtkPolyData* Joined() const { return this->JoinedParts; }
 
 private:
   bool IsProven(const TriangleList& list, const BoundaryLines& boundary, const Progress& progress);
@@ -95,10 +95,10 @@ private:
   void PlaceCorners(std::size_t part, std::vector<Index>& places, std::vector<char>& areOwned,
     TrimmedZone& split) const;
 
-  const Parts Given;
+  const Parts GivenParts;
   std::vector<Index> FirstTriangles; // of each part, and the number of all
   std::unique_ptr<CommonPoints> Common;
-  vtkSmartPointer<vtkPolyData> Whole;
+  vtkSmartPointer<vtkPolyData> JoinedParts;
   DataSetTriangles Triangles;     // of the whole
   vtkNew<vtkPolyData> Points;     // of the whole, and those inserted
   std::vector<BorderEdge> Border; // of the mesh, if a boundary is given

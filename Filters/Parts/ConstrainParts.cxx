@@ -24,7 +24,7 @@ namespace
 struct PlaceInPart
 {
   int Part;
-  vtkIdType Place; // in Own
+  vtkIdType Place; // in OwnPoints
 };
 
 /** Step 1; the functions are what it does, in their order. */
@@ -34,7 +34,7 @@ public:
   AddedLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
     const DelaunayOptions& options, const Progress& progress)
     : Store(store)
-    , All(store.Crew.All())
+    , AllRanks(store.Crew.AllRanks())
     , Source(source)
     , Plane(plane)
     , Options(options)
@@ -58,13 +58,13 @@ private:
   void PassNear(vtkPolyData* points) const;
 
   PartStore& Store;
-  const Ranks& All;
+  const Ranks& AllRanks;
   vtkPolyData* const Source;
   const Cuts& Plane;
   const DelaunayOptions& Options;
   const Progress& Monitor;
   DataSetPoints SourcePoints;
-  ConstraintLines Given;
+  ConstraintLines Lines;
   PointTable Near; // those of this rank; then of all ranks, by their ids
   std::vector<PlaceInPart> NearPlaces, AddedPlaces;
   vtkIdType LargestId = -1;
@@ -73,10 +73,10 @@ private:
 
 void AddedLines::Read()
 {
-  this->All.Agree([&]() {
+  this->AllRanks.Agree([&]() {
     CheckPointArrays(this->Source, "The constraints'");
     this->SourcePoints = ViewPoints(this->Source);
-    this->Given = ToLines(this->Source, this->SourcePoints, Progress());
+    this->Lines = ToLines(this->Source, this->SourcePoints, Progress());
   });
 }
 
@@ -87,7 +87,7 @@ void AddedLines::ListNear(std::vector<Message>& warnings)
   this->Store.Crew.ForEach(this->Fraction(0.0, 0.5), [&](int part, const Progress& ofPart) {
     const Progress reading = SubProgress(ofPart, 0.0, 0.5);
     this->Store.WithOwn(part, reading, [&](const SurfacePart& own) {
-      const PointTable& rows = own.Own;
+      const PointTable& rows = own.OwnPoints;
       for (std::size_t i = 0; i < rows.Count(); ++i)
       {
         if (rows.IsFinite(i))
@@ -97,7 +97,7 @@ void AddedLines::ListNear(std::vector<Message>& warnings)
         this->LargestId = std::max(this->LargestId, rows.Ids[i]);
       }
       const std::vector<Index> near =
-        ListNearLines(ViewOf(rows).View, this->Given, SubProgress(ofPart, 0.5, 1.0));
+        ListNearLines(ViewOf(rows).View, this->Lines, SubProgress(ofPart, 0.5, 1.0));
       const Bytes packed = rows.Pack(std::vector<vtkIdType>(near.begin(), near.end()));
       this->Near.Unpack(&packed, 1);
       std::transform(
@@ -106,16 +106,16 @@ void AddedLines::ListNear(std::vector<Message>& warnings)
         });
     });
   });
-  box = JoinBoxes(this->All, box);
-  this->All.Agree([&]() { CheckLines(this->Given, box, warnings); });
+  box = JoinBoxes(this->AllRanks, box);
+  this->AllRanks.Agree([&]() { CheckLines(this->Lines, box, warnings); });
 }
 
 /** All ranks get the points near lines, and the largest id of all points. */
 void AddedLines::ShareNear()
 {
-  std::vector<Bytes> packed(this->All.Count());
+  std::vector<Bytes> packed(this->AllRanks.Count());
   std::vector<vtkIdType> places; // part and place of each
-  this->All.Agree([&]() {
+  this->AllRanks.Agree([&]() {
     std::vector<vtkIdType> all(this->Near.Count());
     std::iota(all.begin(), all.end(), vtkIdType(0));
     std::generate(packed.begin(), packed.end(), [&]() { return this->Near.Pack(all); });
@@ -124,12 +124,12 @@ void AddedLines::ShareNear()
       places.insert(places.end(), { at.Part, at.Place });
     }
   });
-  packed = this->All.Exchange(std::move(packed));
-  places = this->All.Collect(places);
+  packed = this->AllRanks.Exchange(std::move(packed));
+  places = this->AllRanks.Collect(places);
   const std::vector<vtkIdType> largest =
-    this->All.Collect(std::vector<vtkIdType>{ this->LargestId });
+    this->AllRanks.Collect(std::vector<vtkIdType>{ this->LargestId });
   this->LargestId = *std::max_element(largest.begin(), largest.end());
-  this->All.Agree([&]() {
+  this->AllRanks.Agree([&]() {
     this->Near = PointTable(this->Store.Part.Kinds);
     this->Near.Unpack(packed); // rank by rank, as the places
     std::vector<vtkIdType> order(this->Near.Count());
@@ -147,9 +147,9 @@ void AddedLines::ShareNear()
 
 void AddedLines::Cut()
 {
-  this->All.Agree([&]() {
-    this->Pieces = CutLines(ViewOf(this->Near).View, this->Given, this->Options.Duplicates,
-      this->All.Watched(this->Fraction(0.5, 0.9)));
+  this->AllRanks.Agree([&]() {
+    this->Pieces = CutLines(ViewOf(this->Near).View, this->Lines, this->Options.Duplicates,
+      this->AllRanks.Watched(this->Fraction(0.5, 0.9)));
   });
 }
 
@@ -180,8 +180,8 @@ void AddedLines::AddPoints()
 {
   SurfacePart& common = this->Store.Part;
   Engine& crew = this->Store.Crew;
-  this->All.Agree([&]() {
-    const Progress watched = this->All.Watched(this->Fraction(0.9, 1.0));
+  this->AllRanks.Agree([&]() {
+    const Progress watched = this->AllRanks.Watched(this->Fraction(0.9, 1.0));
     vtkNew<vtkPolyData> near, extended;
     this->PassNear(near);
     PassPoints(near, this->Source, this->Pieces.Added, watched, extended);
@@ -270,7 +270,7 @@ std::vector<std::size_t> ListMissing(
   std::vector<vtkIdType> isEdge(lines.Pieces.size(), 0);
   std::map<std::array<GlobalId, 2>, std::size_t> pieces;
   std::vector<GlobalId> ends;
-  store.Crew.All().Agree([&]() {
+  store.Crew.AllRanks().Agree([&]() {
     for (std::size_t i = 0; i < lines.Pieces.size(); ++i)
     {
       pieces[lines.Pieces[i]] = i;
@@ -299,7 +299,7 @@ std::vector<std::size_t> ListMissing(
         });
     });
   });
-  store.Crew.All().Sum(isEdge);
+  store.Crew.AllRanks().Sum(isEdge);
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < isEdge.size(); ++i)
   {
@@ -317,7 +317,7 @@ void SendMeeting(
 {
   const CellGrid grid = GridOf(pieces);
   store.WithWhole(part, SubProgress(progress, 0.0, 0.5), [&](const SurfacePart& whole) {
-    const Index ownCount = static_cast<Index>(whole.Own.Count());
+    const Index ownCount = static_cast<Index>(whole.OwnPoints.Count());
     Bytes bytes;
     std::vector<vtkIdType> corners; // own ones
     ForEachTriangle(whole, store.FirstOf(part), SubProgress(progress, 0.5, 1.0),
@@ -412,7 +412,7 @@ SharedLines AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
   lines.Cut();
   lines.AddPoints();
   SharedLines result;
-  store.Crew.All().Agree([&]() { result = lines.Result(); });
+  store.Crew.AllRanks().Agree([&]() { result = lines.Result(); });
   return result;
 }
 
@@ -427,7 +427,7 @@ bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& pr
     return false;
   }
   std::vector<Ends> pieces;
-  crew.All().Agree([&]() {
+  crew.AllRanks().Agree([&]() {
     for (const std::size_t i : missing)
     {
       pieces.push_back(lines.Places[i]);

@@ -86,7 +86,7 @@ public:
   Engine(const Ranks& ranks, int ownParts, const std::vector<std::string>& boxes,
     const std::string& folder);
 
-  const Ranks& All() const { return this->Crew; }
+  const Ranks& AllRanks() const { return this->Crew; }
   bool IsInFiles() const { return !this->FolderOfFiles.empty(); }
   const std::string& Folder() const { return this->FolderOfFiles; } ///< of the files; empty: in memory
 
@@ -94,8 +94,8 @@ public:
   /** The rank that holds a part. */
   int RankOf(int part) const;
   /** Those of this rank are [FirstOwn(), EndOwn()). */
-  int FirstOwn() const { return this->Firsts[this->Crew.Own()]; }
-  int EndOwn() const { return this->Firsts[this->Crew.Own() + 1]; }
+  int FirstOwn() const { return this->Firsts[this->Crew.OwnRank()]; }
+  int EndOwn() const { return this->Firsts[this->Crew.OwnRank() + 1]; }
   bool IsOwn(int part) const { return part >= this->FirstOwn() && part < this->EndOwn(); }
 
   /**

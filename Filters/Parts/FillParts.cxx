@@ -38,14 +38,14 @@ constexpr double GroupsOfPart = 8.0; // so many groups together take the memory 
 FillParts::FillParts(const SurfaceParts& surface, const FillOptions& options, bool interpolate,
   double longest, bool byIds)
   : Make(surface.Make)
-  , Crew(surface.Crew.All(), surface.Crew.EndOwn() - surface.Crew.FirstOwn(), { "patches", "rims" },
-      surface.Crew.Folder())
-  , All(surface.Crew.All())
+  , Crew(surface.Crew.AllRanks(), surface.Crew.EndOwn() - surface.Crew.FirstOwn(),
+      { "patches", "rims" }, surface.Crew.Folder())
+  , AllRanks(surface.Crew.AllRanks())
 {
-  this->Whole.Options = options;
-  this->Whole.Interpolate = interpolate;
-  this->Whole.LongestEdge = longest;
-  this->Whole.ByIds = byIds;
+  this->AllHoles.Options = options;
+  this->AllHoles.Interpolate = interpolate;
+  this->AllHoles.LongestEdge = longest;
+  this->AllHoles.ByIds = byIds;
 }
 
 /**
@@ -72,11 +72,11 @@ void FillParts::WithPart(int part, const Progress& progress, const Visit& visit)
 FillParts::KnownPart FillParts::Describe(int part, const FilledPart& one)
 {
   KnownPart known;
-  for (const Index corner : one.Own.Triangles)
+  for (const Index corner : one.OwnMesh.Triangles)
   {
-    known.Place.Add(one.Own.PointOf(corner));
+    known.Place.Add(one.OwnMesh.PointOf(corner));
   }
-  known.Triangles = one.Own.NumberOfTriangles();
+  known.Triangles = one.OwnMesh.NumberOfTriangles();
   known.Points = one.Input->GetNumberOfPoints();
   known.OwnPoints = one.CountOfOwn();
   known.LargestId = one.LargestId();
@@ -87,7 +87,7 @@ FillParts::KnownPart FillParts::Describe(int part, const FilledPart& one)
     {
       ++this->LongTriangles[{ part, one.RegionOf[t] }];
       known.LargestHeight =
-        std::max(known.LargestHeight, LargestHeight(one.Own, static_cast<Index>(t)));
+        std::max(known.LargestHeight, LargestHeight(one.OwnMesh, static_cast<Index>(t)));
     }
   }
   return known;
@@ -105,41 +105,41 @@ void FillParts::FindHoles(int partOfRims)
   Parts borders;
   this->Crew.ForEach(this->Fraction(0.0, 0.18), [&](int part, const Progress& progress) {
     this->WithPart(part, progress, [&](FilledPart& one, const Progress& reading) {
-      one.Read(this->Whole.ByIds, this->Whole.LongestEdge, reading);
-      AppendBorder(one.Own, one.Shared, one.RegionOf, part, edges);
+      one.Read(this->AllHoles.ByIds, this->AllHoles.LongestEdge, reading);
+      AppendBorder(one.OwnMesh, one.Shared, one.RegionOf, part, edges);
       borders.push_back(one.PointsOnBorder());
       own[part - this->Crew.FirstOwn()] = this->Describe(part, one);
     });
   });
   if (!this->Crew.IsInFiles())
   {
-    FindCopies(this->All, this->Whole.ByIds, this->InMemory.Shared);
+    FindCopies(this->AllRanks, this->AllHoles.ByIds, this->InMemory.Shared);
     if (this->InMemory.Input)
     {
       own[0].OwnPoints = this->InMemory.CountOfOwn();
     }
   }
-  this->Known = this->All.Collect(own);
+  this->KnownParts = this->AllRanks.Collect(own);
   for (int part = 0; part < this->Crew.CountOfParts(); ++part)
   {
-    const double points = static_cast<double>(this->Known[part].OwnPoints);
+    const double points = static_cast<double>(this->KnownParts[part].OwnPoints);
     this->Points += points;
     this->PointsOfRank += this->Crew.IsOwn(part) ? points : 0.0;
-    this->LargestId = std::max(this->LargestId, this->Known[part].LargestId);
+    this->LargestId = std::max(this->LargestId, this->KnownParts[part].LargestId);
   }
-  this->Whole.Border = CollectBorder(this->All, std::move(edges));
+  this->AllHoles.Border = CollectBorder(this->AllRanks, std::move(edges));
   this->SendRims(std::move(borders));
-  this->All.Agree([this]() {
-    if (!this->Whole.Find(this->All.Watched(this->Fraction(0.18, 0.2))))
+  this->AllRanks.Agree([this]() {
+    if (!this->AllHoles.Find(this->AllRanks.Watched(this->Fraction(0.18, 0.2))))
     {
       throw Error("Borders of the surface touch, so that it cannot be filled in pieces; fill the "
                   "surface in memory.");
     }
     this->FindReaches();
   });
-  for (const KnownPart& known : this->Known)
+  for (const KnownPart& known : this->KnownParts)
   {
-    Index& first = this->Whole.OfAll.FirstNumber;
+    Index& first = this->AllHoles.Result.FirstNumber;
     first = std::max(first, known.NextHole);
   }
 }
@@ -150,18 +150,18 @@ void FillParts::FindHoles(int partOfRims)
  */
 void FillParts::FindReaches()
 {
-  const Index count = this->Whole.OfAll.Found.Count();
-  for (Index hole = this->Whole.FirstRegion; hole < count; ++hole)
+  const Index count = this->AllHoles.Result.Found.Count();
+  for (Index hole = this->AllHoles.FirstRegion; hole < count; ++hole)
   {
-    const Box& rim = this->Whole.Extents[hole].OfRim;
-    for (const KnownPart& known : this->Known)
+    const Box& rim = this->AllHoles.Extents[hole].OfRim;
+    for (const KnownPart& known : this->KnownParts)
     {
       const double reach = 0.5 * known.LargestHeight;
       const Box within{ { rim.Low.X - reach, rim.Low.Y - reach },
         { rim.High.X + reach, rim.High.Y + reach } };
       if (within.Intersects(known.Place))
       {
-        this->Whole.Reach[hole] = std::max(this->Whole.Reach[hole], reach);
+        this->AllHoles.Reach[hole] = std::max(this->AllHoles.Reach[hole], reach);
       }
     }
   }
@@ -170,15 +170,15 @@ void FillParts::FindReaches()
 /** The points on the border of the surface, of all that are on that of a part. */
 void FillParts::SendRims(Parts&& borders)
 {
-  this->All.Agree([&]() {
+  this->AllRanks.Agree([&]() {
     for (vtkSmartPointer<vtkPolyData>& points : borders)
     {
       const std::vector<PointKey> keys =
-        points ? KeysOf(points, this->Whole.ByIds, nullptr) : std::vector<PointKey>();
+        points ? KeysOf(points, this->AllHoles.ByIds, nullptr) : std::vector<PointKey>();
       std::vector<Index> chosen;
       for (std::size_t i = 0; i < keys.size(); ++i)
       {
-        if (this->Whole.Border.Find(keys[i]) != None)
+        if (this->AllHoles.Border.Find(keys[i]) != None)
         {
           chosen.push_back(static_cast<Index>(i));
         }
@@ -200,21 +200,21 @@ void FillParts::SendRims(Parts&& borders)
 
 void FillParts::Fill()
 {
-  if (this->Whole.NeedLattice())
+  if (this->AllHoles.NeedLattice())
   {
     this->FindLattice();
   }
   this->GroupHoles();
   this->FillAll();
-  this->ShareHoleValues(this->Whole.OfAll.Reports);
-  this->ShareHoleValues(this->Whole.HaveRoom);
-  this->Whole.DropRegionsWithoutRoom();
-  this->Whole.NumberNewPoints();
+  this->ShareHoleValues(this->AllHoles.Result.Reports);
+  this->ShareHoleValues(this->AllHoles.HaveRoom);
+  this->AllHoles.DropRegionsWithoutRoom();
+  this->AllHoles.NumberNewPoints();
   for (const auto& [region, triangles] : this->LongTriangles)
   {
-    const Index hole = this->Whole.NumberOf(static_cast<int>(region.first), region.second);
+    const Index hole = this->AllHoles.NumberOf(static_cast<int>(region.first), region.second);
     const bool isReplaced =
-      hole != None && this->Whole.OfAll.Reports[hole].Status == FillStatus::Replaced;
+      hole != None && this->AllHoles.Result.Reports[hole].Status == FillStatus::Replaced;
     this->NewTriangles -= isReplaced ? triangles : 0;
   }
   // Parts in files have marks anyway; those in memory get them if any has a point of another.
@@ -228,7 +228,7 @@ void FillParts::Fill()
       });
     });
   }
-  this->All.Sum(sums);
+  this->AllRanks.Sum(sums);
   this->NewTriangles = sums[0];
   this->AreMarked = sums[1] > 0;
 }
@@ -237,7 +237,7 @@ void FillParts::Fill()
 void FillParts::FindLattice()
 {
   const auto forEach = [this](const auto& visit) {
-    const Progress making = this->All.Watched(this->Fraction(0.2, 0.2));
+    const Progress making = this->AllRanks.Watched(this->Fraction(0.2, 0.2));
     for (int part = this->Crew.FirstOwn(); part < this->Crew.EndOwn(); ++part)
     {
       this->WithPart(part, making, [&visit](FilledPart& one, const Progress&) {
@@ -246,7 +246,8 @@ void FillParts::FindLattice()
       });
     }
   };
-  this->Whole.FindLattice(this->All, { this->PointsOfRank, forEach }, this->Fraction(0.2, 0.5));
+  this->AllHoles.FindLattice(
+    this->AllRanks, { this->PointsOfRank, forEach }, this->Fraction(0.2, 0.5));
 }
 
 /** The part of each hole; in memory, of a rank with points. */
@@ -256,13 +257,13 @@ std::vector<int> FillParts::PartsOfHoles() const
   if (!this->Crew.IsInFiles())
   {
     std::vector<vtkIdType> have;
-    for (const KnownPart& known : this->Known)
+    for (const KnownPart& known : this->KnownParts)
     {
       have.push_back(known.Points);
     }
-    return BalancedRanks(this->Whole.Extents, have);
+    return BalancedRanks(this->AllHoles.Extents, have);
   }
-  const SharedBorder& border = this->Whole.Border;
+  const SharedBorder& border = this->AllHoles.Border;
   std::vector<int> partOf(border.Keys.size(), 0);
   for (std::size_t i = 0; i < border.RegionEdges.size(); ++i)
   {
@@ -272,7 +273,7 @@ std::vector<int> FillParts::PartsOfHoles() const
   {
     partOf[border.Edges[i].Origin] = border.PartOfEdge[i];
   }
-  const Holes& found = this->Whole.OfAll.Found;
+  const Holes& found = this->AllHoles.Result.Found;
   for (Index hole = 0; hole < found.Count(); ++hole)
   {
     parts.push_back(partOf[*found.Walks.Begin(found.Rim(hole))]);
@@ -283,8 +284,8 @@ std::vector<int> FillParts::PartsOfHoles() const
 /** About how many points are in the box around a hole. */
 double FillParts::PointsAround(Index hole, const KnownPart& part) const
 {
-  const HoleExtent& extent = this->Whole.Extents[hole];
-  const Box box = this->Whole.BoxOf(hole);
+  const HoleExtent& extent = this->AllHoles.Extents[hole];
+  const Box box = this->AllHoles.BoxOf(hole);
   const double area = box.Width() * box.Height();
   const Box& all = part.Place;
   return std::max(area / (extent.MeanEdge * extent.MeanEdge),
@@ -295,25 +296,25 @@ double FillParts::PointsAround(Index hole, const KnownPart& part) const
 void FillParts::GroupHoles()
 {
   const std::vector<int> partOf = this->PartsOfHoles();
-  std::vector<std::vector<Index>> holesOf(this->Known.size());
+  std::vector<std::vector<Index>> holesOf(this->KnownParts.size());
   for (std::size_t hole = 0; hole < partOf.size(); ++hole)
   {
-    if (this->Whole.IsToBeFilled(hole))
+    if (this->AllHoles.IsToBeFilled(hole))
     {
       holesOf[partOf[hole]].push_back(static_cast<Index>(hole));
     }
   }
   const double most = !this->Crew.IsInFiles()
     ? std::numeric_limits<double>::infinity()
-    : std::max(
-        LeastPointsOfGroup, this->Points / static_cast<double>(this->Known.size()) / GroupsOfPart);
+    : std::max(LeastPointsOfGroup,
+        this->Points / static_cast<double>(this->KnownParts.size()) / GroupsOfPart);
   int ownCount = 0;
   for (int part = 0; part < this->Crew.CountOfParts(); ++part)
   {
     double points = 0.0; // around the holes of the group
     for (const Index hole : holesOf[part])
     {
-      const double around = this->PointsAround(hole, this->Known[part]);
+      const double around = this->PointsAround(hole, this->KnownParts[part]);
       if (hole == holesOf[part].front() || points + around > most)
       {
         this->Groups.push_back({ part, {} });
@@ -325,7 +326,7 @@ void FillParts::GroupHoles()
     }
   }
   this->GroupCrew = std::make_unique<Engine>(
-    this->All, ownCount, std::vector<std::string>{ "surrounding" }, this->Crew.Folder());
+    this->AllRanks, ownCount, std::vector<std::string>{ "surrounding" }, this->Crew.Folder());
 }
 
 /** Sends the groups that wait for them the triangles around their holes. */
@@ -337,8 +338,8 @@ void FillParts::Surround(const std::vector<char>& areWaiting, const Progress& pr
     {
       for (std::size_t i = 0; i < this->Groups[group].Holes.size() && areWaiting[group]; ++i)
       {
-        const Box box = this->Whole.BoxOf(this->Groups[group].Holes[i]);
-        if (box.Intersects(this->Known[part].Place))
+        const Box box = this->AllHoles.BoxOf(this->Groups[group].Holes[i]);
+        if (box.Intersects(this->KnownParts[part].Place))
         {
           boxes[static_cast<int>(group)].push_back(box);
         }
@@ -352,17 +353,17 @@ void FillParts::Surround(const std::vector<char>& areWaiting, const Progress& pr
       const bool isInFiles = this->Crew.IsInFiles();
       if (isInFiles)
       {
-        ToMesh(one.Input, one.Own, reading);
+        ToMesh(one.Input, one.OwnMesh, reading);
       }
       for (const auto& [group, ofGroup] : boxes)
       {
-        const std::vector<Index> near = TrianglesIn(ofGroup, one.Own);
+        const std::vector<Index> near = TrianglesIn(ofGroup, one.OwnMesh);
         if (near.empty())
         {
           continue;
         }
         // Groups of this rank may be many, so what goes to their files is not kept.
-        Bytes packed = PackData(ChosenTriangles(one.Input, one.Own, near));
+        Bytes packed = PackData(ChosenTriangles(one.Input, one.OwnMesh, near));
         isInFiles&& this->GroupCrew->IsOwn(group)
           ? this->GroupCrew->At(group, Surrounding).Append(std::move(packed))
           : this->GroupCrew->Send(group, Surrounding, std::move(packed));
@@ -386,7 +387,7 @@ SurroundedHoles& FillParts::HolesOf(int group, const Progress& progress)
     {
       box.Clear();
     }
-    this->Around.Surround(parts, this->Whole, progress);
+    this->Around.Surround(parts, this->AllHoles, progress);
   }
   return this->Around;
 }
@@ -403,7 +404,7 @@ void FillParts::ShareHoleValues(std::vector<Value>& values) const
       own.push_back(values[hole]);
     }
   }
-  const std::vector<Value> all = this->All.Collect(own);
+  const std::vector<Value> all = this->AllRanks.Collect(own);
   auto next = all.begin();
   for (const Group& group : this->Groups)
   {
@@ -417,34 +418,34 @@ void FillParts::ShareHoleValues(std::vector<Value>& values) const
 /** What each hole may take, and whether all take too much, is known where all needs are. */
 void FillParts::FindQuotas(const Progress& progress)
 {
-  std::vector<HoleNeed> needs(this->Whole.Extents.size());
+  std::vector<HoleNeed> needs(this->AllHoles.Extents.size());
   this->GroupCrew->ForEach(progress, [&](int group, const Progress& ofGroup) {
     SurroundedHoles& holes = this->HolesOf(group, SubProgress(ofGroup, 0.0, 0.5));
-    const std::vector<HoleNeed> found = holes.Needs(this->Whole, SubProgress(ofGroup, 0.5, 1.0));
+    const std::vector<HoleNeed> found = holes.Needs(this->AllHoles, SubProgress(ofGroup, 0.5, 1.0));
     for (std::size_t i = 0; i < found.size(); ++i)
     {
       needs[holes.Numbers[i]] = found[i];
     }
   });
   this->ShareHoleValues(needs);
-  this->All.Agree([&]() { CheckEffort(needs, this->Points, this->Whole.Options); });
-  this->Whole.Quotas = QuotasFor(needs, this->Whole.Options.MaximumInsertedPoints);
+  this->AllRanks.Agree([&]() { CheckEffort(needs, this->Points, this->AllHoles.Options); });
+  this->AllHoles.Quotas = QuotasFor(needs, this->AllHoles.Options.MaximumInsertedPoints);
 }
 
 /** @return false if holes, which are added to those beyond, need more of the surface around them */
 bool FillParts::FillGroup(int group, const Progress& progress, std::vector<vtkIdType>& beyond)
 {
   SurroundedHoles& holes = this->HolesOf(group, SubProgress(progress, 0.0, 0.1));
-  const std::vector<Index> found = holes.Fill(this->Whole, SubProgress(progress, 0.1, 1.0));
+  const std::vector<Index> found = holes.Fill(this->AllHoles, SubProgress(progress, 0.1, 1.0));
   beyond.insert(beyond.end(), found.begin(), found.end());
   for (const Index hole : this->Groups[group].Holes)
   {
-    this->Whole.HaveRoom[hole] =
+    this->AllHoles.HaveRoom[hole] =
       std::binary_search(holes.Numbers.begin(), holes.Numbers.end(), hole) ? 1 : 0;
   }
   for (std::size_t i = 0; i < holes.Numbers.size(); ++i)
   {
-    this->Whole.OfAll.Reports[holes.Numbers[i]] = holes.Patches.Reports[i];
+    this->AllHoles.Result.Reports[holes.Numbers[i]] = holes.Patches.Reports[i];
   }
   if (found.empty() && holes.Patches.NumberOfTriangles() > 0)
   {
@@ -464,7 +465,7 @@ void FillParts::FillAll()
   while (std::count(areWaiting.begin(), areWaiting.end(), 1) > 0)
   {
     // Few holes need more than their first box.
-    const bool isFirst = this->Whole.Quotas.empty();
+    const bool isFirst = this->AllHoles.Quotas.empty();
     const double begin = isFirst ? 0.5 : 0.9;
     this->Surround(areWaiting, this->Fraction(begin, isFirst ? 0.58 : 0.9));
     if (isFirst)
@@ -479,12 +480,12 @@ void FillParts::FillAll()
         waiting.push_back(group);
       }
     });
-    for (const vtkIdType hole : this->All.Collect(beyond))
+    for (const vtkIdType hole : this->AllRanks.Collect(beyond))
     {
-      ++this->Whole.Retries[hole];
+      ++this->AllHoles.Retries[hole];
     }
     std::fill(areWaiting.begin(), areWaiting.end(), char(0));
-    for (const vtkIdType group : this->All.Collect(waiting))
+    for (const vtkIdType group : this->AllRanks.Collect(waiting))
     {
       areWaiting[group] = 1;
     }
@@ -504,7 +505,7 @@ void FillParts::TakePatches(int part, FilledPart& one)
   one.Filled = SurroundedHoles(std::move(groups));
   for (Index& hole : one.Filled.Numbers)
   {
-    hole = this->Whole.NewNumbers[hole];
+    hole = this->AllHoles.NewNumbers[hole];
   }
   one.FindCorners();
 }
@@ -515,10 +516,11 @@ void FillParts::Pass(int part, const Progress& progress, vtkPolyData* output)
   this->WithPart(part, progress, [&](FilledPart& one, const Progress& ofPart) {
     if (this->Crew.IsInFiles())
     {
-      one.Read(this->Whole.ByIds, this->Whole.LongestEdge, SubProgress(ofPart, 0.0, 0.3));
+      one.Read(this->AllHoles.ByIds, this->AllHoles.LongestEdge, SubProgress(ofPart, 0.0, 0.3));
       this->TakePatches(part, one);
     }
-    one.Write(this->Whole, this->AreMarked, this->LargestId, SubProgress(ofPart, 0.3, 1.0), output);
+    one.Write(
+      this->AllHoles, this->AreMarked, this->LargestId, SubProgress(ofPart, 0.3, 1.0), output);
   });
 }
 
@@ -528,7 +530,7 @@ void FillParts::PassRims(const Progress& progress, vtkPolyData* output)
   this->Crew.At(this->RimsPart, Rims).ForEach([&points](const Bytes& bytes) {
     points.push_back(UnpackData(bytes.data(), bytes.size()));
   });
-  WriteRims(this->Whole, points, progress, output);
+  WriteRims(this->AllHoles, points, progress, output);
 }
 
 namespace

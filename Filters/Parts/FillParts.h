@@ -82,7 +82,7 @@ public:
   void PassRims(const Progress& progress, vtkPolyData* output);
 
   // Of all parts, on all ranks:
-  const FillResult& Result() const { return this->Whole.OfAll; } ///< holes and reports
+  const FillResult& Result() const { return this->AllHoles.Result; } ///< holes and reports
   vtkIdType CountOfNewTriangles() const { return this->NewTriangles; }
 
 private:
@@ -105,7 +105,7 @@ private:
 
   Progress Fraction(double begin, double end) const
   {
-    return SubProgress(this->Whole.Options.Monitor, begin, end);
+    return SubProgress(this->AllHoles.Options.Monitor, begin, end);
   }
   template <typename Visit>
   void WithPart(int part, const Progress& progress, const Visit& visit);
@@ -127,14 +127,14 @@ private:
 
   const SurfaceParts::MakePart Make;
   Engine Crew; // of the parts
-  const Ranks& All;
+  const Ranks& AllRanks;
   int RimsPart = 0;
   Parts OwnRims;       // if this rank has that part: points of its parts
   FilledPart InMemory; // the part of this rank, in memory
-  std::vector<KnownPart> Known;
+  std::vector<KnownPart> KnownParts;
   double Points = 0.0, PointsOfRank = 0.0; // of all parts, and of those of this rank
   vtkIdType LargestId = -1;
-  SharedHoles Whole;
+  SharedHoles AllHoles;
   std::vector<Group> Groups;         // of all ranks, in their order
   std::unique_ptr<Engine> GroupCrew; // whose parts they are
   SurroundedHoles Around;            // of the group that is worked on

@@ -28,11 +28,11 @@ namespace elevation
 
 void FilledPart::Read(bool byIds, double longest, const Progress& progress)
 {
-  ToMesh(this->Input, this->Own, SubProgress(progress, 0.0, 0.4));
-  this->Own.ConnectTwins(0, SubProgress(progress, 0.4, 0.9));
+  ToMesh(this->Input, this->OwnMesh, SubProgress(progress, 0.0, 0.4));
+  this->OwnMesh.ConnectTwins(0, SubProgress(progress, 0.4, 0.9));
   if (longest > 0.0)
   {
-    this->RegionOf = NumberRegions(this->Own, longest, SubProgress(progress, 0.9, 1.0));
+    this->RegionOf = NumberRegions(this->OwnMesh, longest, SubProgress(progress, 0.9, 1.0));
   }
   this->ListShared(byIds);
 }
@@ -40,7 +40,7 @@ void FilledPart::Read(bool byIds, double longest, const Progress& progress)
 /** Whether a half-edge is on the border of the triangles, or of long ones, which it belongs to. */
 bool FilledPart::IsRim(Index h) const
 {
-  const Index twin = this->Own.Twin(h);
+  const Index twin = this->OwnMesh.Twin(h);
   return twin == Mesh::Border ||
     (!this->RegionOf.empty() && this->IsRegionAt(h) && !this->IsRegionAt(twin));
 }
@@ -49,17 +49,17 @@ void FilledPart::ListShared(bool byIds)
 {
   std::vector<char> mayBeShared(static_cast<std::size_t>(this->Input->GetNumberOfPoints()), 1);
   this->AreUsed.assign(mayBeShared.size(), 0);
-  for (const Index corner : this->Own.Triangles)
+  for (const Index corner : this->OwnMesh.Triangles)
   {
     mayBeShared[corner] = 0;
     this->AreUsed[corner] = 1;
   }
-  for (Index h = 0; h < static_cast<Index>(this->Own.Twins.size()); ++h)
+  for (Index h = 0; h < static_cast<Index>(this->OwnMesh.Twins.size()); ++h)
   {
     // A patch may have any corner of the triangles that it replaces.
-    if (this->Own.Twin(h) == Mesh::Border || (!this->RegionOf.empty() && this->IsRegionAt(h)))
+    if (this->OwnMesh.Twin(h) == Mesh::Border || (!this->RegionOf.empty() && this->IsRegionAt(h)))
     {
-      mayBeShared[this->Own.Origin(h)] = mayBeShared[this->Own.Destination(h)] = 1;
+      mayBeShared[this->OwnMesh.Origin(h)] = mayBeShared[this->OwnMesh.Destination(h)] = 1;
     }
   }
   vtkUnsignedCharArray* const marks = BoundaryMarksOf(this->Input->GetPointData());
@@ -214,15 +214,15 @@ FillResult FilledPart::PlacedPatches(const SharedHoles& all, vtkPolyData* input)
   std::transform(from.NearestBoundaryPoints.begin(), from.NearestBoundaryPoints.end(),
     std::back_inserter(to.NearestBoundaryPoints), placed);
   std::size_t next = 0;
-  for (Index hole = 0; hole < static_cast<Index>(all.OfAll.Reports.size()); ++hole)
+  for (Index hole = 0; hole < static_cast<Index>(all.Result.Reports.size()); ++hole)
   {
     const bool isMine = next < this->Filled.Numbers.size() && this->Filled.Numbers[next] == hole;
     next += isMine ? 1 : 0;
     to.PointOffsets.push_back(isMine ? from.PointOffsets[next] : to.PointOffsets.back());
     to.TriangleOffsets.push_back(isMine ? from.TriangleOffsets[next] : to.TriangleOffsets.back());
   }
-  to.Reports = all.OfAll.Reports;
-  to.FirstNumber = all.OfAll.FirstNumber;
+  to.Reports = all.Result.Reports;
+  to.FirstNumber = all.Result.FirstNumber;
   for (const Index region : this->RegionOf)
   {
     to.Found.RegionOf.push_back(region == None ? None : all.NumberOf(this->Number, region));
@@ -277,7 +277,7 @@ void FilledPart::Write(const SharedHoles& all, bool areMarked, vtkIdType largest
 {
   const vtkSmartPointer<vtkPolyData> input =
     this->WithCorners(areMarked, SubProgress(progress, 0.0, 0.2));
-  MakeSurface(input, this->Own, this->PlacedPatches(all, input), all.Interpolate,
+  MakeSurface(input, this->OwnMesh, this->PlacedPatches(all, input), all.Interpolate,
     SubProgress(progress, 0.2, 1.0), output);
   this->NumberNewPoints(all, largestId, output);
 }
@@ -285,12 +285,12 @@ void FilledPart::Write(const SharedHoles& all, bool areMarked, vtkIdType largest
 vtkSmartPointer<vtkPolyData> FilledPart::PointsOnBorder() const
 {
   IdSet ends(static_cast<Index>(this->Input->GetNumberOfPoints()));
-  for (Index h = 0; h < static_cast<Index>(this->Own.Twins.size()); ++h)
+  for (Index h = 0; h < static_cast<Index>(this->OwnMesh.Twins.size()); ++h)
   {
     if (this->IsRim(h))
     {
-      ends.Add(this->Own.Origin(h));
-      ends.Add(this->Own.Destination(h));
+      ends.Add(this->OwnMesh.Origin(h));
+      ends.Add(this->OwnMesh.Destination(h));
     }
   }
   const std::vector<Index> chosen = ends.ListAndRank();
@@ -302,7 +302,7 @@ void WriteRims(
 {
   if (points.empty()) // no triangle
   {
-    MakeReport(vtkNew<vtkPolyData>(), all.OfAll, progress, output);
+    MakeReport(vtkNew<vtkPolyData>(), all.Result, progress, output);
     return;
   }
   const vtkSmartPointer<vtkPolyData> joined = Append(points);
@@ -315,7 +315,7 @@ void WriteRims(
   const vtkSmartPointer<vtkPolyData> rims = ChosenPoints(joined, places);
   // Each is there once.
   rims->GetPointData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
-  MakeReport(rims, all.OfAll, progress, output);
+  MakeReport(rims, all.Result, progress, output);
 }
 
 } // namespace elevation

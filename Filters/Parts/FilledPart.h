@@ -23,7 +23,7 @@ struct FilledPart
 {
   int Number = 0;
   vtkSmartPointer<vtkPolyData> Input; ///< nullptr: it has no points
-  Mesh Own;                           ///< of the input
+  Mesh OwnMesh;                       ///< of the input
   std::vector<Index> RegionOf;        ///< of its triangles, from NumberRegions()
   std::vector<char> AreUsed;          ///< points that a triangle has
   SharedPoints Shared;

@@ -22,6 +22,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <sstream>
@@ -191,7 +192,7 @@ vtkSmartPointer<vtkPolyData> FilterRun::ShareSecond(const Ranks& ranks) const
 bool FilterRun::ShouldReport(const Place& place, const Ranks& ranks) const
 {
   return HasPoints(place) || IsOtherType(place) ||
-    (ranks.Own() == 0 &&
+    (ranks.OwnRank() == 0 &&
       !std::binary_search(this->Occupied.begin(), this->Occupied.end(), IdOf(place.Path)));
 }
 
@@ -259,7 +260,7 @@ void FilterRun::AddMessages(const std::vector<Place*>& places, const std::vector
  * points in the precision that is needed.
  */
 vtkSmartPointer<vtkPointSet> FilterRun::Prepared(
-  vtkPointSet* input, vtkPolyData* second, vtkIdType first) const
+  vtkPointSet* input, vtkPolyData* second, vtkIdType first, std::vector<Message>& warnings) const
 {
   CheckPrecision(this->Precision);
   vtkSmartPointer<vtkPointSet> shown =
@@ -270,7 +271,7 @@ vtkSmartPointer<vtkPointSet> FilterRun::Prepared(
   }
   if (this->CleanedOutputs > 0)
   {
-    shown = WithOriginalIds(shown, first);
+    shown = WithOriginalIds(shown, first, warnings);
   }
   CopyMark(input, shown);
   return shown;
@@ -278,27 +279,56 @@ vtkSmartPointer<vtkPointSet> FilterRun::Prepared(
 
 /** Makes the parts of a block what the filter works on. */
 void FilterRun::PrepareParts(
-  const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second) const
+  const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second)
 {
+  std::vector<Message> warnings;
   std::vector<vtkIdType> counts(1, 0);
   for (vtkPointSet* part : PartsOf(places))
   {
     counts[0] += part->GetNumberOfPoints();
   }
   counts = ranks.Collect(counts);
-  vtkIdType first = std::accumulate(counts.begin(), counts.begin() + ranks.Own(), vtkIdType(0));
+  vtkIdType first = std::accumulate(counts.begin(), counts.begin() + ranks.OwnRank(), vtkIdType(0));
   ranks.Agree([&] {
     for (Place* place : places)
     {
       if (HasPoints(*place))
       {
         auto* const points = vtkPointSet::SafeDownCast(place->Input);
-        place->Own = this->Prepared(points, second, first);
+        place->Made = this->Prepared(points, second, first, warnings);
         first += points->GetNumberOfPoints();
-        place->Input = place->Own;
+        place->Input = place->Made;
       }
     }
   });
+  this->AddMessages(places, warnings, this->Warnings);
+}
+
+/** Does work. If that fails, the results of the filter are those before. */
+void FilterRun::CountIfDone(const std::function<void()>& work) const
+{
+  std::vector<vtkIdType> sums;
+  std::vector<double> maxima;
+  std::transform(this->Sums.begin(), this->Sums.end(), std::back_inserter(sums),
+    [](const vtkIdType* sum) { return *sum; });
+  std::transform(this->Maxima.begin(), this->Maxima.end(), std::back_inserter(maxima),
+    [](const double* maximum) { return *maximum; });
+  try
+  {
+    work();
+  }
+  catch (...)
+  {
+    for (std::size_t i = 0; i < sums.size(); ++i)
+    {
+      *this->Sums[i] = sums[i];
+    }
+    for (std::size_t i = 0; i < maxima.size(); ++i)
+    {
+      *this->Maxima[i] = maxima[i];
+    }
+    throw;
+  }
 }
 
 /**
@@ -340,12 +370,19 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
   {
     block.Outputs = home->Outputs;
   }
-  if (!this->Spread(block, ranks))
+  bool isDone = false;
+  this->CountIfDone([&] {
+    isDone = this->Spread(block, ranks);
+    if (isDone)
+    {
+      this->FinishOutputs(block, ranks);
+    }
+  });
+  if (!isDone)
   {
     whyGathered = block.WhyGathered;
     return false;
   }
-  this->FinishOutputs(block, ranks);
   this->AddMessages(places, block.Warnings, this->Warnings);
   Empty(places);
   if (home)
@@ -433,11 +470,15 @@ Message FilterRun::RunPlace(
       throw Error(std::string("It is a ") + place.Input->GetClassName() + ", but a " + required +
         " is needed.");
     }
+    std::vector<Message> warnings;
     const vtkSmartPointer<vtkPointSet> input =
-      this->Prepared(vtkPointSet::SafeDownCast(place.Input), block.Second, 0);
+      this->Prepared(vtkPointSet::SafeDownCast(place.Input), block.Second, 0, warnings);
     block.Input = input;
-    body(block);
-    this->FinishOutputs(block, Ranks());
+    this->CountIfDone([&] {
+      body(block);
+      this->FinishOutputs(block, Ranks());
+    });
+    block.Warnings.insert(block.Warnings.begin(), warnings.begin(), warnings.end());
     return message;
   }
   catch (const Aborted&)

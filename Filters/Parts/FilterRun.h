@@ -71,7 +71,10 @@ public:
   int CleanedOutputs = 0;
   int Precision = 2;        ///< OutputPointsPrecision
   bool ListsUnused = false; ///< whether the filter lists unused points in field data
-  /** Results of the filter: set to 0, and added up (the largest taken) over blocks and ranks. */
+  /**
+   * Results of the filter: set to 0, and added up (the largest taken) over blocks and ranks. What
+   * a block that fails has added is taken back.
+   */
   std::vector<vtkIdType*> Sums;
   std::vector<double*> Maxima;
   /**
@@ -79,14 +82,12 @@ public:
    * running the body there; may be empty. All ranks call it for the same blocks in the same order.
    * Input is this rank's part, maybe without points; Outputs are none where the block has no place
    * on this rank.
-   * It throws on all ranks or on none, with the same message (Ranks::Agree), and adds its results
-   * to Sums and Maxima last.
+   * It throws on all ranks or on none, with the same message (Ranks::Agree).
    * @return on all ranks, false to have the block gathered, with a warning
    */
   std::function<bool(Block&, const Ranks&)> Spread;
 
   /**
-   * @param[in] body  adds its results to Sums and Maxima last, when it cannot fail any more
    * @return what RequestData returns: on all ranks 0 after an error in any block
    */
   int Run(const std::function<void(Block&)>& body);
@@ -99,9 +100,9 @@ private:
   double GatherSpreadBlocks(
     std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress);
   vtkSmartPointer<vtkPointSet> Prepared(
-    vtkPointSet* input, vtkPolyData* second, vtkIdType first) const;
-  void PrepareParts(
-    const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second) const;
+    vtkPointSet* input, vtkPolyData* second, vtkIdType first, std::vector<Message>& warnings) const;
+  void PrepareParts(const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second);
+  void CountIfDone(const std::function<void()>& work) const;
   void FinishOutputs(Block& block, const Ranks& ranks) const;
   bool RunSpread(const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second,
     const Progress& progress, Message& whyGathered);

@@ -86,9 +86,9 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
     }
     catch (const Error& error)
     {
-      throw Error("On rank " + std::to_string(ranks.Own()) + ": " + error.what());
+      throw Error("On rank " + std::to_string(ranks.OwnRank()) + ": " + error.what());
     }
-    for (std::size_t i = 0; i < own.size() && ranks.Own() != home; ++i)
+    for (std::size_t i = 0; i < own.size() && ranks.OwnRank() != home; ++i)
     {
       packed[home].push_back(PackData(own[i]));
     }
@@ -98,7 +98,7 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
   ranks.Agree([&] {
     Report(progress, 0.5);
     Parts all;
-    for (int rank = 0; rank < ranks.Count() && ranks.Own() == home; ++rank)
+    for (int rank = 0; rank < ranks.Count() && ranks.OwnRank() == home; ++rank)
     {
       if (rank == home)
       {
@@ -110,7 +110,7 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
         bytes = Bytes();
       }
     }
-    if (ranks.Own() == home)
+    if (ranks.OwnRank() == home)
     {
       joined = Join(all, kind, SubProgress(progress, 0.5, 1.0), warnings);
     }

@@ -79,7 +79,7 @@ class MarkedCells
 {
 public:
   MarkedCells(const std::vector<Box>& boxes, const Box& all)
-    : All(all)
+    : Bounds(all)
     , Counts(static_cast<std::size_t>(Side + 1) * (Side + 1), 0)
   {
     std::vector<Index> marks(this->Counts.size(), 0); // differences
@@ -140,12 +140,13 @@ private:
   }
   Range RangeOf(const Box& box) const
   {
-    const double width = this->All.Width(), height = this->All.Height();
-    return { CellOf(box.Low.X, this->All.Low.X, width), CellOf(box.High.X, this->All.Low.X, width),
-      CellOf(box.Low.Y, this->All.Low.Y, height), CellOf(box.High.Y, this->All.Low.Y, height) };
+    const double width = this->Bounds.Width(), height = this->Bounds.Height();
+    return { CellOf(box.Low.X, this->Bounds.Low.X, width),
+      CellOf(box.High.X, this->Bounds.Low.X, width), CellOf(box.Low.Y, this->Bounds.Low.Y, height),
+      CellOf(box.High.Y, this->Bounds.Low.Y, height) };
   }
 
-  const Box All;
+  const Box Bounds;
   std::vector<Index> Counts;
 };
 } // namespace

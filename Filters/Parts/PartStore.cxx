@@ -21,7 +21,7 @@ const std::vector<std::string>& NamesOfBoxes()
 // twice where ids are places, and nothing is read.
 void PartStore::Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const Progress& progress)
 {
-  this->Part.Own = PointTable(this->Part.Kinds);
+  this->Part.OwnPoints = PointTable(this->Part.Kinds);
   this->Part.Others = PointTable(this->Part.Kinds);
   if (!this->Crew.IsInFiles() || areIdsGiven)
   {
@@ -30,7 +30,7 @@ void PartStore::Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const 
       Report(ofPart, 0.0);
       if (this->Crew.IsInFiles())
       {
-        const PointTable own = this->ReadOwn(part, ofPart).Own;
+        const PointTable own = this->ReadOwn(part, ofPart).OwnPoints;
         counts[part] = static_cast<vtkIdType>(own.Count());
         std::vector<vtkIdType> places(own.Count());
         std::iota(places.begin(), places.end(), vtkIdType(0));
@@ -38,13 +38,13 @@ void PartStore::Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const 
         this->AddOwn(part, own.Pack(places));
         return;
       }
-      this->Part.Own.Unpack(this->Crew.At(part, OwnPoints).Take());
+      this->Part.OwnPoints.Unpack(this->Crew.At(part, OwnPoints).Take());
       Report(ofPart, 0.5);
       SortOwn(this->Part);
-      counts[part] = static_cast<vtkIdType>(this->Part.Own.Count());
+      counts[part] = static_cast<vtkIdType>(this->Part.OwnPoints.Count());
     });
   }
-  this->Crew.All().Sum(counts);
+  this->Crew.AllRanks().Sum(counts);
   this->Part.Bases.assign(1, 0);
   std::partial_sum(counts.begin(), counts.end(), std::back_inserter(this->Part.Bases));
 }
@@ -56,7 +56,7 @@ void PartStore::AddOwn(int part, Bytes&& rows)
     this->Crew.At(part, OwnPoints).Append(std::move(rows));
     return;
   }
-  this->Part.Own.Unpack(&rows, 1);
+  this->Part.OwnPoints.Unpack(&rows, 1);
 }
 
 void PartStore::CheckCounts() const
@@ -88,9 +88,9 @@ SurfacePart PartStore::ReadOwn(int part, const Progress& progress) const
   read.NameOfIds = this->Part.NameOfIds;
   read.TypeOfPoints = this->Part.TypeOfPoints;
   read.Bases = this->Part.Bases;
-  read.Own = PointTable(read.Kinds);
+  read.OwnPoints = PointTable(read.Kinds);
   read.Others = PointTable(read.Kinds);
-  read.Own.Unpack(this->Crew.At(part, OwnPoints).Copy(progress));
+  read.OwnPoints.Unpack(this->Crew.At(part, OwnPoints).Copy(progress));
   SortOwn(read);
   return read;
 }
@@ -136,7 +136,7 @@ void PartStore::KeepForOthers(int part, const SurfacePart& own, std::vector<vtkI
   Bytes list;
   AppendList(list, places);
   onSeam.Append(std::move(list));
-  onSeam.Append(own.Own.Pack(places));
+  onSeam.Append(own.OwnPoints.Pack(places));
 }
 
 // The box has two stretches, as written above, or none.
@@ -158,7 +158,7 @@ Bytes PartStore::PackForOthers(const RowsForOthers& rows, std::vector<vtkIdType>
 {
   if (!this->Crew.IsInFiles())
   {
-    return this->Part.Own.Pack(places);
+    return this->Part.OwnPoints.Pack(places);
   }
   for (vtkIdType& place : places)
   {
@@ -217,7 +217,7 @@ void PartStore::PutTogether(int part, const Progress& progress, SurfacePart& who
   whole.OtherNumbers = this->ListOthersOf(part);
   whole.Others = PointTable(whole.Kinds);
   whole.Others.Unpack(this->Crew.At(part, Corners).Copy());
-  this->CheckCount(whole.Own.Count() + whole.Others.Count());
+  this->CheckCount(whole.OwnPoints.Count() + whole.Others.Count());
   AppendTriangles(ValuesIn<GlobalTriangle>(this->Crew.At(part, FromSeams)), first, progress, whole);
   for (const ChangedTriangle& changed : ValuesIn<ChangedTriangle>(this->Crew.At(part, Changed)))
   {
@@ -253,8 +253,8 @@ SurfacePart PartStore::TakeWhole(int part, const Progress& progress)
   }
   SurfacePart taken =
     this->Crew.IsInFiles() ? this->ReadWhole(part, progress) : std::move(this->Part);
-  taken.AddedPoints = static_cast<Index>(std::count_if(taken.Own.Ids.begin(), taken.Own.Ids.end(),
-    [this](vtkIdType id) { return id >= this->FirstLineId; }));
+  taken.AddedPoints = static_cast<Index>(std::count_if(taken.OwnPoints.Ids.begin(),
+    taken.OwnPoints.Ids.end(), [this](vtkIdType id) { return id >= this->FirstLineId; }));
   return taken;
 }
 
@@ -264,7 +264,7 @@ void PartStore::ForEachRows(const std::function<void(const PointTable&)>& visit)
   {
     if (!this->Crew.IsInFiles())
     {
-      visit(this->Part.Own);
+      visit(this->Part.OwnPoints);
       continue;
     }
     this->Crew.At(part, OwnPoints).ForEach([&](const Bytes& bytes) {

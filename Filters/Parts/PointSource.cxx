@@ -98,7 +98,7 @@ bool TakeKindOfIds(std::vector<ArrayKind>& kinds, std::string& name)
 } // namespace
 
 PointSource::PointSource(const Ranks& ranks, const std::string& folder)
-  : All(ranks)
+  : AllRanks(ranks)
 {
   if (folder.empty())
   {
@@ -224,7 +224,7 @@ void PointSource::KeepSample()
  */
 void PointSource::NumberPoints(const Progress& progress, SurfacePart& common)
 {
-  this->All.Agree([&]() {
+  this->AllRanks.Agree([&]() {
     try
     {
       if (this->Input)
@@ -236,28 +236,30 @@ void PointSource::NumberPoints(const Progress& progress, SurfacePart& common)
     }
     catch (const Error& error)
     {
-      throw Error("On rank " + std::to_string(this->All.Own()) + ": " + error.what());
+      throw Error("On rank " + std::to_string(this->AllRanks.OwnRank()) + ": " + error.what());
     }
   });
   vtkPointData* const arrays = this->Input ? this->Input->GetPointData() : this->Arrays.Get();
-  common.Kinds = CommonArrays(this->All, this->CountOfOwn > 0 ? arrays : nullptr, common.LeftOut);
+  common.Kinds =
+    CommonArrays(this->AllRanks, this->CountOfOwn > 0 ? arrays : nullptr, common.LeftOut);
   const bool areGiven = TakeKindOfIds(common.Kinds, common.NameOfIds);
   const bool areOthers = this->CountOfOwn > 0 && this->AreGiven != areGiven;
-  if (this->IsInFile() && (!common.LeftOut.empty() || IsOnAny(this->All, areOthers)))
+  if (this->IsInFile() && (!common.LeftOut.empty() || IsOnAny(this->AllRanks, areOthers)))
   {
     throw DifferentArrays(); // on all ranks
   }
   this->AreGiven = areGiven;
   const std::vector<vtkIdType> counts =
-    this->All.Collect(std::vector<vtkIdType>{ this->CountOfOwn });
+    this->AllRanks.Collect(std::vector<vtkIdType>{ this->CountOfOwn });
   common.TypeOfPoints =
-    IsOnAny(this->All, this->TypeOfPoints == VTK_DOUBLE) ? VTK_DOUBLE : VTK_FLOAT;
-  this->First = std::accumulate(counts.begin(), counts.begin() + this->All.Own(), vtkIdType(0));
+    IsOnAny(this->AllRanks, this->TypeOfPoints == VTK_DOUBLE) ? VTK_DOUBLE : VTK_FLOAT;
+  this->First =
+    std::accumulate(counts.begin(), counts.begin() + this->AllRanks.OwnRank(), vtkIdType(0));
   this->Rows = PointTable(common.Kinds);
-  this->All.Agree([&]() {
+  this->AllRanks.Agree([&]() {
     if (this->Input)
     {
-      this->Read(this->Input, common.NameOfIds, this->First, this->All.Watched(progress));
+      this->Read(this->Input, common.NameOfIds, this->First, this->AllRanks.Watched(progress));
     }
   });
 }
@@ -295,10 +297,10 @@ void PointSource::Read(
 std::vector<double> PointSource::SampleAtOnce(vtkIdType parts) const
 {
   std::vector<vtkIdType> all = { static_cast<vtkIdType>(this->Kept.size()) };
-  this->All.Sum(all);
+  this->AllRanks.Sum(all);
   const vtkIdType stretch = std::max<vtkIdType>(1, all[0] / (SamplePerPart * parts));
   std::vector<double> coordinates;
-  this->All.Agree([&]() {
+  this->AllRanks.Agree([&]() {
     const vtkIdType count = static_cast<vtkIdType>(this->Kept.size());
     for (vtkIdType i = 0; i * stretch < count; ++i)
     {
@@ -322,7 +324,7 @@ Cuts PointSource::CutPlane(int parts)
     // All ranks choose by the same mask, that of the one with most points: each point of all ranks
     // is in the sample as likely as any other.
     std::vector<double> mask = { static_cast<double>(this->SampleMask) };
-    this->All.Maximum(mask);
+    this->AllRanks.Maximum(mask);
     this->SampleMask = static_cast<std::uint64_t>(mask[0]);
     this->KeepSample();
     for (const SampledPoint& point : this->Sample)
@@ -335,9 +337,9 @@ Cuts PointSource::CutPlane(int parts)
   {
     coordinates = this->SampleAtOnce(parts);
   }
-  coordinates = this->All.Collect(coordinates);
+  coordinates = this->AllRanks.Collect(coordinates);
   std::unique_ptr<Cuts> plane;
-  this->All.Agree([&]() {
+  this->AllRanks.Agree([&]() {
     std::vector<Point2> sample(coordinates.size() / 2);
     for (std::size_t i = 0; i < sample.size(); ++i)
     {
@@ -409,8 +411,8 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
   bool isMore = true;
   while (isMore)
   {
-    this->All.Agree([&]() {
-      Progress ofSlice = this->All.Watched(sending);
+    this->AllRanks.Agree([&]() {
+      Progress ofSlice = this->AllRanks.Watched(sending);
       double begin = 0.0, end = 1.0;
       // A rank whose slices are all sent sends nothing, but delivers.
       if (next != this->Stretches.end())
@@ -431,7 +433,7 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
       this->SendSlice(plane, engine, box, SubProgress(ofSlice, begin, end), counts);
     });
     engine.Deliver();
-    isMore = IsOnAny(this->All, next != this->Stretches.end());
+    isMore = IsOnAny(this->AllRanks, next != this->Stretches.end());
   }
   return plane;
 }

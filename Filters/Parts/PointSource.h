@@ -89,7 +89,7 @@ private:
   void SendSlice(const Cuts& plane, Engine& engine, int box, const Progress& progress,
     std::vector<vtkIdType>& counts);
 
-  const Ranks& All;
+  const Ranks& AllRanks;
   vtkIdType CountOfOwn = 0, First = 0; // the number of the first
   int TypeOfPoints = VTK_FLOAT;        // where all are float
   bool AreGiven = false;               // their global ids

@@ -64,7 +64,7 @@ void RankNotes::SendFailure()
 {
   if (this->Ranks)
   {
-    this->Own = std::make_unique<Sent>(this->Ranks, FailureTag);
+    this->OwnFailure = std::make_unique<Sent>(this->Ranks, FailureTag);
   }
 }
 
@@ -88,11 +88,11 @@ void RankNotes::TakeFailures(int failures)
     int note = 0;
     this->Ranks->Receive(&note, 1, vtkMultiProcessController::ANY_SOURCE, FailureTag);
   }
-  if (this->Own)
+  if (this->OwnFailure)
   {
-    this->Own->Wait();
+    this->OwnFailure->Wait();
   }
-  this->Own.reset();
+  this->OwnFailure.reset();
 }
 
 /*

@@ -48,7 +48,7 @@ public:
 private:
   struct Sent;
   vtkMPIController* Ranks = nullptr; // nullptr: none is sent
-  std::unique_ptr<Sent> Own;         // the notes of a failure that are under way
+  std::unique_ptr<Sent> OwnFailure;  // the notes of a failure that are under way
   std::chrono::steady_clock::time_point Next;
 };
 

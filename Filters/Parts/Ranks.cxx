@@ -101,7 +101,7 @@ Ranks::Ranks(vtkMultiProcessController* controller, vtkInformation* request,
 {
 }
 
-int Ranks::Own() const
+int Ranks::OwnRank() const
 {
   return this->Controller ? this->Controller->GetLocalProcessId() : 0;
 }
@@ -123,8 +123,8 @@ void Ranks::WaitForAll() const
     {
       names += (names.empty() ? "" : ", ") + std::to_string(rank);
     }
-    this->Waiting(
-      MakeMessage<sentences::RankWaits>(this->Own(), missing.size() > 1 ? "ranks" : "rank", names));
+    this->Waiting(MakeMessage<sentences::RankWaits>(
+      this->OwnRank(), missing.size() > 1 ? "ranks" : "rank", names));
   });
 }
 
@@ -228,7 +228,7 @@ void Ranks::Meet(const std::function<void(int)>& withOther) const
   const int count = this->Count();
   for (int bits = 1; bits < 2 * count; ++bits) // until beyond the highest bit of a rank
   {
-    const int other = this->Own() ^ bits;
+    const int other = this->OwnRank() ^ bits;
     if (other < count)
     {
       withOther(other);
@@ -257,7 +257,7 @@ std::vector<Bytes> Ranks::Exchange(std::vector<Bytes>&& toEach) const
 std::vector<std::vector<Bytes>> Ranks::ExchangeLists(std::vector<std::vector<Bytes>>&& toEach) const
 {
   std::vector<std::vector<Bytes>> fromEach(toEach.size());
-  std::swap(fromEach[this->Own()], toEach[this->Own()]);
+  std::swap(fromEach[this->OwnRank()], toEach[this->OwnRank()]);
   std::vector<std::vector<std::size_t>> sizes(toEach.size());
   this->WaitForAll();
   this->Meet([&](int other) {
@@ -278,7 +278,7 @@ std::vector<std::vector<Bytes>> Ranks::ExchangeLists(std::vector<std::vector<Byt
       sizes[other].resize(count);
       this->Receive(sizes[other].data(), count * sizeof(std::size_t), other);
     };
-    this->Own() < other ? (send(), receive()) : (receive(), send());
+    this->OwnRank() < other ? (send(), receive()) : (receive(), send());
     this->Sent.BytesSent += static_cast<vtkIdType>(sizeof(length));
   });
   this->Agree([&]() {
@@ -305,7 +305,7 @@ std::vector<std::vector<Bytes>> Ranks::ExchangeLists(std::vector<std::vector<Byt
         this->Receive(bytes.data(), bytes.size(), other);
       }
     };
-    this->Own() < other ? (send(), receive()) : (receive(), send());
+    this->OwnRank() < other ? (send(), receive()) : (receive(), send());
   });
   ++this->Sent.Rounds;
   return fromEach;
@@ -350,7 +350,7 @@ vtkSmartPointer<vtkPolyData> Ranks::Gather(vtkPolyData* local) const
     for (int rank = 0; rank < this->Count(); ++rank)
     {
       const Bytes& bytes = packed[rank];
-      const bool isOwn = rank == this->Own();
+      const bool isOwn = rank == this->OwnRank();
       if (isOwn ? !hasPoints : bytes.empty())
       {
         continue;
@@ -396,7 +396,7 @@ std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& 
   std::vector<Message> all;
   for (const Message& message : ranks.Collect(messages))
   {
-    if (ranks.Own() == 0 && std::find(all.begin(), all.end(), message) == all.end())
+    if (ranks.OwnRank() == 0 && std::find(all.begin(), all.end(), message) == all.end())
     {
       all.push_back(message);
     }

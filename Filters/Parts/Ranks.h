@@ -55,7 +55,7 @@ public:
   /** A minute, but in tests. */
   static std::chrono::milliseconds Patience;
 
-  int Own() const;
+  int OwnRank() const;
   int Count() const;
 
   /** The sums (largest values) over all ranks; the lengths are the same on all of them. */

@@ -79,9 +79,9 @@ bool ReconstructParts::CanChange(const char* setting)
 
 void ReconstructParts::Open(vtkMultiProcessController* controller)
 {
-  if (!this->Everybody)
+  if (!this->AllRanks)
   {
-    this->Everybody = std::make_unique<Ranks>(
+    this->AllRanks = std::make_unique<Ranks>(
       controller, [this](const Message& waiting) { this->ReportWarnings({ waiting }); });
   }
 }
@@ -92,7 +92,7 @@ void ReconstructParts::Close()
   this->Filled.reset();
   this->Trimmed.reset();
   this->Work.reset();
-  this->Everybody.reset();
+  this->AllRanks.reset();
   this->Refusal.reset();
   this->Constraints = this->Boundary = nullptr;
   this->NumberOfParts = 0;
@@ -138,7 +138,7 @@ bool ReconstructParts::AddPoints(vtkPointSet* points)
     this->Do(false, [&]() {
       if (!this->Work)
       {
-        this->Work = std::make_unique<TriangulateParts>(*this->Everybody, settings.Folder);
+        this->Work = std::make_unique<TriangulateParts>(*this->AllRanks, settings.Folder);
       }
       this->Work->Add(points, ProgressOf(this->Source));
     });
@@ -159,14 +159,14 @@ void ReconstructParts::CheckPart(int part, int count) const
     throw Error("There are " + std::to_string(this->NumberOfParts) +
       " pieces; another number of pieces needs Reset().");
   }
-  const int ranks = this->Everybody->Count(), ofEach = count / ranks;
+  const int ranks = this->AllRanks->Count(), ofEach = count / ranks;
   if (count % ranks != 0)
   {
     throw Error("The number of pieces is " + std::to_string(count) + ", but " +
       std::to_string(ranks) + " processes work on them, each on as many: ask for a multiple of " +
       std::to_string(ranks) + " pieces, or name other processes by SetController().");
   }
-  const int first = ofEach * this->Everybody->Own();
+  const int first = ofEach * this->AllRanks->OwnRank();
   if (part < first || part >= first + ofEach)
   {
     throw Error("Piece " + std::to_string(part) + " of " + std::to_string(count) +
@@ -198,20 +198,20 @@ void ReconstructParts::Begin(int count)
   try
   {
     vtkDataObject *constraints = nullptr, *boundary = nullptr;
-    this->Everybody->Agree([&]() {
+    this->AllRanks->Agree([&]() {
       this->Prepare();
       constraints = UpdatedLines(this->Set.HasConstraints);
       boundary = UpdatedLines(this->Set.HasBoundary);
     });
-    const std::vector<vtkIdType> counts = this->Everybody->Collect(std::vector<vtkIdType>{ count });
-    if (std::count(counts.begin(), counts.end(), count) != this->Everybody->Count())
+    const std::vector<vtkIdType> counts = this->AllRanks->Collect(std::vector<vtkIdType>{ count });
+    if (std::count(counts.begin(), counts.end(), count) != this->AllRanks->Count())
     {
       throw Error("Processes ask for different numbers of pieces, " +
         std::to_string(counts.front()) + " and others: all have to ask for the same number.");
     }
-    this->Constraints = ShareLines(constraints, "constraints", *this->Everybody);
-    this->Boundary = ShareLines(boundary, "boundary", *this->Everybody);
-    this->Everybody->Agree([this]() { this->Check(); });
+    this->Constraints = ShareLines(constraints, "constraints", *this->AllRanks);
+    this->Boundary = ShareLines(boundary, "boundary", *this->AllRanks);
+    this->AllRanks->Agree([this]() { this->Check(); });
   }
   catch (const Error& error)
   {
@@ -235,7 +235,7 @@ void ReconstructParts::Prepare()
     }
     if (!this->Work)
     {
-      this->Work = std::make_unique<TriangulateParts>(*this->Everybody, this->Set.Folder);
+      this->Work = std::make_unique<TriangulateParts>(*this->AllRanks, this->Set.Folder);
     }
   }
   catch (const Error& error)
@@ -244,7 +244,7 @@ void ReconstructParts::Prepare()
     {
       throw;
     }
-    throw Error("On rank " + std::to_string(this->Everybody->Own()) + ": " + error.what());
+    throw Error("On rank " + std::to_string(this->AllRanks->OwnRank()) + ": " + error.what());
   }
 }
 
@@ -314,16 +314,16 @@ void ReconstructParts::Triangulate(const Progress& progress)
       this->Work->UseDoublePoints();
     }
     this->Work->Triangulate(
-      this->NumberOfParts / this->Everybody->Count(), this->Constraints, options, warnings);
+      this->NumberOfParts / this->AllRanks->Count(), this->Constraints, options, warnings);
     this->Work->WarnOfMissing(warnings);
-    warnings = OnFirst(warnings, *this->Everybody);
+    warnings = OnFirst(warnings, *this->AllRanks);
   });
   this->ReportWarnings(warnings);
 }
 
 void ReconstructParts::Trim(const Progress& progress)
 {
-  if (this->Work->All().Triangles == 0)
+  if (this->Work->GetTotals().Triangles == 0)
   {
     return; // a warning has said so
   }
@@ -333,13 +333,13 @@ void ReconstructParts::Trim(const Progress& progress)
     const auto make = [this](
                         int part, const Progress& ofPart) { return this->MakePart(part, ofPart); };
     this->Trimmed = std::make_unique<TrimParts>(SurfaceParts{ this->Work->Holders(), make },
-      this->Work->All().Triangles, this->Boundary, this->Set.Trim);
+      this->Work->GetTotals().Triangles, this->Boundary, this->Set.Trim);
     this->Trimmed->Trim();
     if (!this->Trimmed->Warning().IsEmpty())
     {
       warnings.push_back(this->Trimmed->Warning());
     }
-    warnings = OnFirst(warnings, *this->Everybody);
+    warnings = OnFirst(warnings, *this->AllRanks);
   });
   this->ReportWarnings(warnings);
 }
@@ -357,7 +357,7 @@ void ReconstructParts::Fill(const Progress& progress)
     filled->FindHoles(0);
     filled->Fill();
     this->Filled = std::move(filled);
-    warnings = OnFirst(WarningsOf(this->Filled->Result()), *this->Everybody);
+    warnings = OnFirst(WarningsOf(this->Filled->Result()), *this->AllRanks);
   });
   this->ReportWarnings(warnings);
 }
@@ -366,7 +366,7 @@ void ReconstructParts::Fill(const Progress& progress)
 vtkSmartPointer<vtkPolyData> ReconstructParts::MakePart(int part, const Progress& progress)
 {
   SurfacePart taken = this->Work->Take(part, progress);
-  if (taken.Own.Count() == 0)
+  if (taken.OwnPoints.Count() == 0)
   {
     return nullptr;
   }
@@ -374,7 +374,7 @@ vtkSmartPointer<vtkPolyData> ReconstructParts::MakePart(int part, const Progress
   PassPart(taken, ResolveNumberOfThreads(this->Set.Delaunay.NumberOfThreads), made);
   ConstrainedTriangulation counts;
   counts.Added.resize(static_cast<std::size_t>(taken.AddedPoints));
-  counts.NumberOfCrossings = this->Work->All().Crossings;
+  counts.NumberOfCrossings = this->Work->GetTotals().Crossings;
   counts.Result = std::move(taken.Result);
   AddReport(counts, progress, made->GetFieldData());
   return made;
@@ -458,7 +458,7 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
   {
     output->Initialize();
     rims->Initialize();
-    if (isReporting || !this->IsOnAllRanks || this->Everybody->Own() == 0)
+    if (isReporting || !this->IsOnAllRanks || this->AllRanks->OwnRank() == 0)
     {
       this->ReportError(error);
     }
@@ -466,12 +466,12 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
   return 1;
 }
 
-ReconstructParts::Counts ReconstructParts::All() const
+ReconstructParts::Counts ReconstructParts::GetCounts() const
 {
   Counts counts;
   if (this->Work)
   {
-    const TriangulateParts::Totals& all = this->Work->All();
+    const TriangulateParts::Totals& all = this->Work->GetTotals();
     counts.Points = this->Work->CountOfParts() > 0 ? all.Points : this->Work->CountOfPoints();
     counts.Triangles = all.Triangles;
     counts.Duplicates = all.Duplicates;
@@ -482,7 +482,7 @@ ReconstructParts::Counts ReconstructParts::All() const
   }
   if (this->Trimmed)
   {
-    counts.Trim = this->Trimmed->All();
+    counts.Trim = this->Trimmed->GetTotalCounts();
     counts.TrimmedTriangles = this->Trimmed->CountOfKept();
     counts.BoundaryRings = this->Trimmed->CountOfRings();
   }

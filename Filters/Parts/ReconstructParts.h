@@ -111,11 +111,11 @@ public:
    */
   int RequestData(vtkInformation* request, vtkInformationVector* outputs);
 
-  Counts All() const;
+  Counts GetCounts() const;
 
 private:
   void Open(vtkMultiProcessController* controller);
-  bool IsAlone() const { return this->Everybody->Count() == 1; }
+  bool IsAlone() const { return this->AllRanks->Count() == 1; }
   bool HasPoints() const { return this->Work || this->IsLost; } // or has lost some
   bool IsTrimmed() const { return this->Set.TrimOutward || this->Boundary; }
   void CheckIsComplete() const;
@@ -138,7 +138,7 @@ private:
   vtkAlgorithm* Source;
   std::function<Settings()> MakeSettings;
   vtkStringArray* Messages;
-  std::unique_ptr<Ranks> Everybody;
+  std::unique_ptr<Ranks> AllRanks;
   int NumberOfParts = 0;
   std::set<int> Gone; // parts
   Settings Set;

@@ -73,7 +73,7 @@ public:
   Settling(PartStore& store, const Cuts& plane, const DelaunayOptions& options)
     : Store(store)
     , Crew(store.Crew)
-    , All(store.Crew.All())
+    , AllRanks(store.Crew.AllRanks())
     , Plane(plane)
     , Options(options)
   {
@@ -105,7 +105,7 @@ private:
 
   PartStore& Store;
   Engine& Crew;
-  const Ranks& All;
+  const Ranks& AllRanks;
   const Cuts& Plane;
   const DelaunayOptions& Options;
   std::map<int, Piece> Seams; // of nodes, by their first parts
@@ -128,11 +128,11 @@ SettledParts Settling::SettleAll()
     this->SettleOnGiven(searching);
   }
   else if (isAsked &&
-    FindLatticeOnRanks(this->All, this->Store.Slices(), this->Options, searching, lattice) &&
+    FindLatticeOnRanks(this->AllRanks, this->Store.Slices(), this->Options, searching, lattice) &&
     this->SettleOn(&lattice) && !this->IsByChance(lattice))
   {
     this->Found.LatticeFound = true;
-    this->Found.Steps = FromLowestNode(this->All, this->Store.Slices(), lattice);
+    this->Found.Steps = FromLowestNode(this->AllRanks, this->Store.Slices(), lattice);
   }
   else
   {
@@ -140,7 +140,7 @@ SettledParts Settling::SettleAll()
   }
   std::vector<vtkIdType> sums = { this->Found.Duplicates, this->Found.NotFinite,
     this->Found.Hidden, this->Found.Triangles + static_cast<vtkIdType>(this->Found.OfSeams.size()) };
-  this->All.Sum(sums);
+  this->AllRanks.Sum(sums);
   this->Found.Duplicates = sums[0];
   this->Found.NotFinite = sums[1];
   this->Found.Hidden = sums[2];
@@ -154,8 +154,8 @@ void Settling::SettleOnGiven(const Progress& progress)
   SharedLattice lattice;
   const PointSlices points = this->Store.Slices();
   const bool hasPoints = TakeGivenLattice(
-    this->All, points, [this](const auto& visit) { this->Store.ForEachRows(visit); }, this->Options,
-    progress, lattice);
+    this->AllRanks, points, [this](const auto& visit) { this->Store.ForEachRows(visit); },
+    this->Options, progress, lattice);
   if (!this->SettleOn(hasPoints ? &lattice : nullptr))
   {
     throw GivenLatticeUnfit();
@@ -163,7 +163,7 @@ void Settling::SettleOnGiven(const Progress& progress)
   if (hasPoints)
   {
     this->Found.LatticeFound = true;
-    this->Found.Steps = FromLowestNode(this->All, points, lattice);
+    this->Found.Steps = FromLowestNode(this->AllRanks, points, lattice);
   }
 }
 
@@ -173,7 +173,7 @@ bool Settling::IsByChance(const SharedLattice& lattice) const
   std::vector<vtkIdType> sums = { this->Store.CountOfOwn() - this->Found.Duplicates -
       this->Found.NotFinite - this->Found.Hidden,
     this->Found.Triangles + static_cast<vtkIdType>(this->Found.OfSeams.size()) };
-  this->All.Sum(sums);
+  this->AllRanks.Sum(sums);
   return sums[1] == 0 || IsLatticeByChance(static_cast<double>(sums[0]), lattice.Tolerance());
 }
 
@@ -196,7 +196,7 @@ bool Settling::SettleOn(const SharedLattice* lattice)
 /** Whether all ranks have to begin again; without a lattice, none asks the others. */
 bool Settling::IsOffAnywhere(const SharedLattice* lattice) const
 {
-  return lattice && IsOnAny(this->All, this->IsOffLattice);
+  return lattice && IsOnAny(this->AllRanks, this->IsOffLattice);
 }
 
 /** Does a step, unless a point of this rank is known not to be on the lattice. */
@@ -224,9 +224,9 @@ void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress
 {
   const Progress reading = SubProgress(progress, 0.0, 0.0);
   this->Store.WithOwn(part, reading, [&](const SurfacePart& own) {
-    SettledCell settled = SettleCell(ViewOf(own.Own).View, this->Store.FirstOf(part),
+    SettledCell settled = SettleCell(ViewOf(own.OwnPoints).View, this->Store.FirstOf(part),
       this->Plane.CellOf(part, part + 1), this->OptionsWith(progress), lattice);
-    NameHidden(own.Own.Marks(), settled.Result);
+    NameHidden(own.OwnPoints.Marks(), settled.Result);
     this->Found.Triangles += static_cast<vtkIdType>(settled.Result.Triangles.size() / 3);
     this->Found.Duplicates += settled.Result.NumberOfDuplicates;
     this->Found.NotFinite += settled.Result.NumberOfNotFinite;
@@ -281,7 +281,7 @@ bool Settling::JoinSeams(const SharedLattice* lattice)
         this->Seams.erase(part);
       }
     });
-    if (this->All.Count() > 1)
+    if (this->AllRanks.Count() > 1)
     {
       this->Crew.Deliver();
     }

@@ -112,7 +112,7 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
   ranks.Agree([&]() {
     for (std::size_t i = 0; i < points.Places.size(); ++i)
     {
-      const MetPoint met{ points.Keys[i], points.AreCopies[i], ranks.Own(),
+      const MetPoint met{ points.Keys[i], points.AreCopies[i], ranks.OwnRank(),
         static_cast<vtkIdType>(i) };
       AppendTo(packed[RankOf(BitsOf(met.Key), ranks)], &met, 1);
     }

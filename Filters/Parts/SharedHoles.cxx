@@ -35,15 +35,15 @@ struct FieldsOf<SurroundedHoles>
 bool SharedHoles::Find(const Progress& progress)
 {
   const PointView points = this->Border.View();
-  this->OfAll = FillResult();
-  this->OfAll.Found = FindBorderHoles(this->Border.Edges, points, progress);
-  this->FirstRegion = this->OfAll.Found.Count();
+  this->Result = FillResult();
+  this->Result.Found = FindBorderHoles(this->Border.Edges, points, progress);
+  this->FirstRegion = this->Result.Found.Count();
   if (!this->Border.RegionEdges.empty())
   {
     AddRegionsOfBorder(
-      this->Border.RegionEdges, this->Border.RegionOfEdge, points, this->OfAll.Found, progress);
+      this->Border.RegionEdges, this->Border.RegionOfEdge, points, this->Result.Found, progress);
   }
-  this->Extents = ExtentsOf(this->OfAll.Found, points);
+  this->Extents = ExtentsOf(this->Result.Found, points);
   this->Retries.assign(this->Extents.size(), 0);
   this->Reach.assign(this->Extents.size(), 0.0);
   this->HaveRoom.assign(this->Extents.size(), 1);
@@ -54,18 +54,18 @@ bool SharedHoles::Find(const Progress& progress)
   }
   FillOptions options = this->Options;
   options.OnBoundary = this->Border.OnBoundary;
-  for (Index hole = 0; hole < this->OfAll.Found.Count(); ++hole)
+  for (Index hole = 0; hole < this->Result.Found.Count(); ++hole)
   {
-    this->OfAll.Reports.push_back(MeasureHole(places, this->OfAll.Found, hole, options));
+    this->Result.Reports.push_back(MeasureHole(places, this->Result.Found, hole, options));
   }
-  return this->OfAll.Found.NumberOfContacts == 0;
+  return this->Result.Found.NumberOfContacts == 0;
 }
 
 /** As on one rank: only for holes to be filled, without a spacing. */
 bool SharedHoles::NeedLattice() const
 {
   bool areToBeFilled = false;
-  for (std::size_t hole = 0; hole < this->OfAll.Reports.size(); ++hole)
+  for (std::size_t hole = 0; hole < this->Result.Reports.size(); ++hole)
   {
     areToBeFilled = areToBeFilled || this->IsToBeFilled(hole);
   }
@@ -88,11 +88,11 @@ void SharedHoles::DropRegionsWithoutRoom()
     this->NewNumbers.push_back(this->HaveRoom[hole] ? static_cast<Index>(reports.size()) : None);
     if (this->HaveRoom[hole])
     {
-      reports.push_back(std::move(this->OfAll.Reports[hole]));
+      reports.push_back(std::move(this->Result.Reports[hole]));
     }
   }
-  this->OfAll.Reports = std::move(reports);
-  KeepRegions({ this->HaveRoom.begin(), this->HaveRoom.end() }, this->OfAll.Found);
+  this->Result.Reports = std::move(reports);
+  KeepRegions({ this->HaveRoom.begin(), this->HaveRoom.end() }, this->Result.Found);
 }
 
 Index SharedHoles::NumberOf(int part, Index region) const
@@ -103,7 +103,7 @@ Index SharedHoles::NumberOf(int part, Index region) const
 void SharedHoles::NumberNewPoints()
 {
   this->FirstNewPoints.assign(1, 0);
-  for (const HoleReport& report : this->OfAll.Reports)
+  for (const HoleReport& report : this->Result.Reports)
   {
     this->FirstNewPoints.push_back(this->FirstNewPoints.back() + report.NumberOfInsertedPoints);
   }
@@ -170,7 +170,7 @@ Holes SurroundedHoles::Listed(const SharedHoles& all) const
       placeOf[at] = static_cast<Index>(i);
     }
   }
-  const Holes& found = all.OfAll.Found;
+  const Holes& found = all.Result.Found;
   Holes holes;
   for (const Index hole : this->Numbers)
   {

@@ -41,7 +41,7 @@ struct SharedHoles
   bool ByIds = false; ///< whether points of parts are one by their global ids, or by x,y,z
   double LongestEdge = 0.0; ///< of triangles that are not long; 0: none is long
   SharedBorder Border;
-  FillResult OfAll; ///< the holes, by points of the border, and reports; no patches
+  FillResult Result; ///< the holes, by points of the border, and reports; no patches
   std::vector<HoleExtent> Extents;
   std::vector<int> Retries;        ///< for each hole: how often it needed triangles beyond its box
   std::vector<double> Reach;       ///< how far beyond its rim it needs all triangles at least
@@ -56,7 +56,7 @@ struct SharedHoles
   /** Whether the limits of size and edges admit a hole. */
   bool IsToBeFilled(std::size_t hole) const
   {
-    return this->OfAll.Reports[hole].Status == FillStatus::Filled;
+    return this->Result.Reports[hole].Status == FillStatus::Filled;
   }
   Box BoxOf(Index hole) const
   {

@@ -40,7 +40,7 @@ std::map<vtkIdType, int> FindSpread(
   std::vector<vtkIdType> rows; // block, rank, size
   for (const auto& block : own)
   {
-    rows.insert(rows.end(), { block.first, ranks.Own(), block.second });
+    rows.insert(rows.end(), { block.first, ranks.OwnRank(), block.second });
   }
   rows = ranks.Collect(rows);
   occupied.clear();
@@ -88,8 +88,8 @@ void Empty(const std::vector<Place*>& places)
   {
     if (HasPoints(*place))
     {
-      place->Own = EmptyCopy(vtkPointSet::SafeDownCast(place->Input));
-      place->Input = place->Own;
+      place->Made = EmptyCopy(vtkPointSet::SafeDownCast(place->Input));
+      place->Input = place->Made;
     }
   }
 }
@@ -107,7 +107,7 @@ void GatherBlock(const std::vector<Place*>& places, int home, PartKind kind, con
   Empty(places);
   if (whole)
   {
-    first->Own = whole;
+    first->Made = whole;
     first->Input = whole;
     first->Name = first->NameOfBlock;
   }

@@ -35,7 +35,7 @@ int OwnerOf(GlobalId number, const std::vector<vtkIdType>& bases)
 
 std::size_t SurfacePart::PlaceOf(GlobalId number, GlobalId first) const
 {
-  const std::size_t ownCount = this->Own.Count();
+  const std::size_t ownCount = this->OwnPoints.Count();
   const GlobalId place = number - first;
   if (place >= 0 && place < static_cast<GlobalId>(ownCount))
   {
@@ -47,14 +47,14 @@ std::size_t SurfacePart::PlaceOf(GlobalId number, GlobalId first) const
 
 Point2 SurfacePart::PointAt(std::size_t place) const
 {
-  const std::size_t own = this->Own.Count();
-  const double* const p = place < own ? this->Own.At(place) : this->Others.At(place - own);
+  const std::size_t own = this->OwnPoints.Count();
+  const double* const p = place < own ? this->OwnPoints.At(place) : this->Others.At(place - own);
   return { p[0], p[1] };
 }
 
 void SortOwn(SurfacePart& part)
 {
-  PointTable& own = part.Own;
+  PointTable& own = part.OwnPoints;
   const auto isIncreasing = [&own](std::size_t i) { return own.Ids[i] < own.Ids[i + 1]; };
   std::size_t i = 0;
   while (i + 1 < own.Count() && isIncreasing(i))
@@ -127,7 +127,7 @@ struct ValueForOwner
 /** The least values at own points that any part has there. */
 void MergeAtOwners(Engine& engine, int box, const SurfacePart& part, std::vector<double>& values)
 {
-  const std::size_t ownCount = part.Own.Count();
+  const std::size_t ownCount = part.OwnPoints.Count();
   engine.ForEach(Progress(), [&](int, const Progress&) {
     ValuesForParts<ValueForOwner> ofOthers;
     for (std::size_t i = 0; i < part.OtherNumbers.size(); ++i)
@@ -177,11 +177,11 @@ double FindQuantile(const Ranks& ranks, const std::vector<double>& values, doubl
 void MeasureAll(
   Engine& engine, int box, const Progress& progress, const SurfacePart& part, LimitEffect& effect)
 {
-  const Ranks& ranks = engine.All();
+  const Ranks& ranks = engine.AllRanks();
   EdgeMeasures lengths;
   ranks.Agree([&]() {
     lengths = MeasureEdges(
-      part.Result.Triangles, part.Own.Count() + part.Others.Count(),
+      part.Result.Triangles, part.OwnPoints.Count() + part.Others.Count(),
       [&part](Index place) { return part.PointAt(place); }, ranks.Watched(progress));
   });
   MergeAtOwners(engine, box, part, lengths.Limits);
@@ -200,7 +200,7 @@ void MeasureAll(
 void KeepCorners(SurfacePart& part)
 {
   PointTable& others = part.Others;
-  const Index ownCount = static_cast<Index>(part.Own.Count());
+  const Index ownCount = static_cast<Index>(part.OwnPoints.Count());
   Buffer<Index>& corners = part.Result.Triangles;
   std::vector<Index> placeOf(others.Count(), None);
   std::vector<vtkIdType> order;
@@ -251,15 +251,15 @@ void TakeOver(Buffer<Value>& own, const Buffer<Value>& others, Array* array)
 
 void PassPart(SurfacePart& part, int threads, vtkPolyData* output)
 {
-  const vtkIdType ownCount = static_cast<vtkIdType>(part.Own.Count());
+  const vtkIdType ownCount = static_cast<vtkIdType>(part.OwnPoints.Count());
   const vtkIdType otherCount = static_cast<vtkIdType>(part.Others.Count());
   vtkNew<vtkIdTypeArray> ids;
   ids->SetName(part.NameOfIds.c_str());
-  TakeOver(part.Own.Ids, part.Others.Ids, ids.Get());
+  TakeOver(part.OwnPoints.Ids, part.Others.Ids, ids.Get());
   vtkNew<vtkDoubleArray> coordinates;
   coordinates->SetName("Points"); // as vtkPoints does
   coordinates->SetNumberOfComponents(3);
-  TakeOver(part.Own.Coordinates, part.Others.Coordinates, coordinates.Get());
+  TakeOver(part.OwnPoints.Coordinates, part.Others.Coordinates, coordinates.Get());
   vtkNew<vtkPoints> points;
   points->SetDataType(part.TypeOfPoints);
   if (part.TypeOfPoints == VTK_DOUBLE)
@@ -275,7 +275,7 @@ void PassPart(SurfacePart& part, int threads, vtkPolyData* output)
   vtkUnsignedCharArray* ghosts = nullptr;
   for (std::size_t i = 0; i < part.Kinds.size(); ++i)
   {
-    vtkAbstractArray* const array = part.Own.Arrays[i];
+    vtkAbstractArray* const array = part.OwnPoints.Arrays[i];
     array->InsertTuples(ownCount, otherCount, 0, part.Others.Arrays[i]);
     const int index = data->AddArray(array);
     if (part.Kinds[i].Attribute >= 0)

@@ -24,8 +24,8 @@ int OwnerOf(GlobalId number, const std::vector<vtkIdType>& bases);
 
 struct SurfacePart
 {
-  PointTable Own;                ///< points that this part owns, in the order of their ids
-  Index AddedPoints = 0;         ///< by lines: the last ones of Own
+  PointTable OwnPoints;          ///< points that this part owns, in the order of their ids
+  Index AddedPoints = 0;         ///< by lines: the last ones of OwnPoints
   PointTable Others;             ///< of other parts, corners of its triangles
   std::vector<ArrayKind> Kinds;  ///< of the arrays of both
   std::string NameOfIds;         ///< of the array of global ids
@@ -33,22 +33,22 @@ struct SurfacePart
   std::set<std::string> LeftOut; ///< arrays that not all ranks have
 
   /**
-   * Points are numbered anew, those of each part one after another in the order of Own, so that no
+   * Points are numbered anew, those of each part one after another in the order of OwnPoints, so that no
    * number is there twice: part p has [Bases[p], Bases[p + 1]).
    */
   std::vector<vtkIdType> Bases;
   std::vector<GlobalId> OtherNumbers; ///< of Others, increasing
 
-  /** Corners are places in Own, followed by Others. Unused points are places in Own. */
+  /** Corners are places in OwnPoints, followed by Others. Unused points are places in OwnPoints. */
   Triangulation Result;
 
   int OwnerOf(GlobalId number) const { return elevation::OwnerOf(number, this->Bases); }
-  /** The place of a corner among Own, whose numbers begin with @a first, followed by Others. */
+  /** The place of a corner among OwnPoints, whose numbers begin with @a first, followed by Others. */
   std::size_t PlaceOf(GlobalId number, GlobalId first) const;
   /** The reverse. */
   GlobalId NumberAt(Index place, GlobalId first) const
   {
-    const Index ownCount = static_cast<Index>(this->Own.Count());
+    const Index ownCount = static_cast<Index>(this->OwnPoints.Count());
     return place < ownCount ? first + place : this->OtherNumbers[place - ownCount];
   }
   Point2 PointAt(std::size_t place) const;

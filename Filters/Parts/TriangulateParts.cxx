@@ -39,7 +39,7 @@ Buffer<Index> WithinLimit(double length, const SurfacePart& part, const Progress
 } // namespace
 
 TriangulateParts::TriangulateParts(const Ranks& ranks, const std::string& folder)
-  : Everybody(ranks)
+  : AllRanks(ranks)
   , Folder(folder)
   , Source(ranks, folder)
 {
@@ -58,7 +58,7 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
 {
   this->Options = options;
   // Pass 1
-  this->Crew = std::make_unique<Engine>(this->Everybody, ownParts, NamesOfBoxes(), this->Folder);
+  this->Crew = std::make_unique<Engine>(this->AllRanks, ownParts, NamesOfBoxes(), this->Folder);
   this->Store = std::make_unique<PartStore>(*this->Crew);
   std::vector<vtkIdType> counts;
   this->Plane = std::make_unique<Cuts>(this->Source.Distribute(
@@ -91,7 +91,7 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
   {
     this->LimitEdges(this->Fraction(0.95, 1.0));
   }
-  this->Everybody.Agree([&]() { Report(this->Everybody.Watched(this->Options.Monitor), 1.0); });
+  this->AllRanks.Agree([&]() { Report(this->AllRanks.Watched(this->Options.Monitor), 1.0); });
 }
 
 /** Passes 2 and 3. @return the triangles that this rank has settled for several parts */
@@ -112,7 +112,7 @@ std::vector<GlobalTriangle> TriangulateParts::Settle()
 /** A triangle that seams have settled belongs to the part of its lowest corner. */
 void TriangulateParts::SendTriangles(std::vector<GlobalTriangle>&& ofSeams)
 {
-  this->Everybody.Agree([&]() {
+  this->AllRanks.Agree([&]() {
     ValuesForParts<GlobalTriangle> triangles;
     for (const GlobalTriangle& triangle : ofSeams)
     {
@@ -196,7 +196,7 @@ void TriangulateParts::LimitEdges(const Progress& progress)
     this->Store->WithWhole(part, reading, [&](const SurfacePart& whole) {
       const Buffer<Index> kept =
         WithinLimit(this->Options.MaximumEdgeLength, whole, SubProgress(ofPart, 0.5, 1.0));
-      const std::size_t ownCount = whole.Own.Count();
+      const std::size_t ownCount = whole.OwnPoints.Count();
       std::vector<char> areMissing(ownCount + whole.Others.Count(), 1);
       for (const Index corner : kept)
       {
@@ -237,7 +237,7 @@ void TriangulateParts::LimitEdges(const Progress& progress)
     sums[1] += std::count_if(open[part].begin(), open[part].end(),
       [&](vtkIdType place) { return !std::binary_search(covered.begin(), covered.end(), place); });
   });
-  this->Everybody.Sum(sums);
+  this->AllRanks.Sum(sums);
   LimitEffect& effect = this->Total.Effect;
   this->Total.Triangles = sums[0];
   effect.Vertices = this->Store->Part.Bases.back() - this->Total.Duplicates -
@@ -253,7 +253,7 @@ void TriangulateParts::WarnOfMissing(std::vector<Message>& warnings) const
 {
   if (this->Total.Settled == 0)
   {
-    WarnOfNoTriangle(this->Total.Points, warnings);
+    WarnOfNoTriangle(this->Total.Points, this->Total.Hidden, warnings);
   }
   else if (this->Total.Effect.AreMostMissing())
   {

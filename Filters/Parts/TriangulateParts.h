@@ -90,7 +90,7 @@ public:
     bool LatticeFound = false;
     Lattice Steps; ///< if found
   };
-  const Totals& All() const { return this->Total; }
+  const Totals& GetTotals() const { return this->Total; }
   /** Warns of points that have made no triangle, or of a limit that leaves few. */
   void WarnOfMissing(std::vector<Message>& warnings) const;
 
@@ -100,7 +100,7 @@ public:
     Index Points = 0;     ///< that its parts own
     Index SeamPoints = 0; ///< of the cells of its parts
   };
-  const Effort& Own() const { return this->Work; }
+  const Effort& GetEffort() const { return this->Work; }
 
   const std::set<std::string>& LeftOut() const
   {
@@ -124,7 +124,7 @@ private:
   std::vector<vtkIdType> RequestedPlaces(int part) const;
   void LimitEdges(const Progress& progress);
 
-  const Ranks& Everybody;
+  const Ranks& AllRanks;
   const std::string Folder;
   PointSource Source;
   DelaunayOptions Options;

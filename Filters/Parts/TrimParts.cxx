@@ -26,9 +26,9 @@ enum BoxOfTrim
 TrimParts::TrimParts(const SurfaceParts& surface, vtkIdType triangles, vtkPolyData* boundary,
   const TrimOptions& options)
   : Surface(surface)
-  , Crew(surface.Crew.All(), surface.Crew.EndOwn() - surface.Crew.FirstOwn(), { "", "trimmed" },
-      surface.Crew.Folder())
-  , Given(boundary)
+  , Crew(surface.Crew.AllRanks(), surface.Crew.EndOwn() - surface.Crew.FirstOwn(),
+      { "", "trimmed" }, surface.Crew.Folder())
+  , BoundaryData(boundary)
   , Options(options)
   , Swept(this->Crew.IsInFiles() ? 0.8 : 0.4)
   , NumberOfAll(triangles)
@@ -68,7 +68,7 @@ void TrimParts::TrimAll()
   };
   // A boundary needs no margin, and most outlines a small one.
   constexpr int small = 4, large = 10;
-  if (!isTrimmedWith(small) && (this->Given || !isTrimmedWith(large)))
+  if (!isTrimmedWith(small) && (this->BoundaryData || !isTrimmedWith(large)))
   {
     throw this->Refusal();
   }
@@ -77,8 +77,8 @@ void TrimParts::TrimAll()
 
 CodedError TrimParts::Refusal() const
 {
-  return this->Given ? MakeError<sentences::BoundaryNotInPieces>()
-                     : MakeError<sentences::OutlineNotInPieces>();
+  return this->BoundaryData ? MakeError<sentences::BoundaryNotInPieces>()
+                            : MakeError<sentences::OutlineNotInPieces>();
 }
 
 /**
@@ -104,11 +104,11 @@ void TrimParts::WithPart(int part, const Progress& progress, const Step& step)
 
 void TrimParts::Sweep(TrimmedPart& part, const Progress& progress)
 {
-  if (this->Given && this->Joined.Count() == 0)
+  if (this->BoundaryData && this->Joined.Count() == 0)
   {
     this->Joined = JoinLines(this->Lines);
   }
-  const bool isSwept = this->Given
+  const bool isSwept = this->BoundaryData
     ? part.Sweep(this->Lines.Points.Places, this->Joined, static_cast<double>(this->NumberOfAll),
         this->Options.NumberOfThreads, progress)
     : part.SweepForOutline(this->Margin, this->Options, progress);
@@ -124,10 +124,10 @@ void TrimParts::Read()
   const bool isInFiles = this->Crew.IsInFiles();
   this->Crew.ForEach(this->Fraction(0.0, 0.02), [&](int part, const Progress& progress) {
     Report(progress, 0.0);
-    if (this->Given && part == this->Crew.FirstOwn())
+    if (this->BoundaryData && part == this->Crew.FirstOwn())
     {
-      CheckArrays(this->Given, "The boundary's");
-      this->Lines = ToLines(this->Given, progress);
+      CheckArrays(this->BoundaryData, "The boundary's");
+      this->Lines = ToLines(this->BoundaryData, progress);
     }
     if (!isInFiles)
     {
@@ -138,7 +138,7 @@ void TrimParts::Read()
   if (!isInFiles)
   {
     std::vector<vtkIdType> count = { this->Triangles };
-    this->Crew.All().Sum(count);
+    this->Crew.AllRanks().Sum(count);
     this->NumberOfAll = count[0];
   }
   if (this->NumberOfAll == 0)
@@ -154,7 +154,7 @@ void TrimParts::Read()
 void TrimParts::FindNear(int margin)
 {
   this->Margin = margin;
-  this->OfRank = TrimCounts();
+  this->RankCounts = TrimCounts();
   this->Near = 0;
   this->NearParts.clear();
   std::vector<vtkIdType> near, sums(2, 0);
@@ -167,7 +167,7 @@ void TrimParts::FindNear(int margin)
       near.back() = own.CountOfNear() + (own.CountOfTriangles() > 0 ? 1 : 0);
       this->NearParts.back() = PackData(own.NearPart());
       this->Near += own.CountOfNear();
-      this->OfRank.OutwardTriangles += own.CountOfSide(1);
+      this->RankCounts.OutwardTriangles += own.CountOfSide(1);
       sums[0] += own.CountOfSide(0);
       if (sums[0] == 0)
       {
@@ -176,19 +176,19 @@ void TrimParts::FindNear(int margin)
       sums[1] += static_cast<vtkIdType>(own.CountOfInnerPoints());
     });
   });
-  this->NearCounts = this->Crew.All().Collect(near);
+  this->NearCounts = this->Crew.AllRanks().Collect(near);
   this->Home = static_cast<int>(
     std::max_element(this->NearCounts.begin(), this->NearCounts.end()) - this->NearCounts.begin());
-  this->Crew.All().Sum(sums);
+  this->Crew.AllRanks().Sum(sums);
   this->Kept = sums[0];
-  this->Extent = JoinBoxes(this->Crew.All(), extent);
+  this->Extent = JoinBoxes(this->Crew.AllRanks(), extent);
   this->InnerPoints = sums[1];
 }
 
 /** Pass 2. @return false on all ranks if the near triangles do not decide what to keep */
 bool TrimParts::TrimNear()
 {
-  const Ranks& all = this->Crew.All();
+  const Ranks& all = this->Crew.AllRanks();
   for (Bytes& bytes : this->NearParts)
   {
     this->Crew.Send(this->Home, NearTriangles, std::move(bytes));
@@ -209,8 +209,9 @@ bool TrimParts::TrimNear()
     TrimOptions options = this->Options;
     options.Monitor = all.Watched(this->Fraction(this->Swept, 0.95));
     BoundaryZone zone(std::move(parts));
-    isTrimmed = this->Given ? zone.Trim(this->Lines, options)
-                            : zone.TrimOutline(this->InnerPoints, this->NumberOfAll, options);
+    isTrimmed = this->BoundaryData
+      ? zone.Trim(this->Lines, options)
+      : zone.TrimOutline(this->InnerPoints, this->NumberOfAll, options);
     if (isTrimmed)
     {
       this->SendBack(zone);
@@ -224,11 +225,11 @@ bool TrimParts::TrimNear()
 void TrimParts::SendBack(const BoundaryZone& zone)
 {
   const Trimmed& result = zone.Result();
-  if (this->Given && this->Kept == 0 && result.Kept.Parents.empty())
+  if (this->BoundaryData && this->Kept == 0 && result.Kept.Parents.empty())
   {
     throw CodedError(NothingEnclosed(this->Extent, this->Lines.Points, JoinLines(this->Lines)));
   }
-  const Progress progress = this->Crew.All().Watched(this->Fraction(0.95, 0.97));
+  const Progress progress = this->Crew.AllRanks().Watched(this->Fraction(0.95, 0.97));
   std::vector<TrimmedZone> backs = zone.Split(progress);
   auto back = backs.begin();
   for (int part = 0; part < this->Crew.CountOfParts(); ++part)
@@ -239,18 +240,19 @@ void TrimParts::SendBack(const BoundaryZone& zone)
       this->Crew.Send(part, Back, taken.Pack());
     }
   }
-  this->OfRank.RecoveredEdges = result.NumberOfRecoveredEdges;
-  this->OfRank.PointsLeftOut = result.NumberOfPointsLeftOut;
-  this->OfRank.GapTolerance = result.GapTolerance;
+  this->RankCounts.RecoveredEdges = result.NumberOfRecoveredEdges;
+  this->RankCounts.PointsLeftOut = result.NumberOfPointsLeftOut;
+  this->RankCounts.GapTolerance = result.GapTolerance;
   this->WarningOfAll = result.Warning;
   this->Outline->GetPointData()->CopyAllOn();
-  PassRings(result.Boundary, this->Given ? this->Given : zone.Joined(), progress, this->Outline);
+  PassRings(result.Boundary, this->BoundaryData ? this->BoundaryData : zone.Joined(), progress,
+    this->Outline);
 }
 
 /** What there is of all parts. */
 void TrimParts::AddUp()
 {
-  const Ranks& all = this->Crew.All();
+  const Ranks& all = this->Crew.AllRanks();
   vtkIdType kept = 0, marked = 0;
   this->Crew.ForEach(this->Fraction(0.97, 1.0), [&](int part, const Progress& progress) {
     Report(progress, 0.0);
@@ -259,21 +261,21 @@ void TrimParts::AddUp()
       const vtkIdType owned = std::count(back.IsOwned.begin(), back.IsOwned.end(), char(1));
       kept += static_cast<vtkIdType>(back.Parents[0].size());
       marked += static_cast<vtkIdType>(back.OfOthers.size() + back.IsOwned.size()) - owned;
-      this->OfRank.OutwardTriangles += static_cast<vtkIdType>(back.Parents[1].size());
-      this->OfRank.InsertedPoints += owned;
+      this->RankCounts.OutwardTriangles += static_cast<vtkIdType>(back.Parents[1].size());
+      this->RankCounts.InsertedPoints += owned;
     });
   });
-  std::vector<vtkIdType> sums = { this->OfRank.OutwardTriangles, this->OfRank.RecoveredEdges,
-    this->OfRank.PointsLeftOut, this->OfRank.InsertedPoints, kept, marked,
-    this->Outline->GetNumberOfLines() };
-  std::vector<double> tolerance = { this->OfRank.GapTolerance };
+  std::vector<vtkIdType> sums = { this->RankCounts.OutwardTriangles,
+    this->RankCounts.RecoveredEdges, this->RankCounts.PointsLeftOut,
+    this->RankCounts.InsertedPoints, kept, marked, this->Outline->GetNumberOfLines() };
+  std::vector<double> tolerance = { this->RankCounts.GapTolerance };
   all.Sum(sums);
   all.Maximum(tolerance);
-  this->OfRank.GapTolerance = this->OfAll.GapTolerance = tolerance[0];
-  this->OfAll.OutwardTriangles = sums[0];
-  this->OfAll.RecoveredEdges = sums[1];
-  this->OfAll.PointsLeftOut = sums[2];
-  this->OfAll.InsertedPoints = sums[3];
+  this->RankCounts.GapTolerance = this->TotalCounts.GapTolerance = tolerance[0];
+  this->TotalCounts.OutwardTriangles = sums[0];
+  this->TotalCounts.RecoveredEdges = sums[1];
+  this->TotalCounts.PointsLeftOut = sums[2];
+  this->TotalCounts.InsertedPoints = sums[3];
   this->Kept += sums[4];
   this->AreMarked = sums[5] > 0;
   this->Rings = sums[6];
@@ -290,8 +292,9 @@ void TrimParts::Write(int part, const Progress& progress, vtkPolyData* kept, vtk
     this->Crew.At(part, Back).ForEach([&](const Bytes& bytes) {
       own.Take(TrimmedZone(bytes), SubProgress(progress, 0.5, 0.6));
     });
-    own.Write(this->OfAll.InsertedPoints > 0, this->AreMarked, this->Given ? &this->Lines : nullptr,
-      this->Options, SubProgress(progress, 0.6, 1.0), kept, outward);
+    own.Write(this->TotalCounts.InsertedPoints > 0, this->AreMarked,
+      this->BoundaryData ? &this->Lines : nullptr, this->Options, SubProgress(progress, 0.6, 1.0),
+      kept, outward);
   });
 }
 

@@ -66,8 +66,11 @@ public:
    */
   void Write(int part, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward);
 
-  const TrimCounts& Own() const { return this->OfRank; }   ///< of the parts of this rank
-  const TrimCounts& All() const { return this->OfAll; }    ///< of all
+  const TrimCounts& GetRankCounts() const
+  {
+    return this->RankCounts;
+  } ///< of the parts of this rank
+  const TrimCounts& GetTotalCounts() const { return this->TotalCounts; } ///< of all
   vtkIdType CountOfKept() const { return this->Kept; }     ///< triangles, of all
   vtkIdType CountOfRings() const { return this->Rings; }   ///< of all
   vtkPolyData* Boundary() const { return this->Outline; }  ///< as lines; on one rank, else empty
@@ -93,7 +96,7 @@ private:
 
   const SurfaceParts Surface;
   Engine Crew;
-  vtkPolyData* const Given; // the boundary
+  vtkPolyData* const BoundaryData;
   const TrimOptions Options;
   const double Swept; // of the progress
   BoundaryLines Lines;
@@ -107,7 +110,7 @@ private:
   vtkIdType InnerPoints = 0;          // of all parts
   Box Extent;                         // of all triangles, where none is kept but near ones
   vtkIdType Triangles = 0, Near = 0;
-  TrimCounts OfRank, OfAll;
+  TrimCounts RankCounts, TotalCounts;
   vtkIdType Kept = 0, Rings = 0;
   bool AreMarked = false; // points that another part owns
   vtkNew<vtkPolyData> Outline;

@@ -149,7 +149,7 @@ void vtkReconstructPieces::Reset()
 #define vtkGetCountMacro(type, name, count)                                                        \
   type vtkReconstructPieces::Get##name()                                                           \
   {                                                                                                \
-    return this->Parts->All().count;                                                               \
+    return this->Parts->GetCounts().count;                                                         \
   }
 vtkGetCountMacro(vtkIdType, NumberOfPoints, Points);
 vtkGetCountMacro(vtkIdType, NumberOfTriangles, Triangles);

@@ -30,7 +30,7 @@ MEANS_SOMETHING = {name: one.readers for name, one in DESCRIBED.items() if one.r
 MAY_HAVE_Y_UP = ("a PLY file", "an STL file", "an OBJ file")
 NAMES = {
     "text": "text files", "vectors": "vector files", "las": "LAS files", "gocad": "GOCAD files",
-    "iesx": "IESX files", "landxml": "LandXML files",
+    "iesx": "IESX files", "landxml": "LandXML files", "ugrid": "UGRID meshes",
 }
 NAMES_IN_COLUMNS = ("text.read_text", "gocad", "iesx")  # modules of formats without layers of their own
 

@@ -157,6 +157,18 @@ def is_saga_header(head, path):
     return re.match(rb"NAME\s*=[^\n]*\nDESCRIPTION\s*=.*\nDATAFORMAT", head, re.DOTALL) is not None
 
 
+def is_ugrid(head, path):
+    """netCDF, as itself or in HDF5, that has a mesh."""
+    if head[:3] != b"CDF" and head[:4] != b"\x89HDF":
+        return False
+    try:
+        from .ugrid import is_ugrid as has_mesh
+
+        return has_mesh(path)
+    except ImportError:
+        return False
+
+
 def is_of_gdal(what):
     def is_it(_head, path):
         try:
@@ -225,6 +237,7 @@ FORMATS = (
         "vectors",
         "vectors",
     ),
+    Format("a UGRID mesh", ".nc", is_ugrid, "ugrid"),
     Format(
         "a raster",
         ".tif .tiff .dem .asc .grd .nc .bag .vrt .img .hgt .flt .bil",

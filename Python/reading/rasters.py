@@ -64,7 +64,7 @@ def open_raster(path, options):
             notes = [f"the resolution varies from {least:g} to {most:g}: the nodes of all refined cells are read"]
             data = gdal.OpenEx(path, flags, [kind], settings + ["MODE=RESAMPLED_GRID"])
         if "UGRID" in data.GetMetadata().get("NC_GLOBAL#Conventions", ""):
-            raise FileError(f"{path}: is a mesh of UGRID, no raster: QGIS writes its points by Export Mesh Vertices")
+            raise FileError(f"{path}: is a mesh of UGRID whose nodes have no coordinates")
         variables = {name.rsplit(":", 1)[-1].strip('"/'): name for name, _ in data.GetSubDatasets()}
         if data.RasterCount and not (options.layer and variables):
             if options.layer:

@@ -159,8 +159,8 @@ std::string FolderOf(const Ranks& ranks, int partsOfRank)
   {
     return std::string();
   }
-  const std::string folder = Temporary + "/parts-on-rank-" + std::to_string(ranks.Own()) + "-of-" +
-    std::to_string(ranks.Count());
+  const std::string folder = Temporary + "/parts-on-rank-" + std::to_string(ranks.OwnRank()) +
+    "-of-" + std::to_string(ranks.Count());
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
@@ -185,7 +185,7 @@ void AddShare(TriangulateParts& parts, const Ranks& ranks, const std::vector<Pla
   bool isInSlices, std::vector<vtkSmartPointer<vtkPolyData>>& kept)
 {
   const std::size_t slices = isInSlices ? 5 * ranks.Count() : ranks.Count();
-  for (std::size_t slice = ranks.Own(); slice < slices; slice += ranks.Count())
+  for (std::size_t slice = ranks.OwnRank(); slice < slices; slice += ranks.Count())
   {
     kept.push_back(
       PointsOf(cloud, slice * cloud.size() / slices, (slice + 1) * cloud.size() / slices));
@@ -213,12 +213,14 @@ std::vector<Corners> InParts(const Ranks& ranks, int partsOfRank, const std::vec
     added[0] += part.AddedPoints;
   }
   ranks.Sum(added);
-  Check(parts.All().AddedPoints == added[0], "points that lines add are counted");
+  Check(parts.GetTotals().AddedPoints == added[0], "points that lines add are counted");
   Check((added[0] > 0) == (lines != nullptr), "lines add points");
   std::vector<Corners> triangles = ranks.Collect(own);
   std::sort(triangles.begin(), triangles.end());
-  Check(parts.All().Triangles == static_cast<vtkIdType>(triangles.size()), "triangles are counted");
-  Check(parts.All().NotFinite == 1 && parts.All().Duplicates > 0, "unused points are counted");
+  Check(parts.GetTotals().Triangles == static_cast<vtkIdType>(triangles.size()),
+    "triangles are counted");
+  Check(parts.GetTotals().NotFinite == 1 && parts.GetTotals().Duplicates > 0,
+    "unused points are counted");
   return triangles;
 }
 
@@ -470,7 +472,7 @@ FilledSurface FilledInParts(const Ranks& ranks, int partsOfRank, const std::vect
   ids = ranks.Collect(ids);
   filled.OwnPoints = static_cast<vtkIdType>(ids.size());
   Check(AreIdsComplete(std::move(ids)), "each point is one part's own, new ones after the others");
-  Check(fill.CountOfNewTriangles() + parts.All().Triangles ==
+  Check(fill.CountOfNewTriangles() + parts.GetTotals().Triangles ==
       static_cast<vtkIdType>(filled.Triangles.size()),
     "triangles of patches are counted");
   return filled;
@@ -537,7 +539,7 @@ Progress FailingAt(const Ranks& ranks, int report, bool isAbort)
 {
   auto reports = std::make_shared<int>(0);
   return [&ranks, report, isAbort, reports](double) {
-    if (ranks.Own() + 1 < ranks.Count() || (*reports)++ < report)
+    if (ranks.OwnRank() + 1 < ranks.Count() || (*reports)++ < report)
     {
       return true;
     }
@@ -679,7 +681,7 @@ struct TrimmedInParts
       return this->Made;
     };
     this->Parts = std::make_unique<TrimParts>(SurfaceParts{ this->Surface.Holders(), make },
-      this->Surface.All().Triangles, boundary, options);
+      this->Surface.GetTotals().Triangles, boundary, options);
   }
 
   const std::string Folder;
@@ -742,7 +744,7 @@ void CheckFailuresOfTrimming(const Ranks& ranks)
     int reports = 0;
     TrimmedInParts trimmed(
       ranks, partsOfRank, cloud, i % 4 < 2 ? star.Get() : nullptr, [&](double) {
-        if (ranks.Own() + 1 < ranks.Count() || reports++ < last)
+        if (ranks.OwnRank() + 1 < ranks.Count() || reports++ < last)
         {
           return true;
         }
@@ -816,7 +818,7 @@ void CheckOrder(const Ranks& ranks)
 {
   for (const std::string& folder : { std::string(), FolderOf(ranks, 2) })
   {
-    Engine engine(ranks, ranks.Own() % 2 == 0 ? 2 : 0, { "some" }, folder);
+    Engine engine(ranks, ranks.OwnRank() % 2 == 0 ? 2 : 0, { "some" }, folder);
     engine.ForEach(Progress(), [&](int part, const Progress&) {
       for (int to = 0; to < engine.CountOfParts(); ++to)
       {
@@ -835,7 +837,7 @@ void CheckOrder(const Ranks& ranks)
         expected[i] = part;
       }
       Check(ValuesIn<int>(engine.At(part, 0)) == expected, "messages are in order");
-      Check(engine.RankOf(part) == ranks.Own(), "ranks know their parts");
+      Check(engine.RankOf(part) == ranks.OwnRank(), "ranks know their parts");
     });
   }
 }
@@ -864,16 +866,16 @@ class Chain
 {
 public:
   explicit Chain(const Ranks& ranks)
-    : All(ranks)
-    , IsLast(ranks.Own() + 1 == ranks.Count())
+    : AllRanks(ranks)
+    , IsLast(ranks.OwnRank() + 1 == ranks.Count())
   {
   }
   void Await() const
   {
     int word = 0;
-    if (this->All.Own() > 0)
+    if (this->AllRanks.OwnRank() > 0)
     {
-      this->All.Receive(&word, sizeof(word), this->All.Own() - 1);
+      this->AllRanks.Receive(&word, sizeof(word), this->AllRanks.OwnRank() - 1);
     }
   }
   void CallNext() const
@@ -881,12 +883,12 @@ public:
     const int word = 1;
     if (!this->IsLast)
     {
-      this->All.Send(&word, sizeof(word), this->All.Own() + 1);
+      this->AllRanks.Send(&word, sizeof(word), this->AllRanks.OwnRank() + 1);
     }
   }
 
 private:
-  const Ranks& All;
+  const Ranks& AllRanks;
   const bool IsLast;
 };
 
@@ -894,7 +896,7 @@ private:
 std::string RanksAfter(const Ranks& ranks)
 {
   std::string names;
-  for (int rank = ranks.Own() + 1; rank < ranks.Count(); ++rank)
+  for (int rank = ranks.OwnRank() + 1; rank < ranks.Count(); ++rank)
   {
     names += (names.empty() ? "" : ", ") + std::to_string(rank);
   }
@@ -912,7 +914,7 @@ void CheckWaiting(const Ranks& ranks, vtkInformationVector* outputs)
       messages.push_back(message);
       chain.CallNext();
     });
-  const bool isLast = ranks.Own() + 1 == ranks.Count();
+  const bool isLast = ranks.OwnRank() + 1 == ranks.Count();
   for (int wait = 1; wait <= 2; ++wait)
   {
     chain.Await();
@@ -924,7 +926,7 @@ void CheckWaiting(const Ranks& ranks, vtkInformationVector* outputs)
   {
     const std::vector<Message::Value>& values = message.GetValues();
     Check(message.GetCode() == "RankWaits" && values.size() == 3 &&
-        values[0] == Message::Value("rank", std::to_string(ranks.Own())) &&
+        values[0] == Message::Value("rank", std::to_string(ranks.OwnRank())) &&
         values[2] == Message::Value("others", RanksAfter(ranks)),
       "the message names who waits for whom");
   }
@@ -947,7 +949,7 @@ void CheckWaiting(const Ranks& ranks, vtkInformationVector* outputs)
   observer->Call = report;
   delaunay->AddObserver(vtkCommand::WarningEvent, observer);
   chain.Await();
-  delaunay->UpdatePiece(ranks.Own(), ranks.Count(), 0);
+  delaunay->UpdatePiece(ranks.OwnRank(), ranks.Count(), 0);
   Check(isReported || isLast, "a filter that waits reports it");
   Ranks::Patience = minute;
 }

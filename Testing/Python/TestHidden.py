@@ -8,11 +8,13 @@ import numpy
 
 import meshes
 from vtkelevationsurface import (
+    ElevationSurfaceError,
     reconstruct,
     vtkFillElevationHoles,
     vtkGridDelaunay2D,
     vtkTrimOutwardTriangles,
 )
+from vtkelevationsurface.messages import Messages
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkStructuredGrid
 
@@ -69,6 +71,23 @@ class Points(unittest.TestCase):
         result = reconstruct(marked())
         self.assertGreaterEqual(result.surface.GetBounds()[4], 0.0)
         self.assertEqual(result.report["unused_reasons"], {"marked as hidden": 5})
+
+    def test_no_triangle_is_explained_by_those_that_are_hidden(self):
+        for shown, words in ((0, "no point to use"), (1, "only one point"), (2, "only two points")):
+            marks = numpy.full(len(XYZ), HIDDEN_POINT, "u1")
+            marks[:shown] = 0
+            data = meshes.cloud(XYZ, arrays=[(meshes.GHOSTS, marks)])
+            delaunay = vtkGridDelaunay2D()
+            delaunay.SetInputData(data)
+            with Messages(delaunay, delaunay.GetExecutive()) as messages:
+                delaunay.Update()
+            (warning,) = messages.warnings
+            self.assertEqual(warning.code, "NoTriangleShown")
+            self.assertEqual(warning.values["hidden"], str(len(XYZ) - shown))
+            with self.assertRaisesRegex(
+                ElevationSurfaceError, f"{words}.*; {len(XYZ) - shown} points are marked as hidden"
+            ):
+                reconstruct(data)
 
     def test_nodes_without_a_cell_that_is_shown_are_hidden(self):
         data = marked()

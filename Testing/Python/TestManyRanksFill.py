@@ -9,19 +9,25 @@ all ranks have made: points and arrays, triangles, holes and reports, messages.
 import numpy
 from on_ranks import (
     COUNT, RANK, check, check_refused, check_stops, end, fewer, gather, options_of, owners_in_places, updated)
+from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray, vtk_to_numpy
 
 import outcomes
 from meshes import GHOSTS, cloud, mesh, triangles_of
 from vtkelevationsurface import vtkFillElevationHoles, vtkGridDelaunay2D
 
 
-def surface(coordinates, triangles, ids=None, arrays=()):
-    """A data set of triangles; each has a number."""
+def surface(coordinates, triangles, ids=None, arrays=(), holes=None):
+    """A data set of triangles; each has a number, and the id of the hole that it has filled, if given."""
     heights = coordinates[triangles[:, 0], 2].astype(numpy.float64)
-    return mesh(coordinates, triangles, ids, arrays, [("first height", heights)])
+    data = mesh(coordinates, triangles, ids, arrays, [("first height", heights)])
+    if holes is not None:
+        array = numpy_to_vtkIdTypeArray(numpy.ascontiguousarray(holes), deep=True)
+        array.SetName("HoleId")
+        data.GetCellData().AddArray(array)
+    return data
 
 
-def part_of_rank(rank, coordinates, triangles, owners, ids, arrays, are_marked):
+def part_of_rank(rank, coordinates, triangles, owners, ids, arrays, are_marked, holes=None):
     """The triangles that a rank has, with their points; the lowest rank with a point owns it."""
     mine = triangles[owners == rank]
     used = numpy.unique(mine)
@@ -32,16 +38,18 @@ def part_of_rank(rank, coordinates, triangles, owners, ids, arrays, are_marked):
         first[numpy.unique(triangles[owners == other])] = other
     arrays = [(name, values[used]) for name, values in arrays]
     arrays += [(GHOSTS, (first[used] != rank).astype("u1"))] if are_marked else []
-    return surface(coordinates[used], place[mine], None if ids is None else ids[used], arrays)
+    return surface(coordinates[used], place[mine], None if ids is None else ids[used], arrays,
+                   None if holes is None else holes[owners == rank])
 
 
 def fill(data, alone, **properties):
     return updated(vtkFillElevationHoles(), data, alone, **properties)
 
 
-def compare(claim, coordinates, triangles, owners, ids=None, arrays=(), are_marked=False, **properties):
+def compare(claim, coordinates, triangles, owners, ids=None, arrays=(), are_marked=False, holes=None,
+            **properties):
     """Fills a surface on all ranks, and on rank 0 alone; triangles are in the order of their ranks there."""
-    data = part_of_rank(RANK, coordinates, triangles, owners, ids, arrays, are_marked)
+    data = part_of_rank(RANK, coordinates, triangles, owners, ids, arrays, are_marked, holes)
     filler, messages = fill(data, False, **properties)
     check(filler.GetOutput().GetNumberOfPolys() >= numpy.count_nonzero(owners == RANK),
           claim + ": it keeps its triangles")
@@ -50,9 +58,10 @@ def compare(claim, coordinates, triangles, owners, ids=None, arrays=(), are_mark
         used = numpy.unique(triangles)
         place = numpy.full(len(coordinates), -1)
         place[used] = numpy.arange(len(used))
+        order = numpy.argsort(owners, kind="stable")
         whole, expected = fill(surface(
-            coordinates[used], place[triangles[numpy.argsort(owners, kind="stable")]],
-            None if ids is None else ids[used], [(n, a[used]) for n, a in arrays]), True, **properties)
+            coordinates[used], place[triangles[order]], None if ids is None else ids[used],
+            [(n, a[used]) for n, a in arrays], None if holes is None else holes[order]), True, **properties)
         whole = outcomes.made_by([whole], expected)
         check(not any(part["messages"] for part in parts[1:]), claim + ": other ranks are silent")
         told = sum(bool(part["ports"][1][0]["report"]) for part in parts)
@@ -140,6 +149,21 @@ def compare_random(random, claim):
             bool(random.random() < 0.5), **properties)
 
 
+def check_filled_before(random, claim):
+    """What has been filled before keeps its marks, and the numbers of holes go on."""
+    coordinates = clouds(random, 1000)
+    triangles = with_holes(random, coordinates, triangulated(coordinates), 9)
+    size = numpy.ptp(coordinates[:, 0])
+    before = fill(surface(coordinates, triangles), True, MaximumHoleSize=0.1 * size)[0].GetOutput()
+    points, cells = before.GetPointData(), before.GetCellData()
+    arrays = [(name, vtk_to_numpy(points.GetArray(name))) for name in ("FilledPoint", "FilledError")]
+    holes = vtk_to_numpy(cells.GetArray("HoleId"))
+    check((holes >= 0).any(), claim + ": a hole is filled")
+    coordinates, triangles = vtk_to_numpy(before.GetPoints().GetData()), triangles_of(before)
+    compare(claim, coordinates, triangles, owners_of(random, coordinates, triangles),
+            numpy.arange(len(coordinates)), arrays, True, holes)
+
+
 def check_errors(random):
     """What is no elevation surface is refused in the words of one rank."""
     coordinates = numpy.column_stack((random.random((300, 2)), numpy.zeros(300)))
@@ -173,6 +197,7 @@ def main(options):
     surfaces = options.clouds or fewer(8)
     for i in range(surfaces):
         compare_random(random, "surface %d of seed %d" % (i, options.seed))
+    check_filled_before(random, "filled before, of seed %d" % options.seed)
     check_aborts(random, options.aborts or fewer(3))
     return "%d surfaces that are filled" % surfaces
 

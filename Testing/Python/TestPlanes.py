@@ -141,6 +141,17 @@ class BestPlane(unittest.TestCase):
         with self.assertRaisesRegex(ElevationSurfaceError, "plane.*boundary"):
             reconstruct(tilted(level, 90), boundary=ring[:, :2], plane="best")
 
+    def test_the_lattice_is_reported_where_the_points_are(self):
+        i, j = (axis.ravel() for axis in numpy.meshgrid(range(30), range(20)))
+        level = numpy.column_stack((4.0 * i, 2.0 * j, 0.1 * numpy.sin(i) * numpy.cos(j)))
+        points = tilted(level, 60)
+        lattice = reconstruct(points, plane="best").report["lattice"]
+        numpy.testing.assert_allclose(sorted(lattice["lengths"]), (2.0, 4.0), rtol=1e-3)
+        steps, off = numpy.array(lattice["steps"]), points - lattice["origin"]
+        number, *_ = numpy.linalg.lstsq(steps.T, off.T, rcond=None)
+        self.assertLess(abs(number - number.round()).max(), 0.05)
+        self.assertLess(abs(off - number.T @ steps).max(), 0.2)
+
     def test_pictures_show_how_far_off_the_plane_it_lies(self):
         level = relief(300)
         result = reconstruct(tilted(level, 90), plane="best")

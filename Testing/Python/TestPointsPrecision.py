@@ -106,9 +106,10 @@ class Precision(unittest.TestCase):
 
     def test_a_triangle_that_folds_in_single_precision_is_an_error(self):
         for xyz, kind in ((XYZ + (6e6, 5e6, 0), "UTM"), (XYZ + (0, 0, 1e39), "infinite")):
-            one, said = refused(cloud(xyz=xyz), SINGLE)
+            one, said = refused(cloud(xyz=numpy.vstack((xyz, xyz[:3]))), SINGLE)
             self.assertIn("In single precision cell", said, kind)
             self.assertEqual(one.GetOutput().GetNumberOfPoints(), 0)
+            self.assertEqual(one.GetNumberOfDuplicatePoints(), 0)  # counts are of what is there
 
     def test_a_mesh_without_triangles_is_reported_once_whatever_is_converted(self):
         mesh, trim = vtkGridDelaunay2D(), vtkTrimOutwardTriangles()

@@ -78,7 +78,7 @@ class Degrees(Program):
         array = group = data = None
         self.assertTrue([note for note in read(self.path("a.nc")).notes if "are angles" in note])
 
-    def test_a_mesh_of_ugrid_is_called_by_its_name(self):
+    def test_a_mesh_of_ugrid_without_nodes_is_refused(self):
         data = gdal.GetDriverByName("netCDF").CreateMultiDimensional(self.path("m.nc"))
         group = data.GetRootGroup()
         group.CreateAttribute("Conventions", [], gdal.ExtendedDataType.CreateString()).Write("CF-1.8 UGRID-1.0")
@@ -86,7 +86,7 @@ class Degrees(Program):
         nodes = group.CreateMDArray("edge_nodes", ends, gdal.ExtendedDataType.Create(gdal.GDT_Int32))
         nodes.Write(numpy.arange(10, dtype="i4").reshape(5, 2))
         nodes = group = data = None
-        with self.assertRaisesRegex(FileError, "is a mesh of UGRID, no raster"):
+        with self.assertRaisesRegex(FileError, "is a mesh of UGRID whose nodes"):
             read(self.path("m.nc"))
 
     def test_metres_are_not_called_degrees(self):

@@ -18,7 +18,9 @@ from vtkelevationsurface import (
 )
 from vtkelevationsurface.algorithms import ReconstructElevationSurface
 from vtkelevationsurface.command import main
+from vtkelevationsurface.messages import Messages
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkIdTypeArray
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 
 BLUNDER, INFINITE, TWIN = 7, 9, 11
@@ -128,6 +130,35 @@ class Filters(unittest.TestCase):
         output = fill.GetOutput()
         self.assertEqual(set(range(len(XYZ))) - set(original(output)), UNUSED - {BLUNDER})
         self.assertEqual(original(output)[output.GetCell(0).GetPointId(0)], BLUNDER)
+
+
+    def test_original_ids_that_are_given_stay_as_any_kind_of_integers(self):
+        for kind in ("i4", "u2", "i8"):
+            numbers = (3 * numpy.arange(len(XYZ)) + 7).astype(kind)
+            data = meshes.cloud(XYZ, arrays=[("OriginalPointIds", numbers)])
+            result = reconstruct(data, fill=False)
+            self.assertEqual(result.notes, reconstruct(XYZ, fill=False).notes)
+            for surface in (chain(data, 2)[2].GetOutput(), result.surface):
+                self.assertIsInstance(surface.GetPointData().GetArray("OriginalPointIds"), vtkIdTypeArray)
+                ids = original(surface)
+                xyz = vtk_to_numpy(surface.GetPoints().GetData())[ids >= 0]
+                numpy.testing.assert_array_equal(XYZ[(ids[ids >= 0] - 7) // 3], xyz)
+
+    def test_an_array_of_this_name_that_has_no_ids_is_replaced_with_a_warning(self):
+        other = numpy.linspace(0.0, 1.0, len(XYZ))
+        for array in (other, numpy.column_stack((other, other)).astype("i8")):
+            data = meshes.cloud(XYZ, arrays=[("OriginalPointIds", array)])
+            removing = vtkGridDelaunay2D()
+            removing.SetInputData(data)
+            removing.RemoveUnusedPointsOn()
+            with Messages(removing, removing.GetExecutive()) as messages:
+                removing.Update()
+            self.assertEqual([one.code for one in messages.warnings], ["OriginalIdsReplaced"])
+            result = reconstruct(data, fill=False)
+            self.assertEqual(sum("OriginalPointIds" in note for note in result.notes), 1)
+            for surface in (removing.GetOutput(), result.surface):
+                xyz = vtk_to_numpy(surface.GetPoints().GetData())
+                numpy.testing.assert_array_equal(XYZ[original(surface)], xyz)
 
 
 class Products(unittest.TestCase):

@@ -15,7 +15,10 @@
 #include <cmath>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <stdexcept>
+#include <type_traits>
+#include <utility>
 
 namespace elevation
 {
@@ -35,11 +38,47 @@ public:
 };
 
 /**
- * Called with the fraction done, which rises in [0, 1]; returns false to stop. Every pass over all
- * points or triangles calls it often enough that an abort takes effect within half a second. May be
- * empty.
+ * Where a computation reports the fraction done, which rises in [0, 1], and learns that it has to
+ * stop. A value: a copy, or a part for a step, serves as long as it is needed. Every pass over all
+ * points or triangles reports often enough that an abort takes effect within half a second.
  */
-using Progress = std::function<bool(double)>;
+class Progress
+{
+public:
+  /** Reports to nobody. */
+  Progress() = default;
+  /** @param[in] observer  called with the fraction; returns false to stop */
+  template <typename Observer,
+    typename = std::enable_if_t<std::is_invocable_r_v<bool, Observer&, double> &&
+      !std::is_same_v<std::decay_t<Observer>, Progress>>>
+  Progress(Observer&& observer)
+    : Observed(std::make_shared<std::function<bool(double)>>(std::forward<Observer>(observer)))
+  {
+  }
+
+  explicit operator bool() const { return bool(this->Observed); }
+
+  /** @return false to stop */
+  bool operator()(double fraction) const
+  {
+    // Rounding must not pass the end, where the next part begins.
+    return (*this->Observed)(
+      std::min(this->End, this->Begin + fraction * (this->End - this->Begin)));
+  }
+
+  /** That of a step, which is from one fraction to another of the whole. */
+  Progress Part(double begin, double end) const
+  {
+    Progress part = *this;
+    part.Begin = std::min(this->End, this->Begin + begin * (this->End - this->Begin));
+    part.End = std::min(this->End, this->Begin + end * (this->End - this->Begin));
+    return part;
+  }
+
+private:
+  std::shared_ptr<const std::function<bool(double)>> Observed;
+  double Begin = 0.0, End = 1.0;
+};
 
 /** Reports to an optional progress callback, and throws Aborted when it asks to stop. */
 inline void Report(const Progress& progress, double fraction)
@@ -67,7 +106,6 @@ inline void ReportStep(
 class WorkReporter
 {
 public:
-  /** Keeps a reference to the progress. */
   explicit WorkReporter(const Progress& progress)
     : Monitor(progress)
   {
@@ -75,7 +113,7 @@ public:
   void Step(std::size_t done, std::size_t count)
   {
     this->Done = done;
-    this->OfAll = count;
+    this->Steps = count;
     ReportStep(this->Monitor, done, count, 1024);
   }
   /** A small piece of work is done. */
@@ -84,14 +122,14 @@ public:
     this->Ticks.Add();
     if (this->Ticks.Count() % 65536 == 0)
     {
-      ReportStep(this->Monitor, this->Done, this->OfAll, 1);
+      ReportStep(this->Monitor, this->Done, this->Steps, 1);
     }
   }
   std::size_t Count() const { return this->Ticks.Count(); }
 
 private:
-  const Progress& Monitor;
-  std::size_t Done = 0, OfAll = 1;
+  Progress Monitor;
+  std::size_t Done = 0, Steps = 1;
   StepCount Ticks;
 };
 
@@ -122,20 +160,9 @@ private:
   Clock::time_point Next;
 };
 
-/**
- * The sub-interval [begin, end] of a progress, for a step of a longer computation. Keeps a
- * reference to the progress.
- */
 inline Progress SubProgress(const Progress& progress, double begin, double end)
 {
-  if (!progress)
-  {
-    return progress;
-  }
-  return [&progress, begin, end](double fraction) {
-    // Rounding must not pass the end, where the next part begins.
-    return progress(std::min(end, begin + fraction * (end - begin)));
-  };
+  return progress.Part(begin, end);
 }
 
 /** std::sort of plain values with reports; after an abort the values are unusable. */

@@ -190,12 +190,12 @@ public:
     const WholeSurface& whole)
     : Surface(mesh)
     , Points(points)
-    , Given(std::move(holes))
+    , GivenHoles(std::move(holes))
     , Options(options)
-    , Whole(whole)
+    , Context(whole)
     , Threads(ResolveNumberOfThreads(options.NumberOfThreads))
-    , Plans(Given.Count())
-    , HasRoom(Given.Count(), 1)
+    , Plans(GivenHoles.Count())
+    , HasRoom(GivenHoles.Count(), 1)
   {
   }
 
@@ -214,7 +214,7 @@ public:
     this->Result.Attributes.resize(this->Options.Attributes.size());
     const double all = this->AllWork > 0.0 ? this->AllWork : 1.0;
     double done = 0.0;
-    for (Index begin = 0; begin < this->Given.Count();)
+    for (Index begin = 0; begin < this->GivenHoles.Count();)
     {
       const double before = done;
       const Index end = this->EndOfBatch(begin, done);
@@ -239,8 +239,8 @@ public:
 private:
   std::vector<HoleNeed> Needs() const
   {
-    std::vector<HoleNeed> needs(this->Given.Count());
-    for (Index hole = 0; hole < this->Given.Count(); ++hole)
+    std::vector<HoleNeed> needs(this->GivenHoles.Count());
+    for (Index hole = 0; hole < this->GivenHoles.Count(); ++hole)
     {
       // Rows of points count as points: a long thin hole has many rows, though few points.
       const PatchPlan& plan = this->Plans[hole];
@@ -264,10 +264,10 @@ private:
     // Lattice nodes are used only if the user sets no spacing.
     LatticeSearch lattice;
     if (options.UseLattice == LatticeMode::Automatic && !(options.Spacing > 0.0) &&
-      this->Given.Count() > 0)
+      this->GivenHoles.Count() > 0)
     {
-      lattice = this->Whole.FoundLattice
-        ? *this->Whole.FoundLattice
+      lattice = this->Context.FoundLattice
+        ? *this->Context.FoundLattice
         : FindLattice(
             this->Points, LatticeTolerance, this->Threads, SubProgress(options.Monitor, 0.0, 0.02));
     }
@@ -276,26 +276,27 @@ private:
       this->Stars =
         std::make_unique<VertexStars>(this->Surface, SubProgress(options.Monitor, 0.02, 0.02));
     }
-    this->Result.Reports.reserve(this->Given.Count());
-    for (Index hole = 0; hole < this->Given.Count(); ++hole)
+    this->Result.Reports.reserve(this->GivenHoles.Count());
+    for (Index hole = 0; hole < this->GivenHoles.Count(); ++hole)
     {
       if (hole % 4096 == 0)
       {
         Report(options.Monitor, 0.02);
       }
-      this->Result.Reports.push_back(MeasureHole(this->Surface, this->Given, hole, options));
+      this->Result.Reports.push_back(MeasureHole(this->Surface, this->GivenHoles, hole, options));
       HoleReport& report = this->Result.Reports.back();
       PatchPlan& plan = this->Plans[hole];
-      plan = PlanPatch(this->Surface, this->Stars.get(), this->Given, hole, report.Area,
+      plan = PlanPatch(this->Surface, this->Stars.get(), this->GivenHoles, hole, report.Area,
         options.Spacing, lattice.Found ? &lattice.Steps : nullptr);
       report.Spacing = plan.Spacing;
-      const Point2& p = this->Surface.PointOf(*this->Given.Walks.Begin(this->Given.Rim(hole)));
+      const Point2& p =
+        this->Surface.PointOf(*this->GivenHoles.Walks.Begin(this->GivenHoles.Rim(hole)));
       plan.Precision =
         StepAt(std::max(std::fabs(p.X), std::fabs(p.Y)) + report.Size, options.SinglePrecision);
       plan.SinglePrecision = options.SinglePrecision;
       if (report.Status == FillStatus::Filled)
       {
-        CheckNumbers(this->Given.Touched[hole] != 0, report);
+        CheckNumbers(this->GivenHoles.Touched[hole] != 0, report);
       }
     }
   }
@@ -306,13 +307,13 @@ private:
     const Index limit = this->Options.MaximumInsertedPoints;
     const Index ofIds = MaximumNumberOfPoints - this->Surface.NumberOfPoints();
     const std::vector<HoleNeed> needs = this->Needs();
-    std::vector<double> quotas = this->Whole.Quotas;
+    std::vector<double> quotas = this->Context.Quotas;
     if (quotas.empty())
     {
       CheckEffort(needs, this->Surface.NumberOfPoints(), this->Options);
       quotas = QuotasFor(needs, std::min(limit, ofIds));
     }
-    for (Index hole = 0; hole < this->Given.Count(); ++hole)
+    for (Index hole = 0; hole < this->GivenHoles.Count(); ++hole)
     {
       const double points = needs[hole].Most, left = quotas[hole];
       HoleReport& report = this->Result.Reports[hole];
@@ -353,7 +354,7 @@ private:
     do
     {
       done += this->WorkOf(end++);
-    } while (end < this->Given.Count() && end - begin < 4096 &&
+    } while (end < this->GivenHoles.Count() && end - begin < 4096 &&
       done - before + this->WorkOf(end) <= PointsTogether * this->Threads &&
       this->WorkOf(end) <= alone && this->WorkOf(begin) <= alone);
     return end;
@@ -420,7 +421,7 @@ private:
       {
         Append(filled[hole - begin], this->Surface.NumberOfPoints(), this->Result);
         report.NumberOfInsertedPoints = filled[hole - begin].Triangles.NumberOfNewVertices();
-        report.Status = this->Given.IsRegion(hole) ? FillStatus::Replaced : FillStatus::Filled;
+        report.Status = this->GivenHoles.IsRegion(hole) ? FillStatus::Replaced : FillStatus::Filled;
       }
       this->Result.PointOffsets.push_back(static_cast<Index>(this->Result.Points.size() / 3));
       this->Result.TriangleOffsets.push_back(static_cast<Index>(this->Result.Triangles.size() / 3));
@@ -433,14 +434,14 @@ private:
     HoleReport& report = this->Result.Reports[hole];
     try
     {
-      filled.Triangles = CollectBoundary(this->Surface, this->Given, hole);
+      filled.Triangles = CollectBoundary(this->Surface, this->GivenHoles, hole);
       Patch& patch = filled.Triangles;
-      if (!this->Whole.Surroundings.empty())
+      if (!this->Context.Surroundings.empty())
       {
-        patch.Surroundings = this->Whole.Surroundings[hole];
+        patch.Surroundings = this->Context.Surroundings[hole];
       }
       MakePatch(this->Plans[hole], SubProgress(progress, 0.0, 0.4), patch);
-      if (this->Given.IsRegion(hole) && patch.NumberOfNewVertices() == 0)
+      if (this->GivenHoles.IsRegion(hole) && patch.NumberOfNewVertices() == 0)
       {
         this->HasRoom[hole] = 0;
         return;
@@ -476,17 +477,17 @@ private:
     if (count < reports.size())
     {
       reports.resize(count);
-      KeepRegions(this->HasRoom, this->Given);
+      KeepRegions(this->HasRoom, this->GivenHoles);
     }
-    this->Result.Found = std::move(this->Given);
+    this->Result.Found = std::move(this->GivenHoles);
     this->Result.HaveRoom = std::move(this->HasRoom);
   }
 
   const Mesh& Surface;
   const PointView& Points;
-  Holes Given;
+  Holes GivenHoles;
   const FillOptions& Options;
-  const WholeSurface& Whole;
+  const WholeSurface& Context;
   const int Threads;
   double Least = 0.0; ///< the fixed work for a patch
   double AllWork = 0.0;

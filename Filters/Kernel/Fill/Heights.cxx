@@ -133,7 +133,7 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
   : Surface(surface)
   , Patch(patch)
   , Method(wanted)
-  , Known(patch.BoundaryIds)
+  , KnownVertices(patch.BoundaryIds)
 {
   if (wanted == Interpolation::NeighborMean || patch.Order.empty())
   {
@@ -148,7 +148,7 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
     this->CollectRing(*stars);
     this->CollectSlopes(*stars);
   }
-  for (const Index id : this->Known)
+  for (const Index id : this->KnownVertices)
   {
     if (!std::isfinite(values(id)))
     {
@@ -182,7 +182,7 @@ void Heights::CollectRing(const VertexStars& stars)
   std::sort(ring.begin(), ring.end(), isLower);
   ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
   std::set_difference(ring.begin(), ring.end(), this->Patch.BoundaryIds.begin(),
-    this->Patch.BoundaryIds.end(), std::back_inserter(this->Known), isLower);
+    this->Patch.BoundaryIds.end(), std::back_inserter(this->KnownVertices), isLower);
 }
 
 /** Pairs each point of the last ring with the boundary point that it was reached from. */
@@ -237,11 +237,11 @@ void Heights::CollectSlopes(const VertexStars& stars)
  */
 std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& values) const
 {
-  const Index count = static_cast<Index>(this->Known.size());
+  const Index count = static_cast<Index>(this->KnownVertices.size());
   std::vector<std::pair<Index, Index>> places; // by id
   for (Index i = 0; i < count; ++i)
   {
-    places.emplace_back(this->Known[i], i);
+    places.emplace_back(this->KnownVertices[i], i);
   }
   std::sort(places.begin(), places.end());
   const auto placeOf = [&places](Index id) {
@@ -252,7 +252,7 @@ std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& va
   std::vector<double> slopes;
   for (Index i = 0; i < count; ++i)
   {
-    const Index id = this->Known[i];
+    const Index id = this->KnownVertices[i];
     const Point2& p = this->Surface.PointOf(id);
     this->VisitStar(stars, id, [&](Index h) {
       // An edge with two triangles is met from both ends, one with one triangle from one.
@@ -291,12 +291,12 @@ void Heights::ChooseCenters(
   const VertexStars& stars, const Values& values, const Progress& progress)
 {
   const std::size_t boundary = this->Patch.BoundaryIds.size();
-  const std::size_t count = this->Known.size();
+  const std::size_t count = this->KnownVertices.size();
   std::vector<double> x(count);
   std::vector<double> y(count);
   for (std::size_t i = 0; i < count; ++i)
   {
-    const Point2 p = this->Normalized(this->Surface.PointOf(this->Known[i]));
+    const Point2 p = this->Normalized(this->Surface.PointOf(this->KnownVertices[i]));
     x[i] = p.X;
     y[i] = p.Y;
   }
@@ -343,7 +343,7 @@ std::unique_ptr<Spline> Heights::MakeSpline(int which) const
   centers.reserve(this->Centers.size());
   for (const Index place : this->Centers)
   {
-    centers.push_back(this->Normalized(this->Surface.PointOf(this->Known[place])));
+    centers.push_back(this->Normalized(this->Surface.PointOf(this->KnownVertices[place])));
   }
   auto spline = std::make_unique<Spline>();
   return spline->Prepare(centers, Kernels[which]) ? std::move(spline) : nullptr;
@@ -565,12 +565,12 @@ void Heights::Bound(const std::vector<double>& scaled, const Values& values, dou
   double unit, const Progress& progress, std::vector<double>& result) const
 {
   const Index boundary = this->Patch.NumberOfBoundaryVertices();
-  double lowest = values(this->Known[0]);
+  double lowest = values(this->KnownVertices[0]);
   double highest = lowest;
   for (Index i = 1; i < boundary; ++i)
   {
-    lowest = std::min(lowest, values(this->Known[i]));
-    highest = std::max(highest, values(this->Known[i]));
+    lowest = std::min(lowest, values(this->KnownVertices[i]));
+    highest = std::max(highest, values(this->KnownVertices[i]));
   }
   RimSlopes slopes;
   std::vector<double> flat;
@@ -602,9 +602,9 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
     return this->Mean(values, progress);
   }
   const std::size_t boundary = this->Patch.BoundaryIds.size();
-  std::vector<double> known(this->HasSpline() ? this->Known.size() : boundary);
-  std::transform(this->Known.begin(),
-    this->Known.begin() + static_cast<std::ptrdiff_t>(known.size()), known.begin(), values);
+  std::vector<double> known(this->HasSpline() ? this->KnownVertices.size() : boundary);
+  std::transform(this->KnownVertices.begin(),
+    this->KnownVertices.begin() + static_cast<std::ptrdiff_t>(known.size()), known.begin(), values);
   if (!AllFinite(known))
   {
     return this->Mean(values, progress);

@@ -180,14 +180,14 @@ private:
   Point2 Center{ 0.0, 0.0 };
   double Scale = 1.0;
 
-  std::vector<Index> Known; ///< ids: boundary, then the ring around it
+  std::vector<Index> KnownVertices; ///< ids: boundary, then the ring around it
   struct Pair
   {
     Index Boundary;
     Index Away;
   };
   std::vector<Pair> Slopes;   ///< pairs of points over which slopes are measured
-  std::vector<Index> Centers; ///< of the splines, indices in Known
+  std::vector<Index> Centers; ///< of the splines, indices in KnownVertices
   bool AllBoundaryIsCenter = true;
   bool IsByTrials = false;                           ///< chosen by Adaptive
   bool IsCandidate[3] = { false, false, false };     ///< membrane and splines

@@ -45,7 +45,7 @@ class Aggregates
 public:
   Aggregates(const Matrix& a, const Progress& progress)
     : A(a)
-    , Of(a.rows(), None)
+    , RowAggregates(a.rows(), None)
   {
     for (const Index i : Counted(a.rows()))
     {
@@ -53,7 +53,7 @@ public:
       bool isFree = true;
       for (Matrix::InnerIterator entry(a, i); isFree && entry; ++entry)
       {
-        isFree = this->Of[entry.index()] == None;
+        isFree = this->RowAggregates[entry.index()] == None;
       }
       if (isFree)
       {
@@ -63,7 +63,7 @@ public:
     this->JoinStrongest();
     for (Index i = 0; i < a.rows(); ++i)
     {
-      if (this->Of[i] == None)
+      if (this->RowAggregates[i] == None)
       {
         this->Begin(i);
       }
@@ -71,7 +71,7 @@ public:
   }
 
   const Matrix& A;
-  std::vector<Index> Of; ///< row -> aggregate
+  std::vector<Index> RowAggregates;
   Index Count = 0;
 
 private:
@@ -79,7 +79,7 @@ private:
   {
     for (Matrix::InnerIterator entry(this->A, i); entry; ++entry)
     {
-      Index& aggregate = this->Of[entry.index()];
+      Index& aggregate = this->RowAggregates[entry.index()];
       aggregate = aggregate == None ? this->Count : aggregate;
     }
     ++this->Count;
@@ -88,7 +88,7 @@ private:
   /** Rows that are left join the neighbouring aggregate with the strongest connection. */
   void JoinStrongest()
   {
-    const std::vector<Index> whole = this->Of;
+    const std::vector<Index> whole = this->RowAggregates;
     for (Index i = 0; i < this->A.rows(); ++i)
     {
       double least = 0.0;
@@ -97,7 +97,7 @@ private:
         if (whole[entry.index()] != None && entry.value() < least)
         {
           least = entry.value();
-          this->Of[i] = whole[entry.index()];
+          this->RowAggregates[i] = whole[entry.index()];
         }
       }
     }
@@ -110,16 +110,16 @@ Matrix Coarsen(const Aggregates& aggregates, const Progress& progress)
   const Matrix& a = aggregates.A;
   // The rows, sorted by aggregate.
   std::vector<Index> begin(static_cast<std::size_t>(aggregates.Count) + 1, 0);
-  for (const Index aggregate : aggregates.Of)
+  for (const Index aggregate : aggregates.RowAggregates)
   {
     ++begin[aggregate + 1];
   }
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<Index> rows(aggregates.Of.size());
+  std::vector<Index> rows(aggregates.RowAggregates.size());
   std::vector<Index> next(begin.begin(), begin.end() - 1);
   for (Index i = 0; i < a.rows(); ++i)
   {
-    rows[next[aggregates.Of[i]]++] = i;
+    rows[next[aggregates.RowAggregates[i]]++] = i;
   }
 
   Matrix coarse(aggregates.Count, aggregates.Count);
@@ -133,7 +133,7 @@ Matrix Coarsen(const Aggregates& aggregates, const Progress& progress)
     {
       for (Matrix::InnerIterator entry(a, rows[k]); entry; ++entry)
       {
-        const Index column = aggregates.Of[entry.index()];
+        const Index column = aggregates.RowAggregates[entry.index()];
         if (sums[column] == 0.0 && column != c)
         {
           columns.push_back(column); // its sum stays below zero from now on
@@ -170,7 +170,7 @@ Multigrid::Multigrid(Matrix matrix, const Progress& progress)
       break; // hardly smaller: the unknowns have few neighbours and are factorised quickly
     }
     Matrix coarse = Coarsen(aggregates, here);
-    fine.Coarse = std::move(aggregates.Of);
+    fine.Coarse = std::move(aggregates.RowAggregates);
     this->Levels.emplace_back();
     this->Levels.back().A.swap(coarse);
   }

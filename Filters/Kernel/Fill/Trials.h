@@ -86,7 +86,7 @@ class Heights::Trials
 {
 public:
   Trials(const Heights& heights, const VertexStars& stars, const Values& values)
-    : Of(heights)
+    : Hole(heights)
     , Stars(stars)
     , ValueOf(values)
     , Boundary(heights.Patch.BoundaryIds.size())
@@ -131,7 +131,7 @@ public:
     double least = std::numeric_limits<double>::infinity();
     for (int method = 0; method < 3; ++method)
     {
-      if (!this->Of.IsCandidate[method])
+      if (!this->Hole.IsCandidate[method])
       {
         continue;
       }
@@ -168,7 +168,7 @@ public:
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t k = 0; k < probes; ++k)
     {
-      const PatchMesh& patch = this->Of.Patch;
+      const PatchMesh& patch = this->Hole.Patch;
       const Point2& p = this->Points[this->FirstProbe + k];
       const Point2 q = patch.At(patch.Nearest[this->Probes[k]]);
       order.emplace_back(std::hypot(p.X - q.X, p.Y - q.Y), k);
@@ -270,18 +270,18 @@ private:
 
   void CollectPoints()
   {
-    const PatchMesh& patch = this->Of.Patch;
+    const PatchMesh& patch = this->Hole.Patch;
     for (const Index id : patch.BoundaryIds)
     {
-      this->Points.push_back(this->Of.Surface.PointOf(id));
+      this->Points.push_back(this->Hole.Surface.PointOf(id));
     }
-    for (const Index place : this->Of.Centers)
+    for (const Index place : this->Hole.Centers)
     {
       const bool isAdded = static_cast<std::size_t>(place) < this->Boundary;
       this->PlaceOfCenter.push_back(isAdded ? place : static_cast<Index>(this->Points.size()));
       if (!isAdded)
       {
-        this->Points.push_back(this->Of.Surface.PointOf(this->Of.Known[place]));
+        this->Points.push_back(this->Hole.Surface.PointOf(this->Hole.KnownVertices[place]));
       }
     }
     this->FirstProbe = this->Points.size();
@@ -294,7 +294,7 @@ private:
     }
     for (const Point2& p : this->Points)
     {
-      this->Normalized.push_back(this->Of.Normalized(p));
+      this->Normalized.push_back(this->Hole.Normalized(p));
     }
     this->Moved.resize(this->Points.size());
     this->OrderPoints();
@@ -321,7 +321,7 @@ private:
   /** Where a walk begins; independent of the order of points. */
   Index HalfEdgeAt(Index vertex) const
   {
-    const Mesh& surface = this->Of.Surface;
+    const Mesh& surface = this->Hole.Surface;
     Index start = None;
     this->Stars.Visit(surface, vertex, [&](Index h) {
       start = start == None ||
@@ -350,19 +350,19 @@ private:
       near = std::min(near, along(i));
       end = i < this->Boundary && along(i) - along(end) > 0.0 ? i : end;
     }
-    const double distance = size * (along(end) - near) / this->Of.Scale;
+    const double distance = size * (along(end) - near) / this->Hole.Scale;
     const Point2 origin = this->Points[end];
-    const Index start = this->HalfEdgeAt(this->Of.Patch.BoundaryIds[end]);
+    const Index start = this->HalfEdgeAt(this->Hole.Patch.BoundaryIds[end]);
     if (start == None)
     {
       return false; // the surface has no triangle there
     }
-    Walk walk(this->Of.Surface, Mesh::Triangle(start), this->Of.Patch.Surroundings);
+    Walk walk(this->Hole.Surface, Mesh::Triangle(start), this->Hole.Patch.Surroundings);
     if (!walk.To({ origin.X + distance * direction.X, origin.Y + distance * direction.Y }))
     {
       return false;
     }
-    const Point2 target = this->Of.Surface.PointOf(walk.Corner());
+    const Point2 target = this->Hole.Surface.PointOf(walk.Corner());
     const auto visit = [&](std::size_t i) {
       if (!walk.To({ target.X + size * (this->Points[i].X - origin.X),
             target.Y + size * (this->Points[i].Y - origin.Y) }))
@@ -389,7 +389,7 @@ private:
   std::vector<double> PredictHarmonic(
     const std::vector<double>& rim, const Progress& progress) const
   {
-    const std::vector<double> flat = this->Of.Harmonic->Solve(rim, RoughAccuracy, progress);
+    const std::vector<double> flat = this->Hole.Harmonic->Solve(rim, RoughAccuracy, progress);
     std::vector<double> predicted;
     for (const Index probe : this->Probes)
     {
@@ -407,7 +407,7 @@ private:
     {
       return this->PredictHarmonic(rim, progress);
     }
-    const Spline& spline = *this->Of.Splines[method - 1];
+    const Spline& spline = *this->Hole.Splines[method - 1];
     std::vector<double> atCenters;
     for (const Index i : this->PlaceOfCenter)
     {
@@ -416,7 +416,7 @@ private:
     const Spline::Weights weights = spline.Interpolate(atCenters);
     std::vector<double> predicted(this->Probes.size(), 0.0);
     spline.Add(weights, &this->Normalized[this->FirstProbe], predicted.size(), predicted.data());
-    if (!this->Of.AllBoundaryIsCenter)
+    if (!this->Hole.AllBoundaryIsCenter)
     {
       std::vector<double> there(this->Boundary, 0.0);
       spline.Add(weights, this->Normalized.data(), there.size(), there.data());
@@ -428,7 +428,7 @@ private:
     return predicted;
   }
 
-  const Heights& Of;
+  const Heights& Hole;
   const VertexStars& Stars;
   const Values& ValueOf;
   const std::size_t Boundary; ///< its number of points, which come first

@@ -37,7 +37,7 @@ public:
   /** @param[in] known  where triangles may be missing outside of it */
   Walk(const Mesh& mesh, Index start, const Box& known)
     : Surface(mesh)
-    , Known(known)
+    , KnownArea(known)
     , Triangle(start)
     , First(this->Lowest(start))
   {
@@ -121,7 +121,10 @@ public:
   }
 
 private:
-  bool IsKnown(Index vertex) const { return this->Known.Contains(this->Surface.PointOf(vertex)); }
+  bool IsKnown(Index vertex) const
+  {
+    return this->KnownArea.Contains(this->Surface.PointOf(vertex));
+  }
 
   static Index HalfEdge(Index first, int steps)
   {
@@ -145,7 +148,7 @@ private:
   Index CornerOf(int k) const { return this->Surface.Origin(HalfEdge(this->First, k)); }
 
   const Mesh& Surface;
-  const Box& Known;
+  const Box& KnownArea;
   Index Triangle;
   Index First; ///< the half-edge of the triangle that leaves its lowest corner
   double Shares[3] = { 1.0, 0.0, 0.0 };

@@ -56,7 +56,7 @@ class Strip
 public:
   /** @param begin,end  the strip's vertices, counted from the lowest */
   Strip(const Hull& hull, Index begin, Index end, const WorkBudget& budget)
-    : OfAll(hull)
+    : WholeHull(hull)
     , Begin(begin)
     , End(end)
     , Budget(budget)
@@ -131,8 +131,8 @@ private:
   bool Walk()
   {
     Derived& self = static_cast<Derived&>(*this);
-    const std::vector<Index>&rightChain = this->OfAll.RightChain,
-          &leftChain = this->OfAll.LeftChain;
+    const std::vector<Index>&rightChain = this->WholeHull.RightChain,
+          &leftChain = this->WholeHull.LeftChain;
     const Vertex right = this->FirstAbove(rightChain), left = this->FirstAbove(leftChain);
     if (this->Begin > 0)
     {
@@ -182,7 +182,7 @@ private:
     return true;
   }
 
-  const Hull& OfAll;
+  const Hull& WholeHull;
   Index *Output = nullptr, *OutputEnd = nullptr; ///< where all triangles are written
   Index* OutBegin = nullptr;
 

@@ -154,7 +154,7 @@ public:
   LatticeStrip(
     Growth& growth, const Hull& hull, Index begin, Index end, Index firstWord, Index endWord)
     : Strip(hull, begin, end, WorkBudget(WorkPerPoint, end - begin, WorkPerPause))
-    , All(growth)
+    , Shared(growth)
     , Nodes(growth.Nodes)
     , FirstWord(firstWord)
     , EndWord(endWord)
@@ -174,8 +174,8 @@ public:
 
   bool RecordEdge(Index p, Index q)
   {
-    return q > p ? this->Set(this->All.Last, this->Nodes.RankOf(p), q)
-                 : this->Set(this->All.First, this->Nodes.RankOf(q), p);
+    return q > p ? this->Set(this->Shared.Last, this->Nodes.RankOf(p), q)
+                 : this->Set(this->Shared.First, this->Nodes.RankOf(q), p);
   }
 
   /** Edges of vertices of full cells need not be recorded. */
@@ -196,19 +196,20 @@ public:
   Index FindAcross()
   {
     const Index row = this->Nodes.RowOf(this->High);
-    const Offset e = this->All.Between(this->High, this->Low);
+    const Offset e = this->Shared.Between(this->High, this->Low);
     Offset place;
-    if (row < LatticeApexes::Range || !this->All.Apexes.FindInList(this->High, e, place))
+    if (row < LatticeApexes::Range || !this->Shared.Apexes.FindInList(this->High, e, place))
     {
       // At least one end of the hull's edge is on the left, and can be an apex.
-      Apex apex = ApexAt(*this->All.Metric, e, this->All.Between(this->High, this->LastHigh));
-      const Apex other = ApexAt(*this->All.Metric, e, this->All.Between(this->High, this->LastLow));
+      Apex apex = ApexAt(*this->Shared.Metric, e, this->Shared.Between(this->High, this->LastHigh));
+      const Apex other =
+        ApexAt(*this->Shared.Metric, e, this->Shared.Between(this->High, this->LastLow));
       if (apex.Cross <= 0 || (other.Cross > 0 && IsBetter(other, apex, e)))
       {
         apex = other;
       }
-      place =
-        this->All.Apexes.Search(row, this->Nodes.ColumnOf(this->High, row), e, apex, this->Budget);
+      place = this->Shared.Apexes.Search(
+        row, this->Nodes.ColumnOf(this->High, row), e, apex, this->Budget);
     }
     this->Budget.Spend(30);
     return this->High + this->StepTo(place);
@@ -235,7 +236,7 @@ private:
   void WriteCells(const Index* here, const Index* up, int length, bool isAcute);
   void GrowFan(Index row, Index node, Index rank, Index first, Index last);
 
-  Growth& All;
+  Growth& Shared;
   const LatticeNodes& Nodes;
   const Index FirstWord, EndWord; ///< of the bitmap
   Index Word;                     ///< the next one to grow
@@ -300,7 +301,7 @@ std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(const Hull
 void Growth::LatticeStrip::GrowFans()
 {
   const LatticeNodes& nodes = this->Nodes;
-  const bool isAcute = this->All.Metric->B > 0;
+  const bool isAcute = this->Shared.Metric->B > 0;
   const Index highest = nodes.NumberOfPoints() - 1;
   for (; this->Word < this->EndWord && !this->Budget.IsPaused(); ++this->Word)
   {
@@ -319,7 +320,7 @@ void Growth::LatticeStrip::GrowFans()
     const std::uint64_t upRight = (up >> 1) | (nodes.Word(above + 1) << 63);
     const std::uint64_t upLeft = (up << 1) | (nodes.Word(above - 1) >> 63);
     const std::uint64_t cut = isAcute ? upLeft : upRight;
-    const std::uint64_t full = this->All.UseCells ? rest & right & left & up & cut : 0;
+    const std::uint64_t full = this->Shared.UseCells ? rest & right & left & up & cut : 0;
     const std::uint64_t lastIsKnown = left & (isAcute ? upLeft : up);
     Index rank = nodes.Before[w];
     while (rest)
@@ -339,10 +340,10 @@ void Growth::LatticeStrip::GrowFans()
       if (rank < highest)
       {
         const Index node = 64 * w + bit;
-        const Index first = right >> bit & 1 ? node + 1 : this->All.First[rank];
+        const Index first = right >> bit & 1 ? node + 1 : this->Shared.First[rank];
         const Index last = lastIsKnown >> bit & 1
           ? node + 64 * nodes.WordsPerRow - (isAcute ? 1 : 0)
-          : this->All.Last[rank];
+          : this->Shared.Last[rank];
         if (first != last)
         {
           this->GrowFan(row, node, rank, first, last);
@@ -387,19 +388,19 @@ void Growth::LatticeStrip::GrowFan(Index row, Index node, Index rank, Index firs
   while (current != last)
   {
     Offset p;
-    if (!this->All.Apexes.FindInList(node, e, p))
+    if (!this->Shared.Apexes.FindInList(node, e, p))
     {
       // The last vertex of the fan is on the left of the edge.
-      const Apex known = ApexAt(*this->All.Metric, e, end);
-      p = this->All.Apexes.Search(row, column, e, known, this->Budget);
+      const Apex known = ApexAt(*this->Shared.Metric, e, end);
+      p = this->Shared.Apexes.Search(row, column, e, known, this->Budget);
     }
     const Index apex = node + this->StepTo(p);
     const Index rankOfApex = nodes.RankOf(apex);
     this->NeedRoom(1, id);
     const Index b = nodes.Ids[rankOfCurrent], c = nodes.Ids[rankOfApex];
-    this->Write(id, b, c, this->All.IsLeftIn(e, p, id, b, c));
-    apex > current ? this->Set(this->All.Last, rankOfCurrent, apex)
-                   : this->Set(this->All.First, rankOfApex, current);
+    this->Write(id, b, c, this->Shared.IsLeftIn(e, p, id, b, c));
+    apex > current ? this->Set(this->Shared.Last, rankOfCurrent, apex)
+                   : this->Set(this->Shared.First, rankOfApex, current);
     current = apex;
     rankOfCurrent = rankOfApex;
     e = p;

@@ -54,7 +54,7 @@ Index InsertionStrip::NewFace()
 {
   if (this->NextFace == this->LastFace)
   {
-    this->NextFace = this->Of.NumberOfFaces.fetch_add(FacesAtOnce);
+    this->NextFace = this->Surface.NumberOfFaces.fetch_add(FacesAtOnce);
     this->LastFace = this->NextFace + FacesAtOnce;
   }
   this->Faces.push_back(this->NextFace);
@@ -73,9 +73,9 @@ bool InsertionStrip::MayBegin(Index place, const Face& face) const
   {
     isVisible = isVisible &&
       ((isDelaunay && (face.Fixed >> k & 1) == 0) ||
-        this->Of.SideOf(face.Corners[k], face.Corners[(k + 1) % 3], place) != Negative);
+        this->Surface.SideOf(face.Corners[k], face.Corners[(k + 1) % 3], place) != Negative);
   }
-  return isVisible && (!isDelaunay || this->Of.IsInCircle(face, place) == Positive);
+  return isVisible && (!isDelaunay || this->Surface.IsInCircle(face, place) == Positive);
 }
 
 /**
@@ -85,14 +85,14 @@ bool InsertionStrip::MayBegin(Index place, const Face& face) const
 bool InsertionStrip::Move(Index place, Index& face)
 {
   const Index own =
-    this->Of.FaceOf(place, face, [this](const Face& next) { return this->HasCorners(next); });
+    this->Surface.FaceOf(place, face, [this](const Face& next) { return this->HasCorners(next); });
   if (own == None)
   {
     return false;
   }
-  Face& before = this->Of.Faces[face];
+  Face& before = this->Surface.Faces[face];
   std::vector<Index> others;
-  for (Index point = before.First; point != None; point = this->Of.Links[point])
+  for (Index point = before.First; point != None; point = this->Surface.Links[point])
   {
     if (point != place)
     {
@@ -102,16 +102,16 @@ bool InsertionStrip::Move(Index place, Index& face)
   before.First = before.Worst = None;
   before.Error = 0.0f;
   const auto add = [this](Face& to, Index point) {
-    const ElevatedPlace* const places = this->Of.Places.data();
+    const ElevatedPlace* const places = this->Surface.Places.data();
     const ElevatedPlace& a = places[to.Corners[0]];
     const Slopes slopes = SlopesOf(a, places[to.Corners[1]], places[to.Corners[2]]);
-    this->Of.AddTo(to, point, ErrorOf(places[point], a, slopes));
+    this->Surface.AddTo(to, point, ErrorOf(places[point], a, slopes));
   };
   for (const Index point : others)
   {
     add(before, point);
   }
-  add(this->Of.Faces[own], place);
+  add(this->Surface.Faces[own], place);
   face = own;
   return true;
 }
@@ -122,7 +122,7 @@ bool InsertionStrip::Move(Index place, Index& face)
  */
 bool InsertionStrip::FindCavity(Index place, Index face)
 {
-  Buffer<Face>& faces = this->Of.Faces;
+  Buffer<Face>& faces = this->Surface.Faces;
   this->Rim.clear();
   this->Cut[0] = this->Cut[1] = None;
   this->Cavity.assign(1, face);
@@ -138,7 +138,7 @@ bool InsertionStrip::FindCavity(Index place, Index face)
     const Index outside = faces[inside].Neighbors[edge];
     const bool isFixed = (faces[inside].Fixed >> edge & 1) != 0;
     const bool isOn =
-      (outside == None || isFixed || !isDelaunay) && this->Of.SideOf(from, to, place) == Zero;
+      (outside == None || isFixed || !isDelaunay) && this->Surface.SideOf(from, to, place) == Zero;
     if (outside == None)
     {
       this->Rim.push_back({ from, to, isOn ? Gap : None, isFixed });
@@ -153,7 +153,7 @@ bool InsertionStrip::FindCavity(Index place, Index face)
     isOwn = this->HasCorners(other);
     const int entry = other.EdgeFrom(to);
     if (isOwn && !other.IsInCavity && (isOn || !isFixed) &&
-      (isDelaunay ? this->Of.IsInConflict(other, place, entry) : isOn))
+      (isDelaunay ? this->Surface.IsInConflict(other, place, entry) : isOn))
     {
       other.IsInCavity = true;
       this->Cavity.push_back(outside);
@@ -178,8 +178,8 @@ bool InsertionStrip::FindCavity(Index place, Index face)
 /** Joins the place to the edges of the rim; the last one may be a gap. */
 void InsertionStrip::FillCavity(Index place, std::size_t count, bool isClosed)
 {
-  Buffer<Face>& faces = this->Of.Faces;
-  const ElevatedPlace& p = this->Of.Places[place];
+  Buffer<Face>& faces = this->Surface.Faces;
+  const ElevatedPlace& p = this->Surface.Places[place];
   this->Fan.assign(this->Cavity.begin(), this->Cavity.end());
   while (this->Fan.size() < count)
   {
@@ -201,11 +201,11 @@ void InsertionStrip::FillCavity(Index place, std::size_t count, bool isClosed)
       Face& outside = faces[edge.Outside];
       outside.Neighbors[outside.EdgeFrom(edge.To)] = this->Fan[i];
     }
-    const ElevatedPlace& a = this->Of.Places[edge.From];
+    const ElevatedPlace& a = this->Surface.Places[edge.From];
     this->Spokes.push_back({ a.X - p.X, a.Y - p.Y });
-    this->Planes.push_back(SlopesOf(p, a, this->Of.Places[edge.To]));
+    this->Planes.push_back(SlopesOf(p, a, this->Surface.Places[edge.To]));
   }
-  const ElevatedPlace& last = this->Of.Places[this->Rim[count - 1].To];
+  const ElevatedPlace& last = this->Surface.Places[this->Rim[count - 1].To];
   this->Spokes.push_back({ last.X - p.X, last.Y - p.Y });
 }
 
@@ -255,19 +255,20 @@ std::size_t InsertionStrip::SectorOf(
 /** Gives the points of the cavity to the faces of the fan. */
 void InsertionStrip::MovePoints(Index place, std::size_t count, bool isClosed)
 {
-  const ElevatedPlace& p = this->Of.Places[place];
+  const ElevatedPlace& p = this->Surface.Places[place];
   std::size_t sector = 0;
   for (const Index point : this->Loose)
   {
-    const ElevatedPlace& q = this->Of.Places[point];
+    const ElevatedPlace& q = this->Surface.Places[point];
     sector = this->SectorOf(q.X - p.X, q.Y - p.Y, sector, count, isClosed);
-    this->Of.AddTo(this->Of.Faces[this->Fan[sector]], point, ErrorOf(q, p, this->Planes[sector]));
+    this->Surface.AddTo(
+      this->Surface.Faces[this->Fan[sector]], point, ErrorOf(q, p, this->Planes[sector]));
   }
 }
 
 bool InsertionStrip::Insert(Index place, Index face)
 {
-  if ((!this->MayBegin(place, this->Of.Faces[face]) && !this->Move(place, face)) ||
+  if ((!this->MayBegin(place, this->Surface.Faces[face]) && !this->Move(place, face)) ||
     !this->FindCavity(place, face))
   {
     return false;
@@ -275,7 +276,8 @@ bool InsertionStrip::Insert(Index place, Index face)
   this->Loose.clear();
   for (const Index inside : this->Cavity)
   {
-    for (Index point = this->Of.Faces[inside].First; point != None; point = this->Of.Links[point])
+    for (Index point = this->Surface.Faces[inside].First; point != None;
+         point = this->Surface.Links[point])
     {
       if (point != place)
       {
@@ -284,7 +286,7 @@ bool InsertionStrip::Insert(Index place, Index face)
     }
   }
   CountWork(10 * this->Rim.size() + this->Loose.size());
-  this->Of.Links[place] = InsertionMesh::Vertex;
+  this->Surface.Links[place] = InsertionMesh::Vertex;
   const auto gap = std::find_if(
     this->Rim.begin(), this->Rim.end(), [](const RimEdge& edge) { return edge.Outside == Gap; });
   const bool isClosed = gap == this->Rim.end();
@@ -309,37 +311,38 @@ bool InsertionStrip::Insert(Index place, Index face)
  */
 bool InsertionStrip::IsBetterFlipped(Index face) const
 {
-  const Face& here = this->Of.Faces[face];
+  const Face& here = this->Surface.Faces[face];
   if (here.Neighbors[0] == None || (here.Fixed & 1) != 0)
   {
     return false;
   }
   const Index from = here.Corners[0], to = here.Corners[1], place = here.Corners[2];
-  const Face& beyond = this->Of.Faces[here.Neighbors[0]];
+  const Face& beyond = this->Surface.Faces[here.Neighbors[0]];
   const int entry = beyond.EdgeFrom(to);
   const Index across = beyond.Corners[(entry + 2) % 3], outside = beyond.Neighbors[(entry + 1) % 3];
-  if (!this->HasCorner(across) || (outside != None && !this->HasCorners(this->Of.Faces[outside])) ||
-    this->Of.SideOf(place, from, across) != Positive ||
-    this->Of.SideOf(place, across, to) != Positive)
+  if (!this->HasCorner(across) ||
+    (outside != None && !this->HasCorners(this->Surface.Faces[outside])) ||
+    this->Surface.SideOf(place, from, across) != Positive ||
+    this->Surface.SideOf(place, across, to) != Positive)
   {
     return false;
   }
   const double shape =
-    std::min(this->Of.ShapeOf(from, to, place), this->Of.ShapeOf(to, from, across));
+    std::min(this->Surface.ShapeOf(from, to, place), this->Surface.ShapeOf(to, from, across));
   const double flipped =
-    std::min(this->Of.ShapeOf(place, from, across), this->Of.ShapeOf(place, across, to));
+    std::min(this->Surface.ShapeOf(place, from, across), this->Surface.ShapeOf(place, across, to));
   if (flipped < LeastShape * shape || shape < LeastShape * flipped)
   {
     return flipped > shape;
   }
-  const ElevatedPlace* const places = this->Of.Places.data();
+  const ElevatedPlace* const places = this->Surface.Places.data();
   const ElevatedPlace &a = places[from], &b = places[to], &p = places[place], &d = places[across];
   const TwoTriangles made(p, d, a, b);
   double sum = 0.0;
   for (const Face* one : { &here, &beyond })
   {
     const Slopes slopes = SlopesOf(a, b, one == &here ? p : d);
-    for (Index point = one->First; point != None; point = this->Of.Links[point])
+    for (Index point = one->First; point != None; point = this->Surface.Links[point])
     {
       const ElevatedPlace& q = places[point];
       const double before = ErrorOf(q, a, slopes), after = made.ErrorAt(q);
@@ -352,7 +355,7 @@ bool InsertionStrip::IsBetterFlipped(Index face) const
 /** The face becomes the triangle before the new edge, its neighbour the one after it. */
 void InsertionStrip::Flip(Index face)
 {
-  Buffer<Face>& faces = this->Of.Faces;
+  Buffer<Face>& faces = this->Surface.Faces;
   const Face here = faces[face];
   const Index other = here.Neighbors[0];
   const Face beyond = faces[other];
@@ -374,15 +377,15 @@ void InsertionStrip::Flip(Index face)
     Face& next = faces[here.Neighbors[1]];
     next.Neighbors[next.EdgeFrom(place)] = other;
   }
-  const ElevatedPlace* const places = this->Of.Places.data();
+  const ElevatedPlace* const places = this->Surface.Places.data();
   const TwoTriangles made(places[place], places[across], places[from], places[to]);
   for (const Index list : { here.First, beyond.First })
   {
     for (Index point = list, next; point != None; point = next)
     {
-      next = this->Of.Links[point];
+      next = this->Surface.Links[point];
       const ElevatedPlace& q = places[point];
-      this->Of.AddTo(faces[made.IsInFirst(q) ? face : other], point, made.ErrorAt(q));
+      this->Surface.AddTo(faces[made.IsInFirst(q) ? face : other], point, made.ErrorAt(q));
     }
   }
 }
@@ -397,7 +400,7 @@ void InsertionStrip::FlipByData()
     open.pop_back();
     if (this->IsBetterFlipped(face))
     {
-      const Index other = this->Of.Faces[face].Neighbors[0];
+      const Index other = this->Surface.Faces[face].Neighbors[0];
       this->Flip(face);
       this->Fan.push_back(other);
       open.insert(open.end(), { face, other });
@@ -410,8 +413,8 @@ void InsertionStrip::SetLevels(double error, double mostVertices)
   float largest = 0.0f;
   for (const Index face : this->Faces)
   {
-    largest = std::max(largest, this->Of.Faces[face].Error);
-    this->Of.Faces[face].IsPostponed = false;
+    largest = std::max(largest, this->Surface.Faces[face].Error);
+    this->Surface.Faces[face].IsPostponed = false;
   }
   largest = std::min(largest, LargestLevel);
   this->Error = std::max(error, LeastLevel);
@@ -438,7 +441,7 @@ bool InsertionStrip::Work(const Round& round)
     {
       const Index face = this->Due.back();
       this->Due.pop_back();
-      if (this->IsDue(face) && this->Insert(this->Of.Faces[face].Worst, face))
+      if (this->IsDue(face) && this->Insert(this->Surface.Faces[face].Worst, face))
       {
         std::copy_if(this->Fan.begin(), this->Fan.end(), std::back_inserter(this->Due),
           [this](Index made) { return this->IsDue(made); });

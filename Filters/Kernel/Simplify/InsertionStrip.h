@@ -24,8 +24,8 @@ public:
   static constexpr Index FacesAtOnce = 64; ///< that a strip takes from the mesh
 
   /** @param[in] edges  which ones a new point is joined to others by */
-  InsertionStrip(InsertionMesh& of, EdgeCriterion edges, Index begin, Index end)
-    : Of(of)
+  InsertionStrip(InsertionMesh& surface, EdgeCriterion edges, Index begin, Index end)
+    : Surface(surface)
     , Edges(edges)
     , Begin(begin)
     , End(end)
@@ -45,7 +45,7 @@ public:
   bool Insert(Index place, Index face);
 
 private:
-  InsertionMesh& Of;
+  InsertionMesh& Surface;
   const EdgeCriterion Edges;
 
 public:
@@ -75,11 +75,11 @@ private:
   bool IsCut(Index end) const { return end == this->Cut[0] || end == this->Cut[1]; }
   bool IsDue(Index face) const
   {
-    return this->Of.Faces[face].Error > this->Level && !this->Of.Faces[face].IsPostponed;
+    return this->Surface.Faces[face].Error > this->Level && !this->Surface.Faces[face].IsPostponed;
   }
   bool IsWhole() const
   {
-    return this->End - this->Begin == static_cast<Index>(this->Of.Places.size());
+    return this->End - this->Begin == static_cast<Index>(this->Surface.Places.size());
   }
 
   double Error = 0.0, Level = 0.0, MostFaces = 0.0;
