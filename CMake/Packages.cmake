@@ -5,7 +5,7 @@
 # build and all packages are made by Utilities/packages:
 #   against VTK:       libvtkelevationsurface0.1, libvtkelevationsurface-dev,
 #                      python3-vtkelevationsurface
-#   against ParaView:  paraview-elevationsurface, which holds all it needs beside ParaView
+#   against ParaView:  paraview-elevationsurface, which holds all it needs besides ParaView
 # dpkg-shlibdeps finds what the libraries depend on; what it cannot see is said here.
 
 # ---- what is common ----------------------------------------------------------------------------
@@ -109,7 +109,7 @@ set(es_about "The filters connect scattered points (picks of a seismic horizon, 
 LiDAR returns, pixels of a terrain model) by an exact Delaunay triangulation of
 their x,y, remove the triangles outside the surface's boundary, and fill the
 holes inside with new points and triangles. Breaklines and faults become edges.
-Every unused point and every hole that stays open is told.
+Every unused point and every hole that stays open is reported.
 .
 ")
 if (ES_PARAVIEW)

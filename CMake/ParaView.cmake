@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 
 # Finds ParaView; its VTK_DIR is then the one that find_package(VTK) takes. Where ParaView_DIR does not
-# say where it is, the folder of "Utilities/setup plugin" comes before the system: Debian's ParaView beside
+# say where it is, the folder of "Utilities/setup plugin" comes before the system: Debian's ParaView next to
 # Debian's VTK lacks files that its CMake package wants.
 macro (es_find_paraview)
   set(es_paraview_hints)
@@ -95,7 +95,7 @@ function (es_paraview_environment variable)
   set("${variable}" "${environment}" PARENT_SCOPE)
 endfunction ()
 
-# The state ElevationSurface.pvsm beside the plugin: ParaView itself writes it, with the plugin that was just
+# The state ElevationSurface.pvsm next to the plugin: ParaView itself writes it, with the plugin that was just
 # built. A machine that cannot do that has no state, and es_no_state says why; a failure of one that can is
 # an error.
 macro (es_make_state)

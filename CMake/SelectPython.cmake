@@ -39,7 +39,7 @@ function (es_select_python vtk_version vtk_prefix)
     return ()
   endif ()
 
-  # The interpreter beside VTK first, then PATH in its order.
+  # The interpreter next to VTK first, then PATH in its order.
   file(TO_CMAKE_PATH "$ENV{PATH}" folders)
   set(candidates)
   foreach (folder IN LISTS vtk_prefix folders)

@@ -7,7 +7,7 @@
 # ---- options -----------------------------------------------------------------------------------
 option(BUILD_SHARED_LIBS "Build a shared library" ON)
 option(ES_PARAVIEW "Build the ParaView plugin, against ParaView's VTK" OFF)
-option(ES_WRAP_PYTHON "Build the Python package vtkelevationsurface, beside the plugin with ES_PARAVIEW" ON)
+option(ES_WRAP_PYTHON "Build the Python package vtkelevationsurface, next to the plugin with ES_PARAVIEW" ON)
 option(ES_STATE "With ES_PARAVIEW: make the plugin's example of a state, where pvpython and a display are found" ON)
 option(ES_BENCHMARKS "Build the benchmarks; they compare with CGAL where it is found" OFF)
 option(ES_WARNINGS "Compile with -Wall -Wextra" OFF)

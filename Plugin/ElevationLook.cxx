@@ -158,7 +158,7 @@ void ColourByElevation(vtkSMProxy* colours, vtkPVXMLElement* xml, const double r
   colours->UpdateVTKObjects();
 }
 
-// Plain numbers beside the colours, with as many digits as the range needs. The bar stays hidden until
+// Plain numbers next to the colours, with as many digits as the range needs. The bar stays hidden until
 // ParaView shows it.
 void WritePlainNumbers(vtkSMProxy* colours, vtkSMProxy* view, const double range[2])
 {

@@ -48,7 +48,7 @@ std::string OwnFile()
 
 void Import()
 {
-  // What is missing is told where an entry needs the package.
+  // What is missing is reported where an entry needs the package.
   vtkPythonInterpreter::RunSimpleString("try:\n"
                                         "    __import__('vtkelevationsurface')\n"
                                         "except ImportError:\n"

@@ -4,8 +4,8 @@
 
     python3 Plugin/make_entries.py <template> <file to write>
 
-The templates, ElevationSurface.xml.in and PythonEntries.xml.in, hold what is no property; the first
-tells what becomes of its elements. The properties are those of Python/properties.ini.
+The templates, ElevationSurface.xml.in and PythonEntries.xml.in, hold what is not a property; the first
+explains its elements. The properties are those of Python/properties.ini.
 """
 import os
 import sys
@@ -39,7 +39,7 @@ def add_domain(parent, one, numbers, place):
         domain = element(parent, "EnumerationDomain", name="enum")
         for i, choice in enumerate(one.choices):
             element(domain, "Entry", value=str(i), text=titled(choice))
-    elif kind.of == "bool":
+    elif kind.value_type == "bool":
         element(parent, "BooleanDomain", name="bool")
     elif one.words["takes"] == "length" and place == "filter":
         # A slider that fits the data. The button that resets it gives 0, the default of the class.
@@ -47,19 +47,19 @@ def add_domain(parent, one, numbers, place):
                          scale_factor=one.words.get("scale", "0.1"), default_mode="min")
         required = element(domain, "RequiredProperties")
         element(required, "Property", name="Input", function="Input")
-    elif kind.of != "string" and len(numbers) == 1 and numbers[0] >= 0:
-        domain = element(parent, TAGS[kind.of] + "RangeDomain", name="range", min="0")
+    elif kind.value_type != "string" and len(numbers) == 1 and numbers[0] >= 0:
+        domain = element(parent, TAGS[kind.value_type] + "RangeDomain", name="range", min="0")
         if kind.most < float("inf"):
             domain.set("max", f"{kind.most:g}")
 
 
 def add_described(parent, one, place):
     """The element of a property. Returns its name."""
-    is_text = one.kind.of == "string"
+    is_text = one.kind.value_type == "string"
     numbers = [] if is_text else one.kind.numbers(one.default_in(place) or "0")
     name = one.name_in(place)
     made = element(
-        parent, TAGS[one.kind.of] + "VectorProperty", name=name, label=one.label_in(place),
+        parent, TAGS[one.kind.value_type] + "VectorProperty", name=name, label=one.label_in(place),
         command="Set" + name, number_of_elements=str(len(numbers) or 1),
         default_values=" ".join(str(n) if isinstance(n, int) else f"{n:g}" for n in numbers),
     )

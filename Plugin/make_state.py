@@ -4,8 +4,8 @@
 
     pvpython Plugin/make_state.py <the built plugin> <file to write>
 
-The build of the plugin does so, and puts the state beside it. The state names its data file without a
-folder. When it is loaded, ParaView is told to search the folder Data of the repository: "Search files
+The build of the plugin does so, and puts the state next to it. The state names its data file without a
+folder. When it is loaded, ParaView must search the folder Data of the repository: "Search files
 under specified directory" in the client, LoadState(file, data_directory=folder) in a script.
 """
 import os

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the algorithms of this package have in common: how they report what they have done, and how
-data sets carry words and elevations."""
+"""What the algorithms of this package share: how they report their work, and how data sets carry
+words and elevations."""
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from .clouds import coordinates_of
 from .messages import Aborted, ElevationSurfaceError
 from .names import PANEL, written_for
-from .ranks import is_of_all_ranks, total
+from .ranks import is_on_all_ranks, total
 
 ELEVATION = "Elevation"
 STOPPED = (
@@ -67,15 +67,15 @@ def set_words(data, name, lines):
 
 
 def words_of(attributes, name):
-    """The words of an array of field or cell data; none where there is no such array of words."""
+    """The words in an array of field or cell data; none without such an array of words."""
     words = attributes.GetAbstractArray(name)
     if not isinstance(words, vtkStringArray):
         return []
     return [words.GetValue(i) for i in range(words.GetNumberOfValues())]
 
 
-def words_of_error(error):
-    """What the user is to read of an exception."""
+def error_text(error):
+    """The message for the user about an exception."""
     if isinstance(error, MemoryError):
         return "there is not enough memory"
     if isinstance(error, (ElevationSurfaceError, ValueError, TypeError)):
@@ -84,7 +84,7 @@ def words_of_error(error):
 
 
 class ReportingAlgorithm(VTKPythonAlgorithmBase):
-    """An algorithm that reports to its user what it has done and why it cannot, each once."""
+    """An algorithm that reports to its user what it has done or why it failed, each once."""
 
     def __init__(self, inputs, outputs):
         VTKPythonAlgorithmBase.__init__(
@@ -121,7 +121,7 @@ class ReportingAlgorithm(VTKPythonAlgorithmBase):
         return 1
 
     def stop(self, outputs):
-        """Empties the outputs, and says so. Returns as fail() does.
+        """Empties the outputs and reports that. Returns as fail() does.
 
         They count as up to date: ParaView updates each of them in one Apply, which would begin anew.
         """
@@ -134,13 +134,13 @@ class ReportingAlgorithm(VTKPythonAlgorithmBase):
         return 1
 
     def fail(self, error):
-        """Reports an exception as vtkErrorMacro() does. Returns what RequestData() is to return.
+        """Reports an exception as vtkErrorMacro() does. Returns what RequestData() should return.
 
-        That is success, with empty output. After a failure the executive would add lines that say
-        nothing, and ParaView would never update a picture of this output again.
+        That is success, with empty output. After a failure the executive would add meaningless lines,
+        and ParaView would never update a picture of this output again.
         """
-        if not is_of_all_ranks(error) or error.is_reported_here:
-            self.error(words_of_error(error))
+        if not is_on_all_ranks(error) or error.is_reported_here:
+            self.error(error_text(error))
         self._shown = ""
         return 1
 

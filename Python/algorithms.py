@@ -3,7 +3,7 @@
 """Reading and reconstructing as VTK algorithms, for pipelines and for ParaView.
 
 ElevationPoints reads what read() reads; ReconstructElevationSurface makes of its input what
-reconstruct() makes of it. Both tell what they have done as text, and an error in one line.
+reconstruct() makes of it. Both report their work as text, and an error in one line.
 """
 
 import dataclasses
@@ -29,8 +29,8 @@ from .block_reports import (
     lines_to_show,
     once,
     recognised,
-    report_of_block,
-    report_of_failed_block,
+    block_report,
+    failed_block_report,
     report_rows,
     report_text,
 )
@@ -45,14 +45,14 @@ from .blocks import parts_of, put_parts, surfaces_of
 from .clouds import ReadOptions, cells_of, joined, keep_points, notes_on, set_crs
 from .description import DESCRIBED
 from .inputs import cloud_of, lines_of
-from .messages import ElevationSurfaceError, Reason, counted, of_reason
+from .messages import ElevationSurfaceError, Reason, counted, counted_reason
 from .names import argument, option
 from .progress import share
 from .properties import PROPERTIES, checked
 from .ranks import agreed, controller_of, shared, together
 from .reading import read, read_boundary, read_faults
 from .reconstruction import NAMES, reconstruct_cloud
-from .relief import exaggeration_of_points, exaggeration_of_surfaces
+from .relief import point_exaggeration, surface_exaggeration
 from .report import crs_name
 from .spreading import gather_points
 
@@ -67,8 +67,8 @@ class ElevationPoints(ReportingAlgorithm):
     """Reads the points of a file, whatever its kind; or the lines of a boundary or of faults.
 
     Options are those of read(), as text: empty is the default. The output is vtkPolyData with a
-    vertex for each point and the point array Elevation. Its field array Recognised tells what the
-    file is, which columns were taken, and what was left out; GetRecognised() gives the same text.
+    vertex for each point and the point array Elevation. Its field array Recognised says what the
+    file is, which columns were taken, and what was left out; GetRecognised() returns the same text.
     Several files are time steps, 0, 1 and so on.
     """
 
@@ -76,7 +76,7 @@ class ElevationPoints(ReportingAlgorithm):
 
     def __init__(self):
         super().__init__(0, 1)
-        self._files, self._file, self._given = [], "", {}
+        self._files, self._file, self._properties = [], "", {}
         self._exaggeration = 1.0
 
     def SetFileName(self, name):
@@ -102,10 +102,10 @@ class ElevationPoints(ReportingAlgorithm):
 
     def lines(self, contents):
         """The boundary or the faults of the file. Raises ValueError for options of points."""
-        options = read_options(self._given)
-        of_points = [name for name in options if contents not in DESCRIBED[name].contents]
-        if of_points:
-            names = " and ".join(option(name) for name in of_points)
+        options = read_options(self._properties)
+        point_options = [name for name in options if contents not in DESCRIBED[name].contents]
+        if point_options:
+            names = " and ".join(option(name) for name in point_options)
             raise ValueError(f"{names}: of points only; lines are read as they are")
         if contents == "faults":
             return read_faults(self._file, options.get("depth", False), self.reading)
@@ -156,33 +156,33 @@ class ElevationPoints(ReportingAlgorithm):
         if not self._files:
             raise ValueError("no file is chosen")
         self.choose_file(information, output)
-        contents = self._given.get("contents") or "points"
+        contents = self._properties.get("contents") or "points"
         if contents != "points":
             output.ShallowCopy(self.lines(contents))
             count = output.GetNumberOfLines() + output.GetNumberOfPolys()
-            told = [f"{self._file}: {counted(count, 'line')} of {contents}"]
+            lines = [f"{self._file}: {counted(count, 'line')} of {contents}"]
         else:
-            options = read_options(self._given)
+            options = read_options(self._properties)
             cloud = read(self._file, progress=share(self.reading, 0.0, 0.9), **options)
             finite_points(cloud)
             self.reading(0.95)
             fill_points(output, cloud)
-            self._exaggeration = exaggeration_of_points(output)
-            told = [f"{self._file}: {counted(output.GetNumberOfPoints(), 'point')}"]
+            self._exaggeration = point_exaggeration(output)
+            lines = [f"{self._file}: {counted(output.GetNumberOfPoints(), 'point')}"]
             lost = cloud.left_out.items()
-            told += [f"{of_reason(count, reason)} left out" for reason, count in lost]
-            told += cloud.notes
+            lines += [f"{counted_reason(count, reason)} left out" for reason, count in lost]
+            lines += cloud.notes
             if cloud.crs:
-                told.append(f"coordinate reference system: {crs_name(cloud.crs)}")
-        set_words(output, RECOGNISED, told)
+                lines.append(f"coordinate reference system: {crs_name(cloud.crs)}")
+        set_words(output, RECOGNISED, lines)
         number = output.GetNumberOfPoints()
         set_words(output, CONTENTS, [contents, str(number)])
-        self._text = "\n".join(told)
-        return told
+        self._text = "\n".join(lines)
+        return lines
 
 
 def set_nothing(output):
-    """Marks what ElevationPoints could not read, and has said why."""
+    """Marks a file that ElevationPoints could not read, and has reported why."""
     set_words(output, RECOGNISED, [NOTHING])
     set_words(output, CONTENTS, [NOTHING])
 
@@ -240,10 +240,10 @@ class ReconstructElevationSurface(ReportingAlgorithm):
 
     def __init__(self):
         super().__init__(3, 4)
-        self._given, self._exaggeration, self._chosen = {}, 1.0, {}
+        self._properties, self._exaggeration, self._chosen = {}, 1.0, {}
 
     def GetReport(self):
-        """What became of every point and hole, one line each."""
+        """How every point was used and every hole was treated, one line each."""
         return self._text
 
     def GetEffectiveGapTolerance(self):
@@ -303,13 +303,13 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         reports = self.reconstruct_surfaces(surfaces, lines, results)
         reports = once(together(controller, lambda: reports))
         seen = [result.surface for result in results.values() if not result.cloud.plane]
-        self._exaggeration = exaggeration_of_surfaces(seen, controller)
+        self._exaggeration = surface_exaggeration(seen, controller)
         self.put(data, parts, results, outputs)
         self._text = report_text(reports)
         self._chosen = next((one["chosen"] for one in reports if "chosen" in one), {})
         if controller and controller.GetLocalProcessId() > 0:
-            return []  # the first rank tells of all
-        return self.tell(reports, any(has_failed_reader(part.data) for part in parts), outputs)
+            return []  # the first rank reports for all
+        return self.report_results(reports, any(has_failed_reader(part.data) for part in parts), outputs)
 
     def reconstruct_surfaces(self, surfaces, lines, results):
         """Adds the Reconstruction of each Surface to results, by the Part whose place it takes. Returns
@@ -318,20 +318,20 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         for i, surface in enumerate(surfaces):
             self._share = (i / len(surfaces), 1.0 / len(surfaces))
             try:
-                result, told = agreed(surface.ranks, lambda: self.result_of(surface, lines))
+                result, recognised_lines = agreed(surface.ranks, lambda: self.result_of(surface, lines))
                 if result:
                     results[surface.part] = result
-                    reports.append(report_of_block(surface, result, told))
+                    reports.append(block_report(surface, result, recognised_lines))
             except (ElevationSurfaceError, ValueError) as error:
-                reports.append(report_of_failed_block(surface, getattr(error, "message", str(error))))
+                reports.append(failed_block_report(surface, getattr(error, "message", str(error))))
             except MemoryError:
-                reports.append(report_of_failed_block(surface, "there is not enough memory"))
+                reports.append(failed_block_report(surface, "there is not enough memory"))
         return reports
 
     def result_of(self, surface, lines):
         """(the Reconstruction of a Surface, what its reader has found out). The Reconstruction is None on
         a rank that has none because another makes the whole."""
-        given, ranks = dict(self._given), surface.ranks
+        given, ranks = dict(self._properties), surface.ranks
         properties = {name: given[name] for name in given if name in PROPERTIES}
         properties = checked(properties, argument)
         options = ReadOptions(**read_options(given))
@@ -342,14 +342,14 @@ class ReconstructElevationSurface(ReportingAlgorithm):
             )
         cloud = cloud_of(surface.data, given.get("elevation_array") or "", options, ranks)
         drop_elevation(cloud.points, ranks)
-        told = recognised(cloud.points, ranks)
-        cloud.notes += told + notes_on(cloud, lines, ranks)
+        found = recognised(cloud.points, ranks)
+        cloud.notes += found + notes_on(cloud, lines, ranks)
         gathered = []
         if ranks and properties.get("maximum_elevation_error"):
             gathered.append(ERROR_NEEDS_ALL.format(option("maximum_elevation_error")))
             cloud.points, ranks = gather_points(ranks, cloud.points), None
             if not cloud.points.GetNumberOfPoints():
-                return None, told
+                return None, found
         steps = {name: given[name] for name in ("trim", "fill") if name in given}
         result = reconstruct_cloud(
             cloud, lines, NAMES, properties, ranks=ranks, progress=self.step, **steps
@@ -357,7 +357,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         result.gathered += gathered
         result.report  # pylint: disable=pointless-statement  (all ranks make it)
         set_elevation(result.surface, ranks)
-        return result, told
+        return result, found
 
     def step(self, words, fraction):
         first, last = self.STEPS[words]
@@ -373,7 +373,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
                     one.ShallowCopy(getattr(results[part], name) or vtkPolyData())
             put_parts(vtkDataObject.GetData(outputs, port), data, parts, made)
 
-    def tell(self, reports, reader_has_told, outputs):
+    def report_results(self, reports, has_failed_input, outputs):
         """Fills the table, and sends warnings and errors. Returns the lines to show."""
         errors = [report for report in reports if "error" in report]
         made = [report for report in reports if "error" not in report]
@@ -382,8 +382,8 @@ class ReconstructElevationSurface(ReportingAlgorithm):
                 self.warn(in_block(report, note))
         if errors:
             self.error(joined_errors(errors, len(made)))
-        elif not made and reader_has_told:
-            self._text = "the input is empty; its reader has told why"
+        elif not made and has_failed_input:
+            self._text = "the input is empty; its reader has reported why"
         elif not made:
             raise ElevationSurfaceError("the input has no points")
         if not made:
@@ -397,13 +397,13 @@ def has_failed_reader(data):
     return words_of(data.GetFieldData(), CONTENTS) == [NOTHING]
 
 
-def taken(one, value, place):
-    """What a property takes in Python of what a panel gives: None for what is as if not given."""
+def python_value(one, value, place):
+    """The value in Python for what a panel gives: None for what counts as not given."""
     if one.choices and isinstance(value, int):
         return one.choices[value]
-    if one.kind.of == "bool" and value in (0, 1):
+    if one.kind.value_type == "bool" and value in (0, 1):
         return bool(value)
-    if one.kind.of == "string":
+    if one.kind.value_type == "string":
         return None if value is None or not str(value).strip() else str(value)
     if one.default_in(place) == "-1" and value is not None and float(value) < 0:
         return None  # chosen; 0 is a value of its own
@@ -415,9 +415,9 @@ def add_setters(algorithm, place):
 
     def setter(one):
         def set_property(self, value):
-            value = taken(one, value, place)
-            if self._given.get(one.name) != value:
-                self._given[one.name] = value
+            value = python_value(one, value, place)
+            if self._properties.get(one.name) != value:
+                self._properties[one.name] = value
                 self.Modified()
 
         set_property.__doc__ = f"{one.name}: {one.takes}. {one.line[:1].upper() + one.line[1:]}."

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What became of each block of an input: a report of plain values, which ranks can exchange, for each
-block, and the report that these make together."""
+"""The report on each block of an input, as plain values that ranks can exchange, and the report that
+these make together."""
 
 import math
 
@@ -23,32 +23,32 @@ def recognised(points, ranks=None):
     ranks  the controller of those that have some of the points each, or None
     """
     count = total(ranks, points.GetNumberOfPoints())
-    told = points.GetFieldData()
-    words = together(ranks, lambda: [[words_of(told, name) for name in (RECOGNISED, CONTENTS)]])
+    fields = points.GetFieldData()
+    words = together(ranks, lambda: [[words_of(fields, name) for name in (RECOGNISED, CONTENTS)]])
     lines, contents = next((pair for pair in words if pair[0]), ([], []))
     if lines and contents[1:] != [str(count)]:
         lines[0] += f"; this surface is of {counted(count, 'point')}"
     return lines
 
 
-def report_of_block(surface, result, told):
-    """The report of a Surface that became a Reconstruction; told: recognised() of its points."""
+def block_report(surface, result, recognised_lines):
+    """The report on a Surface that became a Reconstruction; recognised_lines: recognised() of its points."""
     # A panel always says which of several heights is taken, so that nobody has decided it.
     notes = result.decided + result.notes
     return {
         "place": surface.place,
         "name": surface.name,
         "warnings": notes + result.gathered,
-        "shown": notes + told,
+        "shown": notes + recognised_lines,
         "rows": report_lines(result.report),
         "counts": main_counts(result),
         "sums": sums_of(result),
-        "chosen": chosen(result),
+        "chosen": chosen_values(result),
     }
 
 
-def chosen(result):
-    """What was used of properties that may be left to be chosen: {property of the panel: value}."""
+def chosen_values(result):
+    """The values used for properties that may be left to be chosen: {property of the panel: value}."""
     report = result.report
     holes = report.get("holes", {"open_edge_length": 0.0, "list": ()})
     return {
@@ -71,8 +71,8 @@ def spacing_of(result, holes):
     return sum(hole["inserted_points"] / points * hole["perimeter"] / hole["edges"] for hole in holes)
 
 
-def report_of_failed_block(surface, error):
-    """The report of a Surface that became nothing."""
+def failed_block_report(surface, error):
+    """The report on a Surface that could not be made."""
     return {"place": surface.place, "name": surface.name, "error": error}
 
 
@@ -111,21 +111,21 @@ def joined_errors(errors, others):
     return "\n".join(lines)
 
 
-def made_of(reports):
+def successes(reports):
     """The reports of blocks that became a surface."""
     return [report for report in reports if "error" not in report]
 
 
 def all_blocks(reports):
-    """[(item, text)] of what all blocks have together."""
-    columns = zip(*(report["sums"] for report in made_of(reports)))
+    """[(item, text)] for all blocks together."""
+    columns = zip(*(report["sums"] for report in successes(reports)))
     sums = [(*column[0][::2], sum(number for _, number, _ in column)) for column in columns]
     return [(item, f"{count:,} {words}".strip()) for item, words, count in sums]
 
 
 def counts_of(reports):
-    """What one wants to know first, as a list of words."""
-    made = made_of(reports)
+    """The main figures, as a list of words."""
+    made = successes(reports)
     if len(made) == 1:
         return made[0]["counts"]
     rows = [row for row in all_blocks(made)[:3] if row[0] != "unused"]
@@ -134,7 +134,7 @@ def counts_of(reports):
 
 def report_rows(reports):
     """[(block, item, value)] of the report; none where no block became a surface."""
-    made = made_of(reports)
+    made = successes(reports)
     rows = [("all blocks", *row) for row in all_blocks(made)] if len(made) > 1 else []
     for report in reports if made else ():
         for item, value in report.get("rows") or [("error", report["error"])]:
@@ -154,7 +154,7 @@ def report_text(reports):
 
 
 def lines_to_show(reports):
-    """The lines of the report without those that were shown: warnings, and what a reader told."""
+    """The lines of the report without those already shown: warnings, and what a reader found out."""
     shown = {line for report in reports for line in report.get("shown", ())}
     return [
         f"{block}: {item:<10} {value}" if block else f"{item:<10} {value}"

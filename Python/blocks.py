@@ -23,8 +23,8 @@ from .ranks import together
 class Part:
     """A data set of the input.
 
-    place    numbers of the children that lead to it, from 0; () where the input is no composite
-    name     for messages: 'Block 2 ("north")'; "" where the input is no composite
+    place    numbers of the children that lead to it, from 0; () where the input is not a composite
+    name     for messages: 'Block 2 ("north")'; "" where the input is not a composite
     surface  the place of its surface: that of the block where it is one of several partitions
     block    the name of that
     """
@@ -38,7 +38,7 @@ class Part:
 
 @dataclasses.dataclass
 class Surface:
-    """What becomes one surface: a Part, or on ranks all partitions of a block.
+    """The input of one surface: a Part, or on ranks all partitions of a block.
 
     data   the data sets that this rank has of it
     part   the Part whose place its surface takes
@@ -56,7 +56,7 @@ class Surface:
 def surfaces_of(controller, parts):
     """(parts, Surfaces): those of all ranks that make a surface together, in the order of their places,
     then those that are made on this rank alone. Parts may be new where a rank has none of a surface."""
-    full = [part for part in parts if number_of_points(part.data) > 0]
+    full = [part for part in parts if point_count(part.data) > 0]
     known = {}
     if controller:
         own = controller.GetLocalProcessId()
@@ -85,28 +85,28 @@ def parts_of(data):
 
 def _parts_in(tree, place, name):
     are_partitions = isinstance(tree, vtkPartitionedDataSet)
-    count = _number_of_children(tree)
+    count = _child_count(tree)
     for i in range(count):
         child = _child(tree, i)
         if child is None:
             continue
-        of_child = (*place, i)
+        child_place = (*place, i)
         given = tree.GetMetaData(i).Get(vtkCompositeDataSet.NAME()) if tree.HasMetaData(i) else ""
         given = f' ("{given}")' if given else ""
-        words = f"Block {'.'.join(str(number) for number in of_child)}{given}"
+        words = f"Block {'.'.join(str(number) for number in child_place)}{given}"
         if are_partitions:
             which = f"artition {i}{given}"
             words = f"P{which}" if not name else name if count == 1 else f"{name}, p{which}"
         if isinstance(child, vtkDataObjectTree):
-            yield from _parts_in(child, of_child, words)
+            yield from _parts_in(child, child_place, words)
         elif are_partitions:
-            yield Part(child, of_child, words, place, name)
+            yield Part(child, child_place, words, place, name)
         else:
-            yield Part(child, of_child, words, of_child, words)
+            yield Part(child, child_place, words, child_place, words)
 
 
 # The kinds of trees have these under different names.
-def _number_of_children(tree):
+def _child_count(tree):
     if isinstance(tree, vtkMultiBlockDataSet):
         return tree.GetNumberOfBlocks()
     if isinstance(tree, vtkPartitionedDataSet):
@@ -139,7 +139,7 @@ def put_parts(output, data, parts, made):
             tree.SetPartition(part.place[-1], surface)
 
 
-def number_of_points(data):
+def point_count(data):
     """How many points or rows a data set has."""
     if isinstance(data, vtkTable):
         return data.GetNumberOfRows()
@@ -148,4 +148,4 @@ def number_of_points(data):
 
 def is_empty(data):
     """Whether it could have points, but has none."""
-    return isinstance(data, (vtkDataSet, vtkTable)) and number_of_points(data) == 0
+    return isinstance(data, (vtkDataSet, vtkTable)) and point_count(data) == 0

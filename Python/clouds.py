@@ -25,13 +25,13 @@ class Cloud:
 
     points   vtkPointSet with point data
     notes    what was found out or assumed, one line each, for the user
-    left_out {reason: count} of what the file holds but is no point, as pixels without data
+    left_out {reason: count} of what is not taken as a point, such as pixels without data
     lines    for text files, the line of each point in the file, else None
     crs      the coordinate reference system as WKT or AUTHORITY:CODE, or None where it is not known
     largest_cell  of points from a grid of unequal steps: the diagonal of its largest cell, else 0
     z_name   what z is called where it is from, with its unit, or ""
     is_horizon  whether it is of a kind of file or table in which horizons are
-    angles   "" or that x and y are degrees by their names or units, as "are angles"; "no" where they are none
+    angles   "" or that x and y are degrees by their names or units, as "are angles"; "no" where they are not
     words    {name: Words} of columns of text
     files    of merged files, Words with the file of each point, else None
     grid     the PixelGrid of points from a raster, or None
@@ -140,7 +140,7 @@ class Frame:
         return bool(numpy.allclose(self.places(numpy.array(corners)), ends, rtol=0, atol=EVEN))
 
 
-def frame_of_nodes(x, y):
+def node_frame(x, y):
     """The Frame of a raster with these nodes, (rows, columns) each; None where steps are not even."""
     if min(x.shape) < 2:
         return None
@@ -158,7 +158,7 @@ def frame_of_nodes(x, y):
     return frame if away <= EVEN * min(math.hypot(a, d), math.hypot(b, e)) else None
 
 
-def frame_of_all(frames):
+def common_frame(frames):
     """The Frame of rasters side by side, on whose pixels they all are; None where one has none."""
     if not all(frames):
         return None
@@ -168,7 +168,7 @@ def frame_of_all(frames):
 
 
 def pixels_of(valid, row, column):
-    """What grid_of() wants to know of the pixels of a raster, or of a rectangle of them, as plain values:
+    """What grid_of() needs to know about the pixels of a raster, or of a rectangle of them, as plain values:
     [triangles of half a cell, pixels, x and y of one, [longest step, its length, shortest length] along
     a row, the same along a column, or None].
 
@@ -227,11 +227,11 @@ def class_numbers(classes):
 
 @dataclasses.dataclass
 class ReadOptions:
-    """What the user said on how a file is to be read; see --help."""
+    """How a file is to be read; see --help."""
 
     columns: object = None  # None, or three names or numbers (from 1) of the x, y and z columns
     no_data: object = None  # None, or the elevation that marks missing values
-    skip_bad_lines: bool = False  # lines of a text that are no rows are left out
+    skip_bad_lines: bool = False  # lines of a text that are not rows are left out
     keep_nulls: bool = False  # usual null values are kept, though they stand apart
     depth: bool = False  # z counts downwards; it is turned over
     progress: object = no_progress  # is called with the fraction read; what it raises ends it
@@ -321,11 +321,11 @@ def mark_bare(data, bare=None):
     data.GetCellData().AddArray(flags)
 
 
-def parts_of_lines(data):
+def line_parts(data):
     """(names, parts) of the lines and polygons of vtkPolyData, as make_lines() takes them."""
     if data.GetPoints() is None:
         return [], []
-    xyz, named = vtk_to_numpy(data.GetPoints().GetData()).astype("f8"), names_of_cells(data)
+    xyz, named = vtk_to_numpy(data.GetPoints().GetData()).astype("f8"), cell_names(data)
     first, names, parts = data.GetNumberOfVerts(), [], []
     for cells, kind in ((data.GetLines(), "line"), (data.GetPolys(), "polygon")):
         ids, ends = (
@@ -341,7 +341,7 @@ def parts_of_lines(data):
     return names, parts
 
 
-def names_of_cells(data):
+def cell_names(data):
     """{how the filters call a line or polygon: its name}; empty where make_lines() was given no names."""
     words = data.GetCellData().GetAbstractArray(LINE_NAMES)
     if not isinstance(words, vtkStringArray) or words.GetNumberOfValues() != data.GetNumberOfCells():
@@ -354,7 +354,7 @@ def names_of_cells(data):
 
 
 def bare_lines(data):
-    """(n,) of bool: which of the lines of parts_of_lines() have no z of their own."""
+    """(n,) of bool: which of the lines of line_parts() have no z of their own."""
     flags = data.GetCellData().GetArray(WITHOUT_Z)
     is_bare = numpy.zeros(data.GetNumberOfCells(), dtype=bool)
     if flags:
@@ -427,7 +427,7 @@ def joined(parts):
 def merged(names, clouds):
     """The points of several clouds as one Cloud. Point arrays that not all of them have are left out.
 
-    Lines of text files are told only where there is one file. Raises FileError where coordinate
+    Line numbers of text files are kept only where there is one file. Raises FileError where coordinate
     reference systems differ.
     """
     if len(clouds) == 1:
@@ -443,7 +443,7 @@ def merged(names, clouds):
     result = Cloud(append.GetOutput(), notes, crs=crs)
     first = clouds[0].grid
     if first and all(cloud.grid and cloud.grid.continues(first) for cloud in clouds):
-        result.grid, result.frame = first, frame_of_all([cloud.frame for cloud in clouds])
+        result.grid, result.frame = first, common_frame([cloud.frame for cloud in clouds])
     kept = result.points.GetPointData().GetNumberOfArrays()
     if any(cloud.points.GetPointData().GetNumberOfArrays() > kept for cloud in clouds):
         result.notes.append("point arrays that not all files have are left out")
@@ -471,7 +471,7 @@ def system_of(names, clouds):
 
 
 def notes_on(cloud, lines, ranks=None):
-    """What looks wrong with points and the lines beside them, one line each.
+    """What looks wrong with points and the lines given with them, one line each.
 
     lines   {"boundary": vtkPolyData, "faults": vtkPolyData}, of these what there is
     ranks   the controller of those that have a Cloud of some of the points each, or None
@@ -506,10 +506,10 @@ def heights_of(data, ranks=None):
 
 def faults_note(heights, faults):
     """A line for the user when z of faults is far from that of the points, see heights_of(); else None."""
-    of_faults = heights_of(faults)
-    if not heights or not of_faults:
+    fault_heights = heights_of(faults)
+    if not heights or not fault_heights:
         return None
-    (low, high), (first, last) = heights, of_faults
+    (low, high), (first, last) = heights, fault_heights
     allowed = 0.0 if first == last == 0.0 else high - low  # lines without z have 0
     if max(low - last, first - high) <= allowed:
         return None
@@ -564,18 +564,18 @@ def slices(count, at_once=None, first=0):
 
 @dataclasses.dataclass(frozen=True)
 class Part:
-    """A part of a file: from first on, up to last, where the whole file goes from 0 to whole."""
+    """A part of a file: from first on, up to last, where the whole file goes from 0 to total."""
 
     first: int = 0
     last: int = 1
-    whole: int = 1
+    total: int = 1
 
-    def of(self, count):
+    def rows(self, count):
         """The slice of so many rows or blocks that is in this part. Parts side by side share none."""
-        return slice(self.first * count // self.whole, self.last * count // self.whole)
+        return slice(self.first * count // self.total, self.last * count // self.total)
 
     def is_whole(self):
-        return self.last - self.first == self.whole
+        return self.last - self.first == self.total
 
 
 WHOLE = Part()
@@ -589,7 +589,7 @@ def corner_flags(triangles, count):
 
 
 def rounding_note(coordinates, why="VTK reads this format"):
-    """A line for the user when 32-bit coordinates are coarse beside the spacing, else None."""
+    """A line for the user when 32-bit coordinates are coarse for the spacing, else None."""
     xy = coordinates[:, :2]
     xy = xy[numpy.isfinite(xy).all(axis=1)]
     if len(xy) < 2:

@@ -36,7 +36,7 @@ from .results import Failure, NoPicture, Progress, Results, WrongOption, write_r
 from .selecting import NothingChosen, columns_in, none_chosen, values_to_make
 from .spreading import can_be_scattered, gather_surface, scatter
 from .supervisor import allow_stops
-from .writing.grids import beside, write_prj
+from .writing.grids import side_files, write_prj
 from .writing.outputs import write_output
 
 
@@ -57,7 +57,7 @@ class Run:
         self.no_picture = None  # why the picture that was asked for is missing
         if ranks and hasattr(os, "sched_getaffinity"):
             # mpirun may give each of them a core.
-            options.given.setdefault("threads", len(os.sched_getaffinity(0)))
+            options.properties.setdefault("threads", len(os.sched_getaffinity(0)))
 
     def timed(self, name, text, work):
         self.progress(text, 0.0)
@@ -131,16 +131,16 @@ class Run:
         if options.faults:
             lines["faults"] = self.read_faults(cloud)
         for data in lines.values() if options.project else ():
-            set_crs(data, crs_of(data) or crs)  # lines that tell none are in that of the points
+            set_crs(data, crs_of(data) or crs)  # lines without one are in that of the points
         names = {"points": options.files[0], "boundary": options.boundary, "faults": options.faults}
-        cloud, lines = in_plane(cloud, lines, options.given)
-        lines, notes = fitted(cloud, lines, names, options.given, options.strict)
+        cloud, lines = in_plane(cloud, lines, options.properties)
+        lines, notes = fitted(cloud, lines, names, options.properties, options.strict)
         cloud.notes += notes + notes_on(cloud, lines)
         return cloud, lines.get("boundary"), lines.get("faults")
 
     def check_spacing(self, reach):
         try:
-            check_spacing(reach, self.options.given.get("spacing", 0.0))
+            check_spacing(reach, self.options.properties.get("spacing", 0.0))
         except ValueError as error:
             raise WrongOption(f"{self.options.file}: {error}") from None
 
@@ -152,7 +152,7 @@ class Run:
         return faults
 
     def set_crs(self, cloud):
-        """What --crs says counts, and is told where the file says something else."""
+        """--crs counts; a note says so where the file names another system."""
         crs = self.options.crs
         try:
             found = reference_of(cloud.crs)
@@ -177,26 +177,26 @@ class Run:
 
         done = "write" if output.name == "output" else output.step or output.name
         notes = self.timed(done, words, lambda: self.results.add(path, write))
-        for other in beside(path) if result.crs else []:
+        for other in side_files(path) if result.crs else []:
             self.results.add(other, lambda partial: write_prj(partial, result.crs))
         return notes
 
     def reconstruct(self, cloud, boundary, faults):
         options = self.options
         ranks = self.ranks if total(self.ranks, not can_be_scattered(cloud.points)) == 0 else None
-        if options.given.get("maximum_elevation_error"):
+        if options.properties.get("maximum_elevation_error"):
             ranks = None  # points are chosen on one rank
         if not self.is_first and not ranks:
             return None  # the first does it alone
         part = cloud.copy()
         try:
-            heights = agreed(ranks, lambda: check_heights(cloud, options.given.get("duplicates")))
+            heights = agreed(ranks, lambda: check_heights(cloud, options.properties.get("duplicates")))
             part.points = scatter(ranks, cloud.points)
             result = run_chain(
                 part,
                 boundary,
                 faults,
-                options.given,
+                options.properties,
                 trim=options.trim,
                 fill=options.fill,
                 progress=self.progress,
@@ -248,7 +248,7 @@ class Run:
             check_screen(self.options.picture)
 
     def nothing(self):
-        """What a rank has that reads nothing: no points, and no lines where others have some."""
+        """What a rank that reads nothing has: no points, and no lines where others have some."""
         options = self.options
         return Cloud(vtkPolyData()), options.boundary and vtkPolyData(), options.faults and vtkPolyData()
 
@@ -288,9 +288,9 @@ class Run:
         return report
 
     def check_picture(self):
-        """Raises NoPicture, on all ranks, once all else is written and told."""
+        """Raises NoPicture, on all ranks, once everything else is written and reported."""
         if total(self.ranks, self.no_picture is not None):
-            raise NoPicture(f"{self.no_picture or 'no picture'}; all else is written")
+            raise NoPicture(f"{self.no_picture or 'no picture'}; everything else is written")
 
 
 def run_one(options, ranks):
@@ -351,7 +351,7 @@ def main(arguments=None, ranks=None):
     """The exit code: 0, 1 where a file or its points cannot be used, 2 for a wrong option, 3 where
     all but the picture is written."""
     options = parse_arguments(arguments)
-    # Numbers near the end of their range make infinities; what these mean is told where it matters.
+    # Numbers near the end of their range make infinities; what these mean is reported where it matters.
     numpy.seterr(all="ignore")
     together = [[path] for path in options.files] if options.each else [options.files]
     runs = [options_of(options, files) for files in together]

@@ -35,7 +35,7 @@ class Kind:
     """What a property takes.
 
     metavar  of the option; "" where it takes no value
-    of       the values of a panel: double, int, bool, string
+    value_type  of the values of a panel: double, int, bool, string
     words    what it takes, where that is not its range
     make     makes the value of what is given, where that is not its range; raises ValueError
     least, most  its range; is_above: the least itself is none
@@ -44,7 +44,7 @@ class Kind:
     """
 
     metavar: str
-    of: str = "string"
+    value_type: str = "string"
     words: str = ""
     make: object = None
     least: float = 0
@@ -56,7 +56,7 @@ class Kind:
     @property
     def takes(self):
         """In words, for errors."""
-        words = "a whole number" if self.of == "int" else "a number"
+        words = "a whole number" if self.value_type == "int" else "a number"
         if self.is_above:
             words += f" above {self.least}"
         elif self.most < math.inf:
@@ -67,13 +67,13 @@ class Kind:
 
     def convert(self, value):
         """The value that the filters take of what is given. Raises ValueError, TypeError."""
-        if self.make or self.of == "string":
+        if self.make or self.value_type == "string":
             return self.make(value) if self.make else value
         if self.choices:
             return self.choices.index(str(value).lower().replace("_", "-").replace(" ", "-"))
-        if self.of == "bool":
+        if self.value_type == "bool":
             return bool([False, True].index(value))
-        number = int(value) if self.of == "int" else float(value)
+        number = int(value) if self.value_type == "int" else float(value)
         is_within = self.least <= number <= self.most and number < math.inf
         if number != float(value) or not is_within or (self.is_above and number == self.least):
             raise ValueError
@@ -83,9 +83,9 @@ class Kind:
         """The numbers of a default: "0 0 0 0", "keep-first", "on"."""
         if self.choices:
             return [self.choices.index(words)]
-        if self.of == "bool":
+        if self.value_type == "bool":
             return [int(words == "on")]
-        return [float(word) if self.of == "double" else int(word) for word in words.split()]
+        return [float(word) if self.value_type == "double" else int(word) for word in words.split()]
 
 
 VIEW = "top, or BEARING,HEIGHT in degrees with a height above 0 and at most 90, as 225,35"
@@ -163,7 +163,7 @@ class Property:
 
     def default_in(self, place):
         """In words, as properties.ini has it; "" where there is none."""
-        default = self.words.get("default", "off" if self.kind.of == "bool" else "")
+        default = self.words.get("default", "off" if self.kind.value_type == "bool" else "")
         return self.words.get("default." + place, default)
 
     def help_in(self, place):

@@ -21,7 +21,7 @@ BINS = 1024  # side by side, where triangles near points are looked for
 
 
 def distance_to(surface, coordinates, chosen, progress=None, ranks=None, ids=None):
-    """Distance of input points from a surface: max, mean and root mean square, as Metro tells them.
+    """Distance of input points from a surface: max, mean and root mean square, as Metro gives them.
 
     coordinates  (n, 3), the input points; those that are points of the surface come first there too
     chosen       (n,) of bool: which of them are measured
@@ -32,7 +32,7 @@ def distance_to(surface, coordinates, chosen, progress=None, ranks=None, ids=Non
     A point that is a corner of a triangle, with all three coordinates the same, has distance 0. For
     all others vtkImplicitPolyDataDistance finds the closest place of the surface; that takes some 10
     to 40 microseconds a point. Of more than MOST_MEASURED others, every k-th is measured and stands
-    for k; "measured" tells how many were.
+    for k; "measured" is their number.
     """
     corners = coordinates_of(surface).astype("f8", copy=False)
     triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)

@@ -9,7 +9,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .clouds import (
-    bare_lines, coordinates_of, heights_of, make_lines, mark_bare, parts_of_lines,
+    bare_lines, coordinates_of, heights_of, make_lines, mark_bare, line_parts,
 )
 from .messages import ElevationSurfaceError, Messages, counted
 from .names import option
@@ -19,7 +19,7 @@ from .ranks import agreed, all_values, total
 from .spreading import update
 from .vtkElevationSurface import vtkGridDelaunay2D
 
-ROUNDING = 1e-9  # of an edge: vertices no farther beside it are on it
+ROUNDING = 1e-9  # of an edge: vertices no farther from it are on it
 
 
 def draped(cloud, faults, name, given, strict=False, ranks=None):
@@ -74,13 +74,13 @@ def without_z(faults, name, given, heights):
     heights  of the points, see heights_of()
     """
     wanted = FAULTS_Z[given.get("faults_z", 0)]
-    names, parts = parts_of_lines(faults)
+    names, parts = line_parts(faults)
     bare = bare_lines(faults)
     words = f"{name}: {numpy.count_nonzero(bare):,} of {counted(len(parts), 'line')} without z"
     if wanted == "drape":
         bare[:] = True
         words = f"{name}: z of its lines is left aside, as {option('faults_z')} says"
-    elif wanted == "automatic" and not bare.all() and is_zero_beside(parts, bare, heights):
+    elif wanted == "automatic" and not bare.all() and is_zero_unlike_points(parts, bare, heights):
         bare[:] = True
         words = (
             f"{name}: z of its lines is 0 everywhere and that of the points never, so that they "
@@ -101,8 +101,8 @@ def check_given_z(faults, name, given, heights):
         )
 
 
-def is_zero_beside(parts, bare, heights):
-    """Whether z of all lines that have one is 0, and that of the points never comes to 0."""
+def is_zero_unlike_points(parts, bare, heights):
+    """Whether z of all lines that have one is 0, and that of the points never is."""
     if any(part[:, 2].any() for part, is_bare in zip(parts, bare) if not is_bare):
         return False
     return heights is not None and (heights[0] > 0.0 or heights[1] < 0.0)
@@ -133,8 +133,8 @@ class Surface:
         ends = self.vertices[self.are_ends(lines)]
         if ranks:  # what is on lines is enough
             edges = [edge for line in lines for edge in edges_with_reach(line)]
-            beside = [between(p, q, self.vertices, reach) for p, q, _, reach in edges]
-            found = all_values(ranks, numpy.concatenate([ends, *beside]).ravel(), "f8").reshape(-1, 3)
+            on_lines = [between(p, q, self.vertices, reach) for p, q, _, reach in edges]
+            found = all_values(ranks, numpy.concatenate([ends, *on_lines]).ravel(), "f8").reshape(-1, 3)
             found = numpy.unique(found, axis=0)
             self.vertices = found[numpy.argsort(found[:, 1], kind="stable")]
             ends = self.vertices[self.are_ends(lines)]
@@ -168,7 +168,7 @@ class Surface:
 
 
 def edges_with_reach(line):
-    """Yields both ends of each edge of a line, its length, and how far beside it a vertex is on it."""
+    """Yields both ends of each edge of a line, its length, and how far from it a vertex may be to count as on it."""
     for p, q in zip(line[:-1], line[1:]):
         length = float(numpy.hypot(*(q - p)[:2]))
         if length > 0.0:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What reading rasters and reading vectors by GDAL have in common."""
+"""What reading rasters and reading vectors by GDAL share."""
 
 import functools
 import importlib.util
@@ -144,7 +144,7 @@ def reference_of(crs):
         with quiet():
             reference.SetFromUserInput(crs)
     except RuntimeError:
-        raise ValueError(f"{crs} is no coordinate reference system that GDAL knows") from None
+        raise ValueError(f"{crs} is not a coordinate reference system that GDAL knows") from None
     reference.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
     return reference
 
@@ -160,7 +160,7 @@ def name_of(crs):
 
 
 def same_system(one, other):
-    """Whether x and y of two systems mean the same; None where that cannot be told.
+    """Whether x and y of two systems mean the same; None where that cannot be decided.
 
     Each is what reference_of() takes. Heights and the order of axes do not count.
     """

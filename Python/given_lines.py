@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Boundaries and faults as they come, made fit for the filters, with a note on all that is done."""
+"""Boundaries and faults as they come, made fit for the filters, with a note on every change."""
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import coordinates_of, crs_of, make_points, parts_of_lines, set_crs
+from .clouds import coordinates_of, crs_of, make_points, line_parts, set_crs
 from .draping import draped
 from .gdal_common import check_system, flat, is_near, name_of, quiet, reference_of, same_system
 from .mending import mended
@@ -30,18 +30,18 @@ def fitted(cloud, lines, names, given, strict=False, ranks=None):
     if "boundary" in lines:  # while places are still those of its file
         lines["boundary"], notes = mended(lines["boundary"], names["boundary"], strict)
     for name, data in lines.items():
-        lines[name], told = in_system(data, names[name], cloud, names["points"], strict, ranks)
-        notes = notes + told
+        lines[name], more = in_system(data, names[name], cloud, names["points"], strict, ranks)
+        notes = notes + more
     if "faults" in lines:
-        lines["faults"], told = draped(cloud, lines["faults"], names["faults"], given, strict, ranks)
-        notes += told
+        lines["faults"], more = draped(cloud, lines["faults"], names["faults"], given, strict, ranks)
+        notes += more
     return lines, notes
 
 
 def in_system(data, name, cloud, points_name, strict, ranks=None):
     """(data, notes): lines with x and y in the coordinate reference system of a Cloud."""
     crs = crs_of(data)
-    _, parts = parts_of_lines(data)
+    _, parts = line_parts(data)
     if not parts or strict or same_system(crs, cloud.crs) is not False or is_near(crs, cloud.crs):
         return data, check_system(name, crs, points_name, cloud.crs)
     from osgeo import osr
@@ -76,7 +76,7 @@ def in_system(data, name, cloud, points_name, strict, ranks=None):
     return moved, [
         f"{systems} by OGR, its first point ({old[0]:.10g}, {old[1]:.10g}) to ({new[0]:.10g}, "
         f"{new[1]:.10g}); edges between points stay straight, up to "
-        f"{numpy.hypot(*bend.T).max(initial=0.0):.3g} beside their places"
+        f"{numpy.hypot(*bend.T).max(initial=0.0):.3g} away from their places"
     ]
 
 
@@ -91,7 +91,7 @@ def check_overlap(xy, cloud, words, ranks):
         raise FileError(
             f"{words}, it is at x {west:.10g} to {east:.10g}, y {south:.10g} to {north:.10g}, away "
             f"from the points at x {x0:.10g} to {x1:.10g}, y {y0:.10g} to {y1:.10g}; is one of the "
-            f"systems wrong? {option('crs')} tells that of the points"
+            f"systems wrong? {option('crs')} sets that of the points"
         )
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Several heights at one place: how many, how far apart, and whether a column tells them apart.
+"""Several heights at one place: how many, how far apart, and whether a column separates them.
 
 An elevation surface has one height at a place. Of several, vtkGridDelaunay2D takes one and counts
 the others. That is right for a few, and wrong for two horizons in one table. The second is refused,
@@ -12,10 +12,10 @@ each height that the place has, up to MOST_STEPS times: noise and slopes make bo
 and the more heights, the farther apart noise makes the outer ones. They are many at more than MANY
 of the places.
 
-A column tells heights apart where, at almost all places, each of its values has one height, and
+A column separates heights where, at almost all places, each of its values has one height, and
 values come again from place to place. Its values are surfaces where, of two that share places, one
-is almost always above the other: so the lines of a survey that cross are none. Then the second
-condition of clearly apart is not asked for, and of text, which names things, MANY_BY_NAME of the
+is almost always above the other, so crossing survey lines are not surfaces. Then the second
+condition for clearly apart is dropped, and of text, which names things, MANY_BY_NAME of the
 places is enough.
 """
 
@@ -115,11 +115,11 @@ def several_heights(xyz):
 
 
 def usual_step(xyz, several):
-    """The usual difference of z between places beside each other: those in one cell of a grid of
+    """The usual difference of z between neighbouring places: those in one cell of a grid of
     some two places a cell. Of several heights at a place the lowest count, or the highest, whichever
     gives less: the ends of wells are uneven, the ground is not."""
     ends = several.starts + several.lengths() - 1
-    return min(step_between(xyz, several, ends_of) for ends_of in (several.starts, ends))
+    return min(step_between(xyz, several, chosen) for chosen in (several.starts, ends))
 
 
 def step_between(xyz, several, chosen):
@@ -141,7 +141,7 @@ def step_between(xyz, several, chosen):
 
 
 class Column:
-    """Whether a column tells apart the heights of Several.
+    """Whether a column separates the heights of Several.
 
     share     of the places at which each of its values has one height
     in_order  whether of two of its values that share places one is almost always above the other
@@ -187,8 +187,8 @@ class Column:
         return not self.in_order, self.least, self.count
 
 
-def telling_column(cloud, several, z):
-    """(name, column, Column) that tells the heights apart best, or None. The name of the files that
+def separating_column(cloud, several, z):
+    """(name, column, Column) that separates the heights best, or None. The name of the files that
     are merged is None."""
     columns = dict(columns_in(cloud))
     if cloud.files is not None:
@@ -224,7 +224,7 @@ def facts_of(several):
 
 
 def note_on(count, largest, policy):
-    """What is told of so many places with several heights."""
+    """The note on so many places with several heights."""
     taken = DUPLICATES[policy or 0].split("-")[1]
     return (
         f"{counted(count, 'place has', 'places have')} several heights, up to {largest:.7g} apart: "
@@ -239,15 +239,15 @@ def refuse_surfaces(cloud, xyz, several):
         return
     clear = several.spans > CLEAR_OF_RANGE * body(xyz[:, 2].astype("f8"))
     numbers = in_numbers(several.count(), several.places, several.largest())
-    told = telling_column(cloud, several, xyz[several.ids, 2].astype("f8"))
-    if told and told[2].in_order:
-        most = max(LEAST, told[2].least * several.places)
+    separating = separating_column(cloud, several, xyz[several.ids, 2].astype("f8"))
+    if separating and separating[2].in_order:
+        most = max(LEAST, separating[2].least * several.places)
         if numpy.count_nonzero(clear) >= most:
-            raise ElevationSurfaceError(f"{numbers}; {way_out(told)}")
+            raise ElevationSurfaceError(f"{numbers}; {way_out(separating)}")
     if are_many(numpy.count_nonzero(clear), several.places):
         clear &= several.spans > least_span(xyz, several)
         if are_many(numpy.count_nonzero(clear), several.places):
-            raise ElevationSurfaceError(f"{numbers}; {way_out(told)}")
+            raise ElevationSurfaceError(f"{numbers}; {way_out(separating)}")
 
 
 def are_many(count, places):
@@ -263,7 +263,7 @@ def least_span(xyz, several):
 def in_numbers(count, places, largest):
     return (
         f"{count:,} of {counted(places, 'place')} have several heights, up to {largest:.7g} apart, "
-        "so this is no one surface"
+        "so this is not one surface"
     )
 
 
@@ -271,20 +271,20 @@ def policies():
     return f"{option('duplicates')} keep-highest (or lowest, first, last) takes one height at each place"
 
 
-def way_out(told):
-    """What the user can do, by the column that tells heights apart, or None."""
-    if told is None:
+def way_out(separating):
+    """Advice for the user, given the separating_column(), or None."""
+    if separating is None:
         return (
-            "no column tells them apart; give each surface a file, or a column with its name; "
+            "no column separates them; give each surface a file, or a column with its name; "
             f"{policies()}"
         )
-    name, column, _ = told
+    name, column, _ = separating
     if name is None:
-        return f"the files tell them apart: {option('each')} makes a surface of each; {policies()}"
+        return f"the files separate them: {option('each')} makes a surface of each; {policies()}"
     value = coded(column)[1][0]
     called = name if name.startswith("column ") else f"column {name}"
     return (
-        f"{called} tells them apart: {shown_values(column)}; {option('each_value')} {shlex.quote(name)} "
+        f"{called} separates them: {shown_values(column)}; {option('each_value')} {shlex.quote(name)} "
         f"makes a surface of each value, {as_option(name, value)} one of this; {policies()}"
     )
 
@@ -292,7 +292,7 @@ def way_out(told):
 def heights_on_ranks(ranks, result, policy):
     """As check_heights(), of a Reconstruction whose points are triangulated: then all points at a place
     are on one rank. It looks at no columns."""
-    heights, xyz = HeightsOfPieces(ranks), result.coordinates
+    heights, xyz = PieceHeights(ranks), result.coordinates
     heights.see(xyz)
     heights.take_sample()
     heights.add(xyz)
@@ -300,7 +300,7 @@ def heights_on_ranks(ranks, result, policy):
     return heights.check(total(ranks, numpy.count_nonzero(is_vertex)), policy)
 
 
-class HeightsOfPieces:
+class PieceHeights:
     """Places with several heights of a surface that is made piece by piece, without columns. A
     place is in one piece, with all its points.
 
@@ -345,7 +345,7 @@ class HeightsOfPieces:
             one = as_option("COLUMN", "VALUE")
             raise ElevationSurfaceError(
                 f"{in_numbers(self.count, places, self.largest)}; a run in pieces looks at no "
-                f"columns: if one tells the heights apart, {one} takes those of one value; {policies()}"
+                f"columns: if one separates the heights, {one} takes those of one value; {policies()}"
             )
         facts = {"places": self.count, "of": places, "largest": self.largest}
         return note_on(self.count, self.largest, policy), facts

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What became of the holes of a surface, for the report."""
+"""How the holes of a surface were treated, for the report."""
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -15,13 +15,13 @@ from .ranks import all_values, before, summed, together, total
 
 def holes_of(result):
     """The part of the report on holes."""
-    report = report_of_holes(
+    report = hole_report(
         result.holes, result.bridged, result.fill, result.why_opened, result.ranks
     )
     return {**report, "open_edge_length": result.open_edge_length}
 
 
-def report_of_holes(outlines, bridged, fill, why_opened=None, ranks=None):
+def hole_report(outlines, bridged, fill, why_opened=None, ranks=None):
     """The part of the report on holes.
 
     outlines    vtkPolyData, with the report of the filter as cell data
@@ -82,8 +82,8 @@ def column_of(outlines, name):
 
 
 def hole_counts(ranks, result):
-    """(found, filled) of holes. A void that triangles bridge, and that stays so, is no hole; nor is
-    what the boundary has cut out and stays open."""
+    """(found, filled) of holes. A void that stays bridged by triangles is not a hole; nor is one that
+    the boundary has cut out and that stays open."""
     status = column_of(result.holes, "Status")
     left = total(ranks, numpy.count_nonzero((result.bridged & (status != 4)) | (status == 5)))
     return result.fill.GetNumberOfHoles() - left, result.fill.GetNumberOfFilledHoles()
@@ -146,7 +146,7 @@ def hole_places(lines):
 
 
 def hole_lines(holes, line):
-    """What became of the holes."""
+    """The lines on how the holes were treated."""
     line(
         "holes",
         f"{holes['found']:,} found, {holes['filled']:,} filled with "

@@ -38,7 +38,7 @@ from .reading.nulls import take_out
 from .reading.upwards import notes_on_up
 from .reading.vtk_files import points_of_grid
 
-SAMPLE = 3000  # rows of a table that tell its columns
+SAMPLE = 3000  # rows by which the columns of a table are recognised
 
 
 def cloud_of(parts, array="", options=None, ranks=None):
@@ -60,15 +60,15 @@ def cloud_of(parts, array="", options=None, ranks=None):
     if kinds[0] == "tables":
         if array:
             raise ElevationSurfaceError("of a table, Columns chooses z, not Elevation Array")
-        clouds = clouds_of_tables(parts, options, ranks)
+        clouds = table_clouds(parts, options, ranks)
     elif options.columns:
         raise ElevationSurfaceError(
             "Columns is for tables; of points and grids, Elevation Array chooses z"
         )
     elif kinds[0] == "points":
-        clouds = [cloud_of_points(part, array, ranks) for part in parts]
+        clouds = [point_set_cloud(part, array, ranks) for part in parts]
     else:
-        clouds = clouds_of_grids(parts, array, ranks)
+        clouds = grid_clouds(parts, array, ranks)
     cloud = clouds[0] if clouds else Cloud(vtkPolyData())
     if ranks:
         join_clouds(ranks, cloud, clouds)
@@ -122,13 +122,13 @@ def join_clouds(ranks, cloud, clouds):
 
 
 def check_array(attributes, name):
-    """Raises ElevationSurfaceError where a point array has no elevations, and tells which may."""
+    """Raises ElevationSurfaceError where a point array has no elevations, and names those that may."""
     if attributes.GetAbstractArray(name) is None:
         wrong = f"there is no point array named {name}"
     elif attributes.GetArray(name) is None:
         wrong = f"point array {name} holds words, not numbers"
     elif attributes.GetArray(name).GetNumberOfComponents() != 1:
-        wrong = f"point array {name} is no single number for each point"
+        wrong = f"point array {name} is not a single number for each point"
     else:
         return
     arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
@@ -136,7 +136,7 @@ def check_array(attributes, name):
     raise ElevationSurfaceError(f"{wrong}; there are: {', '.join(names) or 'none'}")
 
 
-def clouds_of_grids(grids, array, ranks):
+def grid_clouds(grids, array, ranks):
     """The Cloud of each grid, of which ranks have pieces: a node is in the first that has it."""
     extents = together(ranks, lambda: [list(grid.GetExtent()) for grid in grids])
     clouds = []
@@ -167,9 +167,9 @@ def nodes_of(extents, number):
     return nodes
 
 
-def cloud_of_points(data, array, ranks):
+def point_set_cloud(data, array, ranks):
     if data.GetNumberOfPoints() == 0:
-        raise ElevationSurfaceError("there are no points")
+        raise ElevationSurfaceError("there are not points")
     if array:
         check_array(data.GetPointData(), array)
     points = vtkPolyData()
@@ -214,7 +214,7 @@ def columns_of(table):
     return found
 
 
-def clouds_of_tables(tables, options, ranks):
+def table_clouds(tables, options, ranks):
     """x, y and z of each table, found in all of them together as those of text files are; all columns
     become point arrays."""
     every = [columns_of(table) for table in tables]
@@ -266,7 +266,7 @@ def numbers_of(column, name, first):
     values = [Layout(None).number(word) for word in column]
     if None in values:
         row = values.index(None)
-        raise ElevationSurfaceError(f"row {first + row} of column {name} is no number: {column[row]}")
+        raise ElevationSurfaceError(f"row {first + row} of column {name} is not a number: {column[row]}")
     return numpy.array(values)
 
 

@@ -9,7 +9,7 @@ import os
 import sys
 
 from .messages import ElevationSurfaceError
-from .ranks import is_of_all_ranks, start_ranks, together
+from .ranks import is_on_all_ranks, start_ranks, together
 from .supervisor import held_back, hold_stops, rank_and_size
 
 
@@ -26,7 +26,7 @@ def run_together(main):
     except SystemExit as end:
         code = end.code or 0
     except Exception as error:
-        if not is_of_all_ranks(error):
+        if not is_on_all_ranks(error):
             sys.stderr = sys.__stderr__  # nobody else can report it
         raise
     # mpirun stops the others when one ends with an error. They have come to the same end.

@@ -8,14 +8,14 @@ makes rings valid: what a ring goes around counts as inside, also where it goes 
 
 import numpy
 
-from .clouds import make_lines, parts_of_lines
+from .clouds import make_lines, line_parts
 from .gdal_common import gdal_module, quiet
 from .messages import ElevationSurfaceError, counted
 from .names import option
 from .outline import places_of, trial
 
 GAP = 0.01  # of the length of a ring: ends of lines no farther apart are joined
-MOVED = 0.5  # of the edges beside them: ends no farther apart are made one point
+MOVED = 0.5  # of the edges next to them: ends no farther apart are made one point
 MOST_NAMED = 20  # mends of a kind that get a note each
 NEIGHBOURS = 8  # ends that may be the other side of a gap
 
@@ -29,19 +29,19 @@ def mended(boundary, name, strict=False):
     Rings that need nothing are handed on as they are. Raises ElevationSurfaceError, also for a gap
     that is too wide, and where GEOS is needed but missing.
     """
-    names, parts = parts_of_lines(boundary)
+    names, parts = line_parts(boundary)
     if not parts or not all(numpy.isfinite(part[:, :2]).all() for part in parts):
         return boundary, []  # the filter says what is wrong
-    told = close_gaps(names, parts, name, strict)
-    rings = make_lines(parts, names) if told else boundary
+    notes = close_gaps(names, parts, name, strict)
+    rings = make_lines(parts, names) if notes else boundary
     if trial(rings)[0]:
         names, parts, valid = without_crossings(names, parts, name, strict)
         if valid:
-            told, rings = told + valid, make_lines(parts, names)
-    return rings, told
+            notes, rings = notes + valid, make_lines(parts, names)
+    return rings, notes
 
 
-def refused(words, strict):
+def refusal(words, strict):
     """The error for what would be mended, or could not be."""
     return ElevationSurfaceError(words + f"; without {option('strict')} it is mended" * strict, "boundary")
 
@@ -75,14 +75,14 @@ def close_gaps(names, parts, name, strict):
     if not len(lines):
         return []
     ends = places_of(numpy.concatenate([parts[i][[0, -1]] for i in lines]))
-    places, of_end, counts = numpy.unique(ends, return_inverse=True, return_counts=True)
+    places, end_places, counts = numpy.unique(ends, return_inverse=True, return_counts=True)
     odd = numpy.flatnonzero(counts % 2)
     if not len(odd):
         return []
-    first_end = numpy.unique(of_end, return_index=True)[1]
+    first_end = numpy.unique(end_places, return_index=True)[1]
     pairs = [sorted(pair, key=first_end.__getitem__) for pair in odd[nearest_pairs(places[odd])]]
     pairs = numpy.array(sorted(pairs, key=lambda pair: first_end[pair[0]]))
-    lengths = lengths_of_rings(parts, lines, of_end.reshape(-1, 2), pairs, places)
+    lengths = ring_lengths(parts, lines, end_places.reshape(-1, 2), pairs, places)
     gaps = [abs(places[p] - places[q]) for p, q in pairs]
     if any(g > GAP * lengths[p] and counts[[p, q]].max() > 1 for g, (p, q) in zip(gaps, pairs)):
         return []  # lines that meet in threes: the filter says where
@@ -92,12 +92,12 @@ def close_gaps(names, parts, name, strict):
         one, two = names[lines[end // 2]], names[lines[other // 2]]
         words = f"{name}: {gap_in_words(one, two, gap, places[p], lengths[p])}"
         if gap > GAP * lengths[p]:
-            raise refused(f"{words}; gaps of up to {100 * GAP:g} % are closed", False)
+            raise refusal(f"{words}; gaps of up to {100 * GAP:g} % are closed", False)
         if strict:
-            raise refused(words, True)
-        beside = min(edge_at(parts[lines[e // 2]], e % 2) for e in (end, other))
-        if gap <= MOVED * beside:
-            for e in numpy.flatnonzero(of_end == q):
+            raise refusal(words, True)
+        shortest = min(edge_at(parts[lines[e // 2]], e % 2) for e in (end, other))
+        if gap <= MOVED * shortest:
+            for e in numpy.flatnonzero(end_places == q):
                 parts[lines[e // 2]] = parts[lines[e // 2]].copy()
                 parts[lines[e // 2]][-(e % 2), :2] = places[p].real, places[p].imag
             notes.append(f"{words}: the second is moved onto the first")
@@ -143,7 +143,7 @@ def nearest_pairs(places):
     return numpy.array([(i, j) for i, j in partner.items() if i < j])
 
 
-def lengths_of_rings(parts, lines, ends, pairs, places):
+def ring_lengths(parts, lines, ends, pairs, places):
     """(n,): for each place the length of all lines that hang together with it, gaps closed."""
     parents = list(range(len(places)))
 
@@ -172,7 +172,7 @@ def without_crossings(names, parts, name, strict):
     for title, ring in zip(names, parts):
         is_ring = len(ring) > 3 and (ring[0, :2] == ring[-1, :2]).all()
         errors, _, triangles = trial(make_lines([ring])) if is_ring else ([], 0, 0)
-        if not errors or not triangles:  # of none that it encloses, the filter tells
+        if not errors or not triangles:  # where it encloses none, the filter reports that
             kept.append((title, ring))
             continue
         made = valid(ring, f"{name}: {title} crosses itself: {errors[0]}")
@@ -181,7 +181,7 @@ def without_crossings(names, parts, name, strict):
             continue
         where = f"{name}: {title} crosses itself {places_in_words(ring, made)}"
         if strict:
-            raise refused(where, True)
+            raise refusal(where, True)
         areas = sorted((area for area, _ in made), reverse=True)
         share = f", the largest with {100 * areas[0] / sum(areas):.4g} % of the area"
         notes.append(
@@ -230,7 +230,7 @@ def valid(ring, words):
         gdal_module()
         from osgeo import ogr
     except ImportError:
-        raise refused(f"{words} Install python3-gdal, which makes it valid", False) from None
+        raise refusal(f"{words} Install python3-gdal, which makes it valid", False) from None
     outline, polygon = ogr.Geometry(ogr.wkbLinearRing), ogr.Geometry(ogr.wkbPolygon25D)
     for point in ring.tolist():
         outline.AddPoint(*point)

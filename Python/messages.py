@@ -58,7 +58,7 @@ def counted(count, singular, plural=None):
 
 
 class Reason(str):
-    """Why some of a file are no points: "rows without data" of Reason("row", "without data")."""
+    """Why some of a file are not points: "rows without data" of Reason("row", "without data")."""
 
     def __new__(cls, noun, rest=""):
         self = super().__new__(cls, f"{noun}s {rest}".rstrip())
@@ -67,7 +67,7 @@ class Reason(str):
         return self
 
 
-def of_reason(count, reason):
+def counted_reason(count, reason):
     """"1 row without data" of a Reason of Cloud.left_out."""
     return counted(count, reason.singular, reason)
 

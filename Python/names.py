@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What messages call an option: as it is written where the user has set it.
+"""How messages name an option: as it is written where the user has set it.
 
 That is maximum_edge_length in Python, --maximum-edge-length in the program, and Maximum Edge Length in
 a panel. The program and the algorithms of panels say so by written_for(); a message is made with the

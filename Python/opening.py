@@ -30,11 +30,11 @@ def lattice_of(ranks, surface):
     level, to the second, upwards, and the node and the steps have x, y and z.
     """
 
-    def own():
+    def local_lattice():
         array = surface.GetFieldData().GetArray("Lattice")
         return [] if array is None else [array.GetTuple(0)]
 
-    found = together(ranks, own)
+    found = together(ranks, local_lattice)
     if not found:
         return None
     origin, *steps = numpy.reshape(found[0], (3, 2)).tolist()
@@ -57,9 +57,9 @@ def length_to_open(ranks, surface, result):
         return 0.0, None
     area, shortest, longest = measured(ranks, surface)
     length, why = length_of(area, shortest, longest, result.lattice)
-    of_cell = CELL_DIAGONALS * max(together(ranks, lambda: [result.cloud.largest_cell]))
-    if 0 < length < of_cell or not length and of_cell and result.cloud.grid:
-        return of_cell, f"{CELL_DIAGONALS:g} diagonals of the grid's largest cell"
+    cell_limit = CELL_DIAGONALS * max(together(ranks, lambda: [result.cloud.largest_cell]))
+    if 0 < length < cell_limit or not length and cell_limit and result.cloud.grid:
+        return cell_limit, f"{CELL_DIAGONALS:g} diagonals of the grid's largest cell"
     return length, why
 
 

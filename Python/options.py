@@ -20,7 +20,7 @@ from .pieces import MEMORY, SUFFIX as OF_PIECES, check_files, check_given, memor
 from .properties import COLOURS, PROPERTIES, check_together, option_of
 from .results import WrongOption
 from .selecting import condition
-from .writing.grids import beside
+from .writing.grids import side_files
 from .writing.outputs import OUTPUTS, check_gdal, default_name
 
 READ_OPTIONS = [field.name for field in dataclasses.fields(ReadOptions)]
@@ -105,11 +105,11 @@ def parse_arguments(arguments):
     options = parser.parse_intermixed_args(arguments[:end])
     options.files += arguments[end + 1 :]
     if not options.files:
-        parser.error("no file is given")
+        parser.error("no file given")
     options.command = ["reconstruct", *arguments]
     options.clouds = None  # those of the files, where they are read already
     options.without_value = 0  # how many points have none in the column of --each-value
-    options.given = {
+    options.properties = {
         name: getattr(options, name) for name in PROPERTIES if getattr(options, name) is not None
     }
     try:
@@ -121,14 +121,14 @@ def parse_arguments(arguments):
         check_given(options, parser.error)
     for step, words in (("trim", "trimming"), ("fill", "filling"), ("picture", "picture")):
         off = f"--no-{step}"
-        of_step = [n for n, one in OPTIONS.items() if one.step == step and off not in one.options]
+        step_options = [n for n, one in OPTIONS.items() if one.step == step and off not in one.options]
         is_off = options.no_picture if step == "picture" else not getattr(options, step)
-        if is_off and any(getattr(options, one) != parser.get_default(one) for one in of_step):
-            parser.error(f"{off} leaves nothing for the {words} options to do")
+        if is_off and any(getattr(options, one) != parser.get_default(one) for one in step_options):
+            parser.error(f"{words} options have no effect with {off}")
     if not options.fill and options.colours == "error":
-        parser.error("--no-fill leaves no errors to draw: --colours error is for filled holes")
+        parser.error("--colours error is for filled holes: it has no effect with --no-fill")
     if options.outlines is not None and not (options.trim or options.fill):
-        parser.error("--no-trim and --no-fill leave no outlines")
+        parser.error("there are no outlines with --no-trim and --no-fill")
     names = [getattr(options, one.name) for one in OUTPUTS]
     for each, of in (("each", "file"), ("each_value", "value")):
         if getattr(options, each) and (any(names) or options.picture or options.report):
@@ -227,7 +227,7 @@ def check_options(options):
         raise WrongOption(f"--crs: {error}") from None
     wanted = [p for p in (options.picture, options.report) if p]
     for path, _ in files_of(options):
-        wanted += [path, *beside(path)]
+        wanted += [path, *side_files(path)]
     inputs = [p for p in (*options.files, options.faults, options.boundary, like) if p]
     for i, path in enumerate(wanted):
         check_writable(path)

@@ -62,8 +62,8 @@ def in_use(outline, surface):
     """An outline along edges of a surface, without the points that the surface has left out of it."""
     fields = surface.GetFieldData()
     ids, why = (vtk_to_numpy(fields.GetArray("UnusedPoint" + name)) for name in ("Ids", "Reasons"))
-    xy, of_surface = (places_of(vtk_to_numpy(p.GetPoints().GetData())) for p in (outline, surface))
-    is_used = ~numpy.isin(xy, of_surface[ids[why == WITHIN_ERROR]])
+    xy, surface_xy = (places_of(vtk_to_numpy(p.GetPoints().GetData())) for p in (outline, surface))
+    is_used = ~numpy.isin(xy, surface_xy[ids[why == WITHIN_ERROR]])
     return with_rings(outline, [ring[is_used[ring]] for ring in rings_of(outline)])
 
 
@@ -121,13 +121,13 @@ def simplified(outline, spacing, error):
     ids, counts = numpy.unique(numpy.concatenate(rings), return_counts=True)
     touching = ids[counts > 1]
     fewer = [
-        ring[kept_of(xyz[ring], numpy.isin(ring, touching), 0.5 * spacing, error)] for ring in rings
+        ring[kept_points(xyz[ring], numpy.isin(ring, touching), 0.5 * spacing, error)] for ring in rings
     ]
     result = with_rings(outline, fewer)
     return result if is_sound(result) else with_rings(outline, rings)
 
 
-def kept_of(ring, fixed, reach, error):
+def kept_points(ring, fixed, reach, error):
     """(n,) of bool: the points of a ring that stay [Douglas & Peucker 1973].
 
     fixed  (n,) of bool: those that have to
@@ -143,8 +143,8 @@ def kept_of(ring, fixed, reach, error):
         i, j = parts.pop()
         if j - i < 2:
             continue
-        beside, above = away_from(closed[i], closed[j], closed[i + 1 : j])
-        away = numpy.maximum(beside / reach, above / error)
+        aside, above = away_from(closed[i], closed[j], closed[i + 1 : j])
+        away = numpy.maximum(aside / reach, above / error)
         worst = int(numpy.argmax(away))
         if away[worst] > 1.0:
             kept[i + 1 + worst] = True

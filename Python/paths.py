@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which files can be read and written, told before any work is done."""
+"""Checks which files can be read and written, before any work is done."""
 
 import os
 import re
@@ -18,7 +18,7 @@ def is_geodatabase(path):
 
 
 def partial_path(path):
-    """Where a result is written until it is whole."""
+    """Where a result is written until it is complete."""
     folder, name = os.path.split(path)
     stem, suffix = os.path.splitext(name)
     return os.path.join(folder, f".{stem}.{os.getpid()}.partial{suffix}")

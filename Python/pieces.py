@@ -24,8 +24,8 @@ from .clouds import Cloud, corner_flags, faults_note, heights_of, make_points, s
 from .description import DESCRIBED
 from .draping import check_given_z
 from .given_lines import in_system
-from .heights import HeightsOfPieces
-from .holes import BridgedVoids, report_of_holes
+from .heights import PieceHeights
+from .holes import BridgedVoids, hole_report
 from .mending import mended
 from .messages import ElevationSurfaceError, FileError, Messages
 from .opening import lattice_of
@@ -35,10 +35,10 @@ from .reading.formats import recognise
 from .reading.slicing import check_sliced, read_files
 from .reading.unpacking import is_plain
 from .reconstruction import AS_GIVEN, least_reach
-from .report import MOST_LISTED, OUTSIDE, REASONS, facts_of, report_of_faults, report_of_trimming
+from .report import MOST_LISTED, OUTSIDE, REASONS, facts_of, fault_report, trimming_report
 from .results import Failure, write_report
 from .spreading import IN_NO_TRIANGLE
-from .steps import STEPS, boundary_of, in_our_names, is_of_constraints
+from .steps import STEPS, boundary_of, in_our_names, concerns_constraints
 from .supervisor import note_partial_file, rank_and_size
 from .vtkElevationSurfacePieces import vtkReconstructPieces
 from .writing.xml_writer import write_vtp
@@ -85,7 +85,7 @@ def check_given(options, error):
             error(f"{option_of(other)} {words}")
     if options.fill and not options.boundary and options.open_edge_length is None:
         error(
-            f"{name} cannot tell which triangles bridge what is missing: add --open-edge-length, 0 for "
+            f"{name} cannot find which triangles bridge gaps: add --open-edge-length, 0 for "
             "none of them, --no-fill or --boundary"
         )
     options.no_picture = True
@@ -116,7 +116,7 @@ def remove_older(folder, names):
 
 @contextlib.contextmanager
 def temporary_folder(output, ranks):
-    """A folder beside a result, the same for all ranks. It goes away, also where no process is left
+    """A folder next to a result, the same for all ranks. It goes away, also where no process is left
     to see to it; until then it has all temporary files. Ranks have to leave it together.
     """
     place, name = os.path.split(os.path.abspath(output))
@@ -140,7 +140,7 @@ def temporary_folder(output, ranks):
             shutil.rmtree(folder, ignore_errors=True)
 
 
-def folder_of_rank(folder, rank):
+def rank_folder(folder, rank):
     """A folder in the temporary one, for the files of this rank. Raises Failure."""
     own = os.path.join(folder, str(rank))
     try:
@@ -182,7 +182,7 @@ def step_of(source):
     return {words: step for step, words in STEPS.items()}.get(source.GetProgressText(), "delaunay")
 
 
-class MessagesOfSteps(Messages):
+class StepMessages(Messages):
     """Those of a vtkReconstructPieces, each with the step that it is at."""
 
     def take(self, event, message):
@@ -206,9 +206,9 @@ class Pieces:
         self.unused = {number: numpy.empty(0, "i8") for number in (1, 2)}  # of REASONS
         self.low, self.high = numpy.full(3, numpy.inf), numpy.full(3, -numpy.inf)
         self.range = None  # of z of the points
-        self.lattice = self.told_of = self.voids = None
+        self.lattice = self.reported_points = self.voids = None
         self.outlines = vtkPolyData()  # of the holes, on the first rank
-        self.heights, self.several = HeightsOfPieces(self.ranks), None
+        self.heights, self.several = PieceHeights(self.ranks), None
 
     def __call__(self):
         with temporary_folder(self.options.output, self.ranks) as folder:
@@ -217,7 +217,7 @@ class Pieces:
     def work(self, folder):
         options, source, run = self.options, self.source, self.run
         rank, ranks = rank_and_count(self.ranks)
-        source.SetFolder(folder_of_rank(folder, rank))
+        source.SetFolder(rank_folder(folder, rank))
         source.KeepFilesOff()
         source.SetTrimOutward(options.trim)
         source.SetFillHoles(options.fill)
@@ -226,13 +226,13 @@ class Pieces:
             ("trim", source.GetTrim()),
             ("fill", source.GetFill()),
         ):
-            set_properties(algorithm, step, options.given)
+            set_properties(algorithm, step, options.properties)
         if not options.boundary:
             source.GetFill().FillCutOutsOn()  # as in memory
         source.AddObserver(
             "ProgressEvent", lambda caller, _: run.progress(STEPS[step_of(caller)], caller.GetProgress())
         )
-        with MessagesOfSteps(source, source.GetExecutive()) as self.messages:
+        with StepMessages(source, source.GetExecutive()) as self.messages:
             run.timed("read", "reading", self.read)
             points = total(self.ranks, source.GetNumberOfPoints())
             count = options.pieces or pieces_within(options.memory, points, options.fill, ranks)
@@ -261,7 +261,7 @@ class Pieces:
         problems = self.messages.errors or (self.messages.warnings if self.options.strict else [])
         if problems:
             file = problems[0].step == "trim" and self.options.boundary or self.options.file
-            file = self.options.faults if is_of_constraints(problems[0]) else file
+            file = self.options.faults if concerns_constraints(problems[0]) else file
             more = map(self.in_our_names, problems[1:])
             raise Failure(" ".join([f"{file}: {self.with_step(problems[0])}", *more]))
 
@@ -310,16 +310,16 @@ class Pieces:
         """Gives lines to the filter, in the system of the points."""
         options, cloud = self.options, self.cloud
         if boundary is not None:
-            boundary, told = in_system(
+            boundary, more = in_system(
                 boundary, options.boundary, cloud, options.files[0], options.strict
             )
-            cloud.notes += notes + told
+            cloud.notes += notes + more
             self.source.GetTrim().SetBoundaryData(boundary)
         if faults is not None:
             self.check_faults(faults)
-            faults, told = in_system(faults, options.faults, cloud, options.files[0], options.strict)
+            faults, more = in_system(faults, options.faults, cloud, options.files[0], options.strict)
             note = faults_note(self.range, faults)
-            cloud.notes += told + [note] * bool(note)
+            cloud.notes += more + [note] * bool(note)
             self.delaunay.SetSourceData(faults)
 
     def see_heights(self, heights):
@@ -328,7 +328,7 @@ class Pieces:
 
     def check_faults(self, faults):
         """Refuses faults without z, also before points are read."""
-        check_given_z(faults, self.options.faults, self.options.given, self.range)
+        check_given_z(faults, self.options.faults, self.options.properties, self.range)
 
     def update(self, piece, count):
         """The output for a piece of this rank."""
@@ -350,7 +350,7 @@ class Pieces:
     def write(self, own, count):
         """Writes all pieces of this rank with points."""
         final = folder_of(self.options.output)
-        self.told_of = Points(self.source.GetNumberOfPoints())
+        self.reported_points = Points(self.source.GetNumberOfPoints())
         if self.options.fill:
             self.outlines.ShallowCopy(self.source.GetOutput(1))  # of piece 0
             self.voids = BridgedVoids(self.outlines, self.ranks)
@@ -378,10 +378,10 @@ class Pieces:
         for number, known in self.unused.items():
             known = numpy.concatenate(collected(ranks, known))
             self.unused[number] = numpy.sort(known)[:MOST_LISTED]
-        self.others = self.told_of.others(MOST_LISTED, ranks)
+        self.others = self.reported_points.others(MOST_LISTED, ranks)
         self.bridged = self.voids and self.voids.find()
         unused = source.GetNumberOfDuplicatePoints() + source.GetNumberOfNonFinitePoints()
-        places, policy = source.GetNumberOfPoints() - unused, self.options.given.get("duplicates")
+        places, policy = source.GetNumberOfPoints() - unused, self.options.properties.get("duplicates")
         try:
             note, self.several = self.heights.check(places, policy)
         except ElevationSurfaceError as error:
@@ -389,12 +389,12 @@ class Pieces:
         self.cloud.notes += [note] if note else []
 
     def look_at(self, data):
-        """Takes from a piece what the report tells."""
+        """Takes from a piece what the report needs."""
         points, ids = data.GetPoints(), vtk_to_numpy(data.GetPointData().GetGlobalIds())
         corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray())
         flags = corner_flags(corners, len(ids))
         used = vtk_to_numpy(points.GetData())[flags]
-        self.told_of.add(ids[flags])
+        self.reported_points.add(ids[flags])
         if self.voids:
             self.voids.see(data)
         self.low = numpy.minimum(self.low, used.min(axis=0, initial=numpy.inf))
@@ -403,7 +403,7 @@ class Pieces:
         self.lattice = lattice_of(None, data)
         gone = ids[vtk_to_numpy(fields.GetArray("UnusedPointIds"))]
         reasons = vtk_to_numpy(fields.GetArray("UnusedPointReasons"))
-        self.told_of.add(gone)
+        self.reported_points.add(gone)
         if (reasons == 1).any():
             self.heights.add(vtk_to_numpy(points.GetData()))
         for number, known in self.unused.items():
@@ -438,14 +438,14 @@ class Pieces:
         }
         if options.trim:
             rings, outward = source.GetNumberOfBoundaryRings(), source.GetNumberOfOutwardTriangles()
-            report["trim"] = report_of_trimming(outward, source, options.boundary, rings)
+            report["trim"] = trimming_report(outward, source, options.boundary, rings)
             self.triangles["trimmed"] = source.GetNumberOfTrimmedTriangles()
         if options.faults:
-            report["faults"] = report_of_faults(options.faults, source)
+            report["faults"] = fault_report(options.faults, source)
         if options.fill:
             self.triangles["filled"] = source.GetNumberOfFilledTriangles()
             why = None if options.open_edge_length is None else AS_GIVEN
-            report["holes"] = report_of_holes(self.outlines, self.bridged, source.GetFill(), why)
+            report["holes"] = hole_report(self.outlines, self.bridged, source.GetFill(), why)
         return report
 
 

@@ -11,7 +11,7 @@ from .names import argument
 from .ranks import all_values
 
 MOST_SAMPLES = 20_000  # points of each rank
-OUTLYING = 3.0  # spans of the middle 80 % of x, y or z beside it: nulls and blunders
+OUTLYING = 3.0  # spans of the middle 80 % of x, y or z away from it: nulls and blunders
 
 
 class Plane:

@@ -17,18 +17,18 @@ def share(progress, first, last):
     return lambda fraction: progress(first + fraction * (last - first))
 
 
-def told_lines(stream, progress):
+def lines_with_progress(stream, progress):
     """Yields the lines of a file, which is read from its begin."""
-    size, done, told = os.fstat(stream.fileno()).st_size, 0, 0
+    size, done, reported = os.fstat(stream.fileno()).st_size, 0, 0
     for line in stream:
         done += len(line)
-        if done - told >= BYTES:
-            told = done
+        if done - reported >= BYTES:
+            reported = done
             progress(min(done / size, 1.0))
         yield line
 
 
-def told_items(items, progress, count, step=1000):
+def items_with_progress(items, progress, count, step=1000):
     """Yields the items. count: how many there are, or below 1 where that is not known."""
     for number, item in enumerate(items):
         if number % step == 0:

@@ -52,7 +52,7 @@ def zone_of(longitude, latitude):
 
 def project(path, cloud):
     """Makes x and y of a Cloud metres of the UTM zone in their middle. Returns the crs that they had, with WGS
-    84 where none is known. Raises FileError for what is no angles."""
+    84 where none is known. Raises FileError for values that are not angles."""
     try:
         source = reference_of(cloud.crs or "EPSG:4326")
     except ImportError:
@@ -60,7 +60,7 @@ def project(path, cloud):
     except ValueError as error:
         raise FileError(f"{path}: {error}") from None
     if not source.IsGeographic():
-        raise FileError(f"{path}: is in {name_of(cloud.crs)}, so x,y are no angles: leave out {option('project')}")
+        raise FileError(f"{path}: is in {name_of(cloud.crs)}, so x,y are not angles: leave out {option('project')}")
     xyz = coordinates_of(cloud.points).astype("f8")
     finite = numpy.isfinite(xyz[:, :2]).all(axis=1)
     xy = xyz[finite, :2]
@@ -69,7 +69,7 @@ def project(path, cloud):
     if (abs(xy) > (LONGITUDES, LATITUDES)).any():
         bad = xy[(abs(xy) > (LONGITUDES, LATITUDES)).any(axis=1)][0]
         where = f"{bad[0]:.10g}, {bad[1]:.10g}"
-        raise FileError(f"{path}: {where} is no longitude and latitude, as {option('project')} needs")
+        raise FileError(f"{path}: {where} is not longitude and latitude, as {option('project')} needs")
     around = numpy.where(xy[:, 0] < 0, xy[:, 0] + 360.0, xy[:, 0])
     if numpy.ptp(around) < numpy.ptp(xy[:, 0]):  # on both sides of the antimeridian
         xy[:, 0] = around
@@ -102,7 +102,7 @@ def project(path, cloud):
     moved.ShallowCopy(cloud.points)
     moved.SetPoints(make_points(xyz).GetPoints())
     before = cloud.crs or "EPSG:4326"
-    known = "" if cloud.crs else ", assumed as nothing is told,"
+    known = "" if cloud.crs else ", assumed because the file names none,"
     cloud.points, cloud.crs, cloud.frame = moved, zone, None
     cloud.notes.append(f"x,y are projected from {name_of(before)}{known} to {name_of(zone)}")
     if high[0] - low[0] > 2.0 * WIDE:

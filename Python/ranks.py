@@ -93,7 +93,7 @@ def collected(controller, values, kind="i8"):
     values = numpy.asarray(values, dtype=kind)
     if controller is None:
         return [values]
-    lengths = all_of(controller, numpy.array([len(values)]))
+    lengths = gather_numbers(controller, numpy.array([len(values)]))
     if lengths.min() < 0:
         raise first_error(controller, lengths, b"")
     return rows_of(controller, lengths, values)
@@ -107,7 +107,7 @@ def failed(controller, error):
         pickle.loads(words)
     except Exception:  # pylint: disable=broad-except
         words = pickle.dumps(ElevationSurfaceError(str(error)))
-    return first_error(controller, all_of(controller, numpy.array([-len(words)])), words)
+    return first_error(controller, gather_numbers(controller, numpy.array([-len(words)])), words)
 
 
 def first_error(controller, lengths, words):
@@ -119,12 +119,12 @@ def first_error(controller, lengths, words):
     return error
 
 
-def is_of_all_ranks(error):
+def is_on_all_ranks(error):
     """Whether all ranks raise this error. Its is_reported_here is True on the first."""
     return hasattr(error, "is_reported_here")
 
 
-def all_of(controller, numbers):
+def gather_numbers(controller, numbers):
     """The numbers of all ranks, as many of each, one rank after the other."""
     own = numpy_to_vtk(numbers, deep=True)
     everywhere = own.NewInstance()
@@ -137,7 +137,7 @@ def rows_of(controller, lengths, values):
     """The values of each rank, so many as lengths says."""
     padded = numpy.zeros(max(lengths.max(), 1), dtype=values.dtype)
     padded[: len(values)] = values
-    rows = all_of(controller, padded).reshape(len(lengths), -1)
+    rows = gather_numbers(controller, padded).reshape(len(lengths), -1)
     return [row[:length] for row, length in zip(rows, lengths)]
 
 
@@ -146,7 +146,7 @@ def tried(controller, work):
     try:
         return work()
     except Exception as error:  # pylint: disable=broad-except
-        if controller is None or is_of_all_ranks(error):
+        if controller is None or is_on_all_ranks(error):
             raise
         raise failed(controller, error) from error
 
@@ -174,14 +174,14 @@ def by_first(controller, work, other=None):
     ranks = range(1, controller.GetNumberOfProcesses())
     collected(controller, ())  # nobody waits for a first rank that does not come here
 
-    def of_first():
+    def work_and_release():
         try:
             return work()
         finally:
             for rank in ranks:
                 controller.Send(numpy_to_vtk(numpy.zeros(1)), rank, WORK_IS_DONE)
 
-    def of_others():
+    def wait_for_first():
         is_there, source = [0], [0]
         while not is_there[0]:
             time.sleep(0.01)
@@ -189,7 +189,7 @@ def by_first(controller, work, other=None):
         controller.Receive(numpy_to_vtk(numpy.zeros(1)), 0, WORK_IS_DONE)
         return other
 
-    return agreed(controller, of_others if controller.GetLocalProcessId() else of_first)
+    return agreed(controller, wait_for_first if controller.GetLocalProcessId() else work_and_release)
 
 
 def all_values(controller, values, kind="i8"):

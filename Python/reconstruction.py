@@ -33,7 +33,7 @@ from .properties import COLOURS, PROPERTIES, checked
 from .ranks import extremes, total
 from .reading.arrays import cloud_of_columns, cloud_of_grid, columns_of
 from .reading.facing import faces_of, notes_on_faces
-from .spreading import ORIGINAL_IDS, followed, last_id, original_ids, without_unused
+from .spreading import ORIGINAL_IDS, follow_points, last_id, original_ids, without_unused
 from .steps import Step, triangulate, trim_along, trim_few
 from .vtkElevationSurface import vtkFillElevationHoles
 
@@ -49,7 +49,7 @@ def as_cloud(points: Points, x: Any = None, y: Any = None) -> Cloud:
     if isinstance(points, vtkPointSet):
         if points.GetNumberOfPoints() == 0:
             raise ElevationSurfaceError("points: there are none")
-        return cloud_of_mesh(points)
+        return mesh_cloud(points)
     if isinstance(points, (str, os.PathLike)):
         raise TypeError(f"points: a file's name; use reconstruct(read({os.fspath(points)!r}))")
     if isinstance(points, (vtkImageData, vtkRectilinearGrid)) and points.GetNumberOfPoints():
@@ -69,8 +69,8 @@ def as_cloud(points: Points, x: Any = None, y: Any = None) -> Cloud:
     return Cloud(make_points(array))
 
 
-def cloud_of_mesh(points):
-    """The points of a vtkPointSet. Raises ElevationSurfaceError for faces of no elevation surface.
+def mesh_cloud(points):
+    """The points of a vtkPointSet. Raises ElevationSurfaceError where faces are not an elevation surface.
     """
     from .reading.vtk_files import with_hidden_nodes
 
@@ -136,7 +136,7 @@ AS_GIVEN = "as given"  # the length of edges above which triangles are opened
 
 
 class Reconstruction:
-    """A surface, and all that is known of how it came about.
+    """A surface, and how it came about.
 
     ranks     the controller of those that have a part of it each, or None. Counts and the report are
               those of all
@@ -162,7 +162,7 @@ class Reconstruction:
     hole_counts        (found, filled)
     lattice   that of the triangulation, see lattice_of(), or None
     times     {step: seconds}
-    notes     what filters warned of, one line each
+    notes     the warnings of filters, one line each
     warnings  the same as Messages, as the filters make them
     decided   notes on what the user has decided
     gathered  why a filter has brought all points to one rank, one line each
@@ -195,7 +195,7 @@ class Reconstruction:
 
     @functools.cached_property
     def report(self) -> dict:
-        """All that reconstruct tells of a run, as a dictionary of numbers and words.
+        """Everything reconstruct reports about a run, as a dictionary of numbers and words.
 
         Made when first asked for, by all ranks: measuring the distance of the points takes time.
         """
@@ -244,12 +244,12 @@ class Reconstruction:
         Returns a Grid with z, (rows, columns) and NaN outside; x, (columns,); y, (rows,), falling;
         and error, (rows, columns) or None. Grids of the same pixels can be subtracted, and write()
         writes one. Raises ElevationSurfaceError for a step that is too small or too large, and for
-        like where it is no raster or has another coordinate reference system.
+        like where it is not a raster or has another coordinate reference system.
         """
         from .writing.grids import grid_of
 
         if self.cloud.plane:
-            raise ElevationSurfaceError("a surface with plane=best is no grid over x,y")
+            raise ElevationSurfaceError("a surface with plane=best is not a grid over x,y")
         try:
             step = None if step is None else KINDS["step"].convert(step)
         except ValueError:
@@ -331,13 +331,13 @@ def run_chain(
         (result.decided if "duplicates" in given else result.notes).insert(0, note)
     last = result.trim or result.delaunay
     if fill:
-        filling = run.made("fill", vtkFillElevationHoles())
+        filling = run.configure("fill", vtkFillElevationHoles())
         filling.SetInputData(last.GetOutput())
         if boundary is None:
-            filling.FillCutOutsOn()  # an outline of few points is no boundary that is given
+            filling.FillCutOutsOn()  # an outline of few points does not count as a given boundary
         if "open_edge_length" in given:
             result.open_edge_length, result.why_opened = given["open_edge_length"], AS_GIVEN
-        elif not given.get("maximum_elevation_error"):  # else long edges are no voids
+        elif not given.get("maximum_elevation_error"):  # else long edges are not voids
             length, result.why_opened = length_to_open(ranks, last.GetOutput(), result)
             filling.SetOpenEdgeLength(length)
             result.open_edge_length = length
@@ -349,7 +349,7 @@ def run_chain(
         result.bridged = voids.find()
         result.hole_counts = hole_counts(ranks, result)
     result.surface = result.complete = last.GetOutput()
-    result.points, result.reasons = followed(
+    result.points, result.reasons = follow_points(
         ranks, result.points, result.reasons, result.complete, cloud.points
     )
     result.removes_unused = given.get("remove_unused_points", True)
@@ -421,16 +421,16 @@ def reconstruct(
     fill      False leaves all holes open
     progress  None, or a function that is called with a step's name and its fraction done; what it
               raises stops the filter
-    strict    True: what is mended of boundary and faults, and what the filters warn of, is an error
+    strict    True: mends of boundary and faults, and warnings of the filters, are errors
     properties  of the filters, named as the options of the command line, with underscores:
               {properties}.
-              Lengths are in the units of x and y. The program's --help tells more of each, and its
-              default.
+              Lengths are in the units of x and y. The program's --help describes each, with
+              its default.
 
     Returns a Reconstruction. Raises ElevationSurfaceError with the filter's message where no surface
     can be made; where places have the heights of several surfaces, unless duplicates says which to
-    take; and where faces of a mesh are those of no elevation surface. Raises TypeError for
-    unknown properties, ValueError for values that a property does not take. What a filter warns of
+    take; and where the faces of a mesh are not an elevation surface. Raises TypeError for
+    unknown properties, ValueError for values that a property does not take. A filter's warning
     is an ElevationSurfaceWarning and in the notes. Takes about a second for a million points.
     """
     given = checked(properties)
@@ -462,10 +462,10 @@ def check_spacing(reach, spacing):
     reach  least_reach() of all points
     """
     if spacing and reach < numpy.inf:
-        # The filter needs four steps between points that can be told apart.
+        # The filter needs four steps between points that differ.
         step = float(numpy.spacing(reach))
         if spacing < 4 * step:
             raise ValueError(
-                f"{argument('spacing')}: {spacing:g} is less than x and y of the points can tell apart, which are in "
-                f"steps of {step:.3g}"
+                f"{argument('spacing')}: {spacing:g} is too small: x and y of the points are in steps of "
+                f"{step:.3g}"
             )

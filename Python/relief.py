@@ -55,16 +55,16 @@ def steepness(points, triangles):
     return slope[order[numpy.searchsorted(covered, 0.9 * covered[-1])]]
 
 
-def exaggeration_of_points(data):
+def point_exaggeration(data):
     """choose_exaggeration() of a sample of the points of a data set; 1 where there is no surface."""
     mesh = vtkGridDelaunay2D()
     mesh.SetInputData(make_points(few(coordinates_of(data)).astype("f8"), copy=False))
     with Messages(mesh, mesh.GetExecutive()):
         mesh.Update()
-    return exaggeration_of_surfaces([mesh.GetOutput()])
+    return surface_exaggeration([mesh.GetOutput()])
 
 
-def exaggeration_of_surfaces(surfaces, ranks=None):
+def surface_exaggeration(surfaces, ranks=None):
     """choose_exaggeration() of a sample of the triangles of surfaces; 1 where there is none.
 
     ranks  the controller of those that have some of the surfaces each, or None

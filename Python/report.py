@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What became of every point and hole, and how far the points lie from the surface: for people and
-as a dictionary."""
+"""The report on every point and hole, and on how far the points lie from the surface: for people
+and as a dictionary."""
 
 import time
 
@@ -9,7 +9,7 @@ import numpy
 from .clouds import coordinates_of
 from .distance import distance_to
 from .holes import hole_lines, holes_of
-from .messages import counted, of_reason
+from .messages import counted, counted_reason
 from .names import option
 from .properties import LATTICE_MODES
 from .ranks import all_values, extremes, total
@@ -40,7 +40,7 @@ FOUND = "found from the points"
 
 
 def make_report(result):
-    """Everything the user may want to know of a Reconstruction, as plain numbers and words. Where it is
+    """Everything the user may want to know about a Reconstruction, as plain numbers and words. Where it is
     spread over ranks, all of them make it together."""
     cloud, delaunay, trim, ranks = result.cloud, result.delaunay, result.trim, result.ranks
     ids = ids_of(ranks, result.points)[: len(result.reasons)]
@@ -57,9 +57,9 @@ def make_report(result):
         }
     if result.faults_name:
         with_faults = result.outlined[0] if result.outlined else delaunay
-        report["faults"] = report_of_faults(result.faults_name, with_faults)
+        report["faults"] = fault_report(result.faults_name, with_faults)
     if trim:
-        report["trim"] = report_of_trimming(
+        report["trim"] = trimming_report(
             trim.GetNumberOfOutwardTriangles(),
             result.outlined[1] if result.outlined else trim,
             result.boundary_name,
@@ -76,7 +76,7 @@ def facts_of(result, points, notes, limits, unused):
 
     result  with cloud, delaunay, lattice, triangles and several, as a Reconstruction
     points  how many there are
-    notes   beside those of the cloud
+    notes   in addition to those of the cloud
     limits  the lowest x, y and z of the surface, and the highest
     unused  {reason: (how many points are not used, the first MOST_LISTED of them)}
     """
@@ -105,7 +105,7 @@ def facts_of(result, points, notes, limits, unused):
     return report
 
 
-def report_of_faults(name, delaunay):
+def fault_report(name, delaunay):
     """The part of the report on faults."""
     return {
         "file": name,
@@ -114,7 +114,7 @@ def report_of_faults(name, delaunay):
     }
 
 
-def report_of_trimming(outward, trim, boundary_name, rings):
+def trimming_report(outward, trim, boundary_name, rings):
     """The part of the report on trimming.
 
     outward        how many triangles were outside
@@ -224,14 +224,14 @@ def report_lines(report):
 
 
 def point_lines(report, line):
-    """The notes, and what became of the points."""
+    """The lines of notes and points."""
     for note in report["notes"]:
         line("note", note)
     if report["crs"]:
         line("crs", crs_name(report["crs"]))
     text = f"{report['points']:,} read"
     for reason, count in report["left_out"].items():
-        text += f"; {of_reason(count, reason)} left out"
+        text += f"; {counted_reason(count, reason)} left out"
     line("points", text)
     if report["points_unused"] == 0:
         line("unused", "none")
@@ -252,7 +252,7 @@ def point_lines(report, line):
 
 
 def triangle_lines(report, line):
-    """What the triangles were made of, and which were removed."""
+    """The lines on how triangles were made, and which were removed."""
     if report["lattice"]:
         steps = [
             f"{length:.7g} towards {round(direction, 3) + 0.0:.4g} degrees"
@@ -293,7 +293,7 @@ def triangle_lines(report, line):
 
 
 def distance_lines(report, line):
-    """How far the points are from the surface."""
+    """The lines on how far the points are from the surface."""
     d = report["distance"]
     boundary_given = report.get("trim", {}).get("boundary", FOUND) != FOUND
     beyond = ""
@@ -313,7 +313,7 @@ def distance_lines(report, line):
 
 
 def main_counts(result):
-    """What one wants to know first: how many points, triangles and holes, as a list of words."""
+    """The main figures: how many points, triangles and holes, as a list of words."""
     parts = [
         counted(result.number_of_points, "point"),
         counted(list(result.triangles.values())[-1], "triangle"),

@@ -22,7 +22,7 @@ class WrongOption(Failure):
 
 
 class NoPicture(Failure):
-    """The picture that was asked for is missing; all else is written."""
+    """The picture that was asked for is missing; everything else is written."""
 
     code = 3
 
@@ -52,7 +52,7 @@ class Progress:
 class Results:
     """Files that appear together at the end, or not at all.
 
-    Each is written beside its final place and renamed when all are whole.
+    Each is written next to its final place and renamed when all are complete.
     """
 
     def __init__(self):
@@ -78,7 +78,7 @@ class Results:
         remove(self.pending.pop()[0])
 
     def keep_in_a_crash(self):
-        """What has been added is whole: it appears, even if a library crashes from here on."""
+        """What has been added is complete: it appears, even if a library crashes from here on."""
         for partial, path in self.pending:
             note_whole_file(partial, path)
 

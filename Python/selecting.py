@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Points chosen by what a column says of them: --where, --each-value, and --layer of a text file.
+"""Points chosen by their values in a column: --where, --each-value, and --layer of a text file.
 
 A column is an array of numbers, one for each point, or Words.
 """
@@ -21,7 +21,7 @@ BY_WHERE = Reason("point", "of other values")
 
 
 def none_chosen():
-    """What is noted where no point is left."""
+    """The note where no point is left."""
     return f"{option('where')} leaves no point"
 
 
@@ -40,19 +40,18 @@ class WordReader:
     """Collects the words of a column as they are read."""
 
     def __init__(self):
-        self.known, self.parts = {}, []
+        self.codes, self.parts = {}, []
 
     def add(self, words):
-        known = self.known
         for word in dict.fromkeys(words):
-            known.setdefault(word, len(known))
-        codes = map(known.__getitem__, words)
+            self.codes.setdefault(word, len(self.codes))
+        codes = map(self.codes.__getitem__, words)
         self.parts.append(numpy.fromiter(codes, "i4", len(words)))
 
     def take(self):
         """Words since the last call."""
         parts, self.parts = self.parts, []
-        return Words(numpy.concatenate([numpy.empty(0, "i4"), *parts]), list(self.known))
+        return Words(numpy.concatenate([numpy.empty(0, "i4"), *parts]), list(self.codes))
 
 
 def words_of(values):
@@ -182,7 +181,7 @@ def column_of(path, name, columns):
     known = ", ".join(list(columns)[:SHOWN]) or "none"
     more = f", and {len(columns) - SHOWN} more" if len(columns) > SHOWN else ""
     raise FileError(
-        f"{path}: there is no column {name} beside x, y and z{did_you_mean(name, list(columns))}; "
+        f"{path}: there is no column {name} besides x, y and z{did_you_mean(name, list(columns))}; "
         f"columns: {known}{more}"
     )
 
@@ -211,14 +210,14 @@ class Selection:
 
     count  how many were left out
     found  {column: {value that is wanted: how many points have it}}
-    known  {column: {value: how many points have it}} for errors
+    seen   {column: {value: how many points have it}} for errors
     """
 
     def __init__(self, path, conditions):
         self.path, self.wanted, self.count = path, {}, 0
         for name, value in conditions:
             self.wanted.setdefault(name, []).append(value)
-        self.found, self.known = {}, {}
+        self.found, self.seen = {}, {}
 
     def keep(self, columns):
         """(n,) of bool for the points of a cloud, or of a part of it, with these columns."""
@@ -238,11 +237,11 @@ class Selection:
 
     def facts(self):
         """What was found, as plain values that can be added to those of other points."""
-        return {"count": self.count, "found": self.found, "known": self.known}
+        return {"count": self.count, "found": self.found, "seen": self.seen}
 
     def take(self, facts):
         """Takes the facts of all points as its own."""
-        self.count, self.found, self.known = facts["count"], facts["found"], facts["known"]
+        self.count, self.found, self.seen = facts["count"], facts["found"], facts["seen"]
 
     def missing(self, name):
         """The wanted values of a column that no point has had so far."""
@@ -250,7 +249,7 @@ class Selection:
 
     def note_values(self, name, column):
         """Remembers what values there are, for an error."""
-        known = self.known.setdefault(name, {})
+        known = self.seen.setdefault(name, {})
         for value, count in value_counts(column).items():
             if value in known or len(known) < MOST_VALUES:
                 known[value] = known.get(value, 0) + count
@@ -259,7 +258,7 @@ class Selection:
         """Notes on values that no point has. Raises NothingChosen where that leaves no point."""
         notes = []
         for name in self.found:
-            known = in_order(self.known.get(name, {}))
+            known = in_order(self.seen.get(name, {}))
             for value in self.missing(name):
                 notes.append(
                     f"no point has {name} = {value or 'nothing'}"
@@ -275,7 +274,7 @@ class Selection:
             raise NothingChosen(f"{self.path}: {words}")
         return notes
 
-    def tell(self, left_out, reason=BY_WHERE):
+    def add_to(self, left_out, reason=BY_WHERE):
         if self.count:
             left_out[reason] = self.count
 
@@ -287,12 +286,12 @@ def select(path, cloud, conditions, reason=BY_WHERE):
     selection = Selection(path, conditions)
     keep = selection.keep(columns_in(cloud))
     cloud.notes += selection.check(keep.any())
-    selection.tell(cloud.left_out, reason)
+    selection.add_to(cloud.left_out, reason)
     if selection.count:
         keep_points(cloud, numpy.flatnonzero(keep))
 
 
-def condition_of_layer(path, name, columns):
+def layer_condition(path, name, columns):
     """(column, value) for the column of text that holds the name of a layer. Raises FileError."""
     texts = {title: column for title, column in columns.items() if isinstance(column, Words)}
     holding = [title for title, column in texts.items() if name in column.values and name]

@@ -60,7 +60,7 @@ def last_id(ranks, points):
     return last.max() if have_ids else (last + 1).sum() - 1  # the filter numbers them, rank after rank
 
 
-def number_of_own(ranks, triangulation, points):
+def own_point_count(ranks, triangulation, points):
     """How many of the points that all ranks have given belong to this rank now; points: its input."""
     if ranks is None:
         return points.GetNumberOfPoints()
@@ -91,13 +91,13 @@ def reasons_of(ranks, triangulation, count):
     return reasons
 
 
-def followed(ranks, earlier, reasons, later, points):
+def follow_points(ranks, earlier, reasons, later, points):
     """(output, reasons_of() its first points): those of an earlier filter, or, where a later one has
-    brought points to other ranks, those of that; points: as of number_of_own()."""
+    brought points to other ranks, those of that; points: as of own_point_count()."""
     if ranks is None:
         return earlier, reasons
     old = ids_of(ranks, earlier)[: len(reasons)]
-    new = ids_of(ranks, later)[: number_of_own(ranks, later, points)]
+    new = ids_of(ranks, later)[: own_point_count(ranks, later, points)]
     if not total(ranks, not numpy.array_equal(old, new)):
         return earlier, reasons
     unused = reasons != 0

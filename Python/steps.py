@@ -8,7 +8,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
-from .clouds import bare_lines, coordinates_of, joined, marked_points, names_of_cells
+from .clouds import bare_lines, cell_names, coordinates_of, joined, marked_points
 from .messages import ElevationSurfaceError, Messages, counted
 from .names import PANEL, PYTHON, are_for, argument, option
 from .opening import lattice_of
@@ -24,7 +24,7 @@ from .outline import (
 )
 from .properties import PROPERTIES, set_properties
 from .ranks import all_values, collected, extremes, together, total
-from .spreading import OUT_OF_OUTLINE, WITHIN_ERROR, number_of_own, reasons_of, update
+from .spreading import OUT_OF_OUTLINE, WITHIN_ERROR, own_point_count, reasons_of, update
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
 
 STEPS = {"delaunay": "triangulating", "trim": "trimming", "fill": "filling holes"}
@@ -39,14 +39,14 @@ class Step:
 
     def __init__(self, result, given, progress, strict, ranks):
         self.result = result
-        self.given = given
+        self.properties = given
         self.progress = progress
         self.strict = strict
         self.ranks = ranks
 
-    def made(self, step, algorithm):
-        """The filter of a step with the properties that are given."""
-        return set_properties(algorithm, step, self.given)
+    def configure(self, step, algorithm):
+        """Gives the filter of a step its properties, and returns it."""
+        return set_properties(algorithm, step, self.properties)
 
     def __call__(self, name, algorithm):
         raised = []
@@ -88,7 +88,7 @@ class Step:
             about = "points"
             if name == "trim" and self.result.boundary_name:
                 about = "boundary"
-            elif name == "delaunay" and is_of_constraints(problems[0]):
+            elif name == "delaunay" and concerns_constraints(problems[0]):
                 about = "faults"
             words = " ".join(in_our_names(one, name, boundary) for one in problems)
             raise ElevationSurfaceError(words, about, STEPS[name])
@@ -99,7 +99,7 @@ class Step:
         ]
 
 
-def is_of_constraints(message):
+def concerns_constraints(message):
     """Whether a filter's message is about its constraints, which are our faults."""
     return not CALLED_IN_PANEL.keys().isdisjoint(message.values.values())
 
@@ -122,7 +122,7 @@ def in_our_names(message, step, boundary=None):
 
     words = dict(CALLED_IN_PANEL) if are_for(PANEL) else {}
     if boundary is not None:
-        words.update((f"the {cell}", name) for cell, name in names_of_cells(boundary).items())
+        words.update((f"the {cell}", name) for cell, name in cell_names(boundary).items())
     return message.named(name_of, words)
 
 
@@ -134,7 +134,7 @@ def boundary_of(trim):
 def triangulate(run, lines, error):
     """The first step, with lines or None as constraints, and a maximum elevation error."""
     result, ranks, points = run.result, run.ranks, run.result.cloud.points
-    delaunay = run.made("delaunay", vtkGridDelaunay2D())
+    delaunay = run.configure("delaunay", vtkGridDelaunay2D())
     delaunay.SetMaximumElevationError(error)
     # A boundary that is given cuts the surface at all its points.
     delaunay.SetSimplifyConstraints(not result.boundary_name)
@@ -148,11 +148,11 @@ def triangulate(run, lines, error):
     surface = delaunay.GetOutput()
     result.triangles["delaunay"] = total(ranks, surface.GetNumberOfPolys())
     result.lattice = lattice_of(ranks, surface)
-    own = number_of_own(ranks, surface, points)
+    own = own_point_count(ranks, surface, points)
     result.points, result.reasons = surface, reasons_of(ranks, surface, own)
     result.number_of_points = total(ranks, own)
     if result.triangles["delaunay"] == 0:
-        limit = run.given.get("maximum_edge_length", 0.0)
+        limit = run.properties.get("maximum_edge_length", 0.0)
         hidden = marked_points(points, vtkDataSetAttributes.HIDDENPOINT)
         why = why_no_triangle(ranks, coordinates_of(points)[~hidden], limit, result.warnings)
         count = total(ranks, numpy.count_nonzero(hidden))
@@ -161,15 +161,15 @@ def triangulate(run, lines, error):
 
 
 def trim_along(run, boundary, edges=None):
-    """The second step, along a boundary, or None; edges: what becomes of its edges, unless given."""
+    """The second step, along a boundary, or None; edges: how its edges are added, unless given."""
     result = run.result
-    trim = run.made("trim", vtkTrimOutwardTriangles())
-    if edges is not None and "boundary_edges" not in run.given:
+    trim = run.configure("trim", vtkTrimOutwardTriangles())
+    if edges is not None and "boundary_edges" not in run.properties:
         trim.SetBoundaryEdges(edges)
     trim.SetInputData(0, result.delaunay.GetOutput())
     if boundary is not None:
         trim.SetBoundaryData(boundary)
-    elif not run.given.get("gap_tolerance"):
+    elif not run.properties.get("gap_tolerance"):
         # Of a raster, missing pixels that touch the outside are outside.
         grid = result.cloud.grid
         steps = together(run.ranks, lambda: list(grid.steps) if grid else [])
@@ -186,7 +186,7 @@ def trim_along(run, boundary, edges=None):
 
 def trim_few(run, boundary, faults):
     """The first two steps for few points, within an elevation error: the outline is that of all."""
-    result, error = run.result, run.given["maximum_elevation_error"]
+    result, error = run.result, run.properties["maximum_elevation_error"]
     triangulate(run, faults, 0.0)
     # Edges that follow the surface would have many points, each of which becomes a vertex.
     trim_along(run, boundary, vtkTrimOutwardTriangles.STRAIGHT)
@@ -227,20 +227,20 @@ def why_no_triangle(ranks, xyz, limit, warnings):
     """
     finite = xyz[numpy.isfinite(xyz).all(axis=1)]
     distinct = numpy.unique(finite[:, :2].astype("f8"), axis=0)
-    count, number_of_finite = total(ranks, len(xyz)), total(ranks, len(finite))
+    count, finite_count = total(ranks, len(xyz)), total(ranks, len(finite))
     ends = numpy.vstack((distinct[:3], distinct[-1:]))  # of each rank
     ends = numpy.unique(all_values(ranks, ends.ravel(), "f8").reshape(-1, 2), axis=0)
     words = "the only point" if count == 1 else f"all {count:,} points"
     if count == 0:
         return "no surface: there is no point to use"
-    if number_of_finite == 0:
+    if finite_count == 0:
         return f"no surface: {words} {'is' if count == 1 else 'are'} not finite (NaN or infinite)"
     if count == 1:
         return "no surface: there is only one point; three not on a line are needed"
     if len(ends) == 1:
         x, y = ends[0]
         where = f"({x:.10g}, {y:.10g})"
-        return f"no surface: all {number_of_finite:,} finite points have the same x,y {where}"
+        return f"no surface: all {finite_count:,} finite points have the same x,y {where}"
     if len(ends) == 2:
         return "no surface: only two points differ in x,y; three not on a line are needed"
     a, b = ends[0], ends[-1]
@@ -250,7 +250,7 @@ def why_no_triangle(ranks, xyz, limit, warnings):
     offset = extremes(ranks, numpy.abs(away[:, 0] * far[1] - away[:, 1] * far[0]))[1] / (far @ far)
     if offset < 1e-12 or not limit:
         return (
-            f"no surface: all {number_of_finite:,} finite points lie on one line in x,y, from "
+            f"no surface: all {finite_count:,} finite points lie on one line in x,y, from "
             f"({a[0]:.10g}, {a[1]:.10g}) to ({b[0]:.10g}, {b[1]:.10g})"
             + (f"; if they are a wall, {argument('plane')} best makes its surface"
                if any(one.code == "PointsOnWall" for one in warnings) else "")

@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the program in a process of its own, so that it can be stopped, and can crash, cleanly.
+"""Runs the program in a process of its own, so that it can be stopped, or crash, cleanly.
 
 Libraries in C++ do not hear of Ctrl-C until they are done. So the program works in a child. The
 parent waits for it, asks it to stop, ends it if it does not, and removes what it has left behind:
 unfinished results and the folder of its temporary files. While finished results appear, the child
 is not stopped. Nothing here is imported that takes time.
 
-They talk by SIGTERM from the parent, and by files in a folder: the names of unfinished results, the
-names of those that are whole but wait for the picture, the names of those that have appeared, and a
+They communicate by SIGTERM from the parent, and by files in a folder: the names of unfinished results, the
+names of those that are complete but wait for the picture, the names of those that have appeared, and a
 file that is there while stops are held back.
 """
 
@@ -27,10 +27,10 @@ STOPPING = [
 STOPPED = "reconstruct: stopped"
 NOTHING = "nothing is written"
 MOST_NAMED = 10
-RUN = "ELEVATION_SURFACE_RUN"  # the environment variable that tells the child the folder
+RUN = "ELEVATION_SURFACE_RUN"  # the environment variable that names the folder for the child
 PARTIAL_FILES, FINISHED_FILES, HELD = "partial-files", "finished-files", "held"
 WHOLE_FILES = "whole-files"
-# What Open MPI, and MPICH and its relatives, tell of a process that mpirun has started.
+# What Open MPI, and MPICH and its relatives, set for a process that mpirun has started.
 RANKS = (("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"), ("PMI_RANK", "PMI_SIZE"))
 held_back = []  # stops that were asked for since hold_stops()
 listening = []  # what answered to stops before
@@ -52,19 +52,19 @@ def end_with_parent():
 
 
 def note_partial_file(path):
-    """Tells the parent of a file or folder that is not finished, for it to remove if this process
+    """Reports a file or folder that is not finished to the parent, which removes it if this process
     cannot."""
     note(PARTIAL_FILES, os.path.abspath(path))
 
 
 def note_whole_file(partial, path):
-    """Tells the parent of a result that only waits for the picture, and its final place."""
+    """Reports a result that only waits for the picture, and its final place, to the parent."""
     note(WHOLE_FILES, os.path.abspath(partial))
     note(WHOLE_FILES, path)
 
 
 def note_finished_file(path):
-    """Tells the parent of a result that has appeared."""
+    """Reports a result that has appeared to the parent."""
     note(FINISHED_FILES, path)
 
 
@@ -112,7 +112,7 @@ def is_held(folder):
 
 
 def stop(*_):
-    """Whatever comes of being interrupted somewhere, nobody needs to hear of it."""
+    """Interrupts this process without any output: what else it would print does not matter."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     raise KeyboardInterrupt
 
@@ -241,7 +241,7 @@ def be_child(work, folder):
 def end_first(child, folder, must_end=False):
     """Ends the child of the first of several processes, unless its results appear. Returns whether.
 
-    As soon as it is gone, mpirun ends this process too. So all is removed and told before.
+    As soon as it is gone, mpirun ends this process too. So everything is removed and reported before.
     """
     os.kill(child, signal.SIGSTOP)
     if is_held(folder) and not must_end:

@@ -4,9 +4,9 @@
 
     PV_PLUGIN_PATH=<folder of the plugin> pvpython text_to_surface.py POINTS SURFACE.vtp PICTURE.png
 
-What was recognised in the file and what became of every point and hole is printed. The plugin chooses
-the first look of the surface: colours, the view from the south, and a factor for heights, which is the
-third number of shown.Scale.
+It prints what was recognised in the file, and how every point was used and every hole treated. The
+plugin chooses the first look of the surface: colours, the view from the south, and a factor for
+heights, which is the third number of shown.Scale.
 """
 import sys
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws what becomes of a cloud of points, as a map.
+"""Draws the boundary or the filled holes of a cloud of points, as a map.
 
-from_above.py outline CLOUD PICTURE.png [options]   the boundary that is found, and points beside it
+from_above.py outline CLOUD PICTURE.png [options]   the boundary that is found, and points outside it
 from_above.py voids CLOUD PICTURE.png [options]     the surface before and after its holes are filled
 
   --maximum-edge-length L   gaps wider than this become holes; default 0: no limit
@@ -100,7 +100,7 @@ def surface_actor(chain, surface):
 
 def above(chain, data):
     """The points of lines, lifted over the surface."""
-    points = chain.frame.of(data)
+    points = chain.frame.points_in(data)
     points[:, 2] = 2.0 * chain.exaggeration * max(1e-300, numpy.ptp(chain.points[:, 2]))
     return points
 

@@ -5,7 +5,7 @@
 
 survey_swath.py [PICTURE.png]
 
-The ship sounds a strip of the sea floor, with a loop in it. The points alone tell where it went,
+The ship sounds a strip of the sea floor, with a loop in it. The points alone show where it went,
 although they lie eight times denser across the course than along it. Their triangulation also covers
 what is within the loop, and between its arms.
 """

@@ -25,9 +25,9 @@
  * the other filters, they are brought up to date. MaximumElevationError, DrapeConstraints,
  * RemoveUnusedPoints and OutputPointsPrecision are for points in memory, and are errors. Where GetTrim() has a boundary, all pieces are trimmed along it, as
  * that filter would trim the whole surface; with TrimOutward on and no boundary, along the outline that
- * it would find. Where only the whole surface would tell the outline, as of some surveys along lines,
+ * it would find. Where only the whole surface would show the outline, as of some surveys along lines,
  * there is an error. Points that constraints add get ids after the largest, and
- * points that trimming inserts after those. OutwardTest InwardNormal is an error. Beside points that
+ * points that trimming inserts after those. OutwardTest InwardNormal is an error. Next to points that
  * trimming inserts, diagonals may differ from those of that filter, as they do with that filter for
  * triangles in another order.
  *
@@ -131,7 +131,7 @@ public:
 
   ///@{
   /**
-   * The filters whose properties tell how to triangulate, trim and fill, and the boundary. Their
+   * The filters whose properties control how to triangulate, trim and fill, and the boundary. Their
    * input 0 is not used.
    */
   vtkGridDelaunay2D* GetDelaunay();

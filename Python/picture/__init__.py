@@ -186,8 +186,8 @@ def colour_map(low, high, stops=None):
 
 def error_colours(errors):
     """The colours of standard errors: up to what 98 % of those above 0 are."""
-    told = errors[numpy.isfinite(errors) & (errors > 0.0)]
-    return colour_map(0.0, float(numpy.percentile(told, 98)) if len(told) else 1.0, ERROR)
+    known = errors[numpy.isfinite(errors) & (errors > 0.0)]
+    return colour_map(0.0, float(numpy.percentile(known, 98)) if len(known) else 1.0, ERROR)
 
 
 def line_cells(data):
@@ -221,7 +221,7 @@ class Frame:
         points[:, :2] = points[:, :2] @ self.widen
         return points
 
-    def of(self, data):
+    def points_in(self, data):
         return self(vtk_to_numpy(data.GetPoints().GetData()).astype("f8"))
 
 
@@ -280,11 +280,11 @@ def draw(surface, path, title, subtitle, holes=None, plane=None, **options):
     surface   vtkPolyData with triangles; with a cell array HoleId, patches are outlined, unless most
               triangles are patches
     holes     None, or the second output of vtkFillElevationHoles
-    plane     None, or the Plane that the surface is drawn over; colours tell how far off it lies
+    plane     None, or the Plane that the surface is drawn over; colours show how far off it lies
     view      None, or (bearing, height) of the eye in degrees; height 90 looks straight down
     exaggeration  None, or the factor for z
     progress      None, or a function that is called with the fraction done
-    show_errors   colours tell FilledError, a point array of vtkFillElevationHoles, not elevation
+    show_errors   colours show FilledError, a point array of vtkFillElevationHoles, not elevation
     Returns {"bearing", "height", "exaggeration"} as used. Raises PictureError. Takes about a second for
     100,000 triangles where a software renderer draws; of more than 500,000, only as many are drawn as
     the picture can show.
@@ -385,7 +385,7 @@ def render(
         still_open = (status != 0) & (status != 4)
         pairs = segments([p for p, o in zip(line_cells(holes), still_open) if o])
         if len(pairs):
-            renderer.AddActor(lines_actor(frame.of(holes), pairs, colour(OPEN), 3.5, 2))
+            renderer.AddActor(lines_actor(frame.points_in(holes), pairs, colour(OPEN), 3.5, 2))
             legend.append(("hole left open", colour(OPEN)))
 
     progress(0.7)
@@ -422,7 +422,7 @@ def save(window, path):
     grab.SetInputBufferTypeToRGB()
     grab.Update()
     writer = vtkPNGWriter()
-    # In memory first: VTK's writer does not tell why it cannot write.
+    # In memory first: VTK's writer gives no reason where it cannot write.
     writer.WriteToMemoryOn()
     writer.SetInputData(grab.GetOutput())
     writer.Write()

@@ -28,7 +28,7 @@ PAUSE = 1.0  # seconds between them
 class VirtualDisplay:
     """Starts Xvfb and points DISPLAY and XAUTHORITY to it.
 
-    The server is told to end when its last client leaves, and this program stays its client. So no
+    The server is started to end when its last client leaves, and this program stays its client. So no
     server is left behind, even if the program is killed. close() also removes the folder with the
     key that keeps other users out.
     """
@@ -143,7 +143,7 @@ def write_key(path):
 
 
 def read_line(reading):
-    """The number that the server tells when it is ready; "" if it ends, or not in time."""
+    """The number that the server prints when it is ready; "" if it ends, or not in time."""
     text = b""
     while not text.endswith(b"\n"):
         if not select.select([reading], [], [], WAIT)[0]:

@@ -146,7 +146,7 @@ def add_frame(renderer, width, tall, title, subtitle, legend, scales):
         box = [0.0] * 4
         label.GetBoundingBox(renderer, box)
         x += 56 + box[1] - box[0] + 44
-    # Several do not fit beside the legend: the others go above it.
+    # Several do not fit next to the legend: the others go above it.
     add_text(renderer, scales[0], x, 42, 22)
     if scales[1:]:
         add_text(renderer, "   \u00b7   ".join(scales[1:]), LEFT, 84, 22)

@@ -19,7 +19,7 @@ from ..names import option
 from ..progress import no_progress, share
 from ..projecting import notes_on_degrees, project
 from ..ranks import total
-from ..selecting import columns_in, condition_of_layer, select
+from ..selecting import columns_in, layer_condition, select
 from .nulls import blank_attributes, take_out
 from .text import read_line_table, read_table
 from .unpacking import STANDARD_INPUT, is_plain, unpacked
@@ -50,11 +50,11 @@ def check_use(path, kind, options):
 
 @listing(ReadOptions.__dataclass_fields__)
 def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
-    """Reads the points of a file, whatever its kind. The kind is told by the content, not the name.
+    """Reads the points of a file of any kind, which is recognised by the content, not the name.
 
     path     "-" is standard input; a file packed by gzip, bzip2 or xz is unpacked
     progress  a function that is called with the fraction read; what it raises ends the reading
-    options  those of the program, whose --help tells more of each:
+    options  those of the program, whose --help describes each:
              {properties}.
              columns may be a list, and where {"horizon": "Top", "line": [3, 4]}.
              A misspelt one is a TypeError.
@@ -96,7 +96,7 @@ def frame_of(path):
             cloud = read_by_format(local, ReadOptions(points_only=True))
             frame, crs = cloud.frame, cloud.crs
         if frame is None:
-            raise FileError(f"{local}: is no raster with even steps, so there are no pixels like its own")
+            raise FileError(f"{local}: is not a raster with even steps, so there are no pixels like its own")
     return frame, crs
 
 
@@ -125,7 +125,7 @@ def read_by_format(path, options):
     check_use(path, kind, options)
     cloud = kind.reader()(path, options)
     if options.layer and kind.module in NAMES_IN_COLUMNS:
-        named = condition_of_layer(path, options.layer, columns_in(cloud))
+        named = layer_condition(path, options.layer, columns_in(cloud))
         select(path, cloud, [named], Reason("point", "of other layers"))
     if options.no_data is not None and kind.module not in ("text.read_text", "rasters"):
         leave_out(path, cloud, options.no_data)

@@ -8,7 +8,7 @@ import numpy
 
 from ..clouds import Cloud, make_points
 from ..messages import FileError
-from ..progress import told_items
+from ..progress import items_with_progress
 from .facing import check_faces, made_of
 
 
@@ -26,7 +26,7 @@ def rows_of(path, stream, number, count, width, what):
         rows = numpy.array(lines, "f8").reshape(-1, width)
     except ValueError:
         bad = next((i for i, line in enumerate(lines) if not are_numbers(line, width)), 0)
-        raise FileError(f"{path}, line {number + bad}: is no row of {width} numbers, or is cut off") from None
+        raise FileError(f"{path}, line {number + bad}: is not a row of {width} numbers, or is cut off") from None
     if len(rows) < count:
         raise FileError(f"{path}: is cut off: {count:,} {what} are announced, {len(rows):,} found")
     return rows
@@ -37,9 +37,9 @@ def read_points(path, options):
     with open(path, "rb") as stream:
         title, counts = stream.readline(), stream.readline().split()
         if len(counts) < 2 or not all(word.isdigit() for word in counts[:2]) or not int(counts[1]):
-            raise FileError(f"{path}, line 2: does not tell the number of elements and nodes, as an ADCIRC mesh does")
+            raise FileError(f"{path}, line 2: does not give the number of elements and nodes, as an ADCIRC mesh does")
         elements, count = map(int, counts[:2])
-        nodes = rows_of(path, told_items(stream, options.progress, count), 3, count, 4, "nodes")
+        nodes = rows_of(path, items_with_progress(stream, options.progress, count), 3, count, 4, "nodes")
         faces = rows_of(path, stream, 3 + count, elements, 5, "elements")
     places = {node: place for place, node in enumerate(nodes[:, 0])}
     xyz = nodes[:, 1:] * (1.0, 1.0, 1.0 if options.depth else -1.0)

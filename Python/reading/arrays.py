@@ -86,14 +86,14 @@ def cloud_of_columns(path, columns, notes=()):
 
 
 def cloud_of_grid(path, z, x=None, y=None):
-    """The nodes of a grid, z of (rows, columns), as a Cloud. NaN is no node.
+    """The nodes of a grid, z of (rows, columns), as a Cloud. NaN is not a node.
 
     x, y  vectors, for the columns and the rows, or arrays like z; None: numbers from 0
     """
     rows, columns = z.shape
     notes = [f"a grid of {columns} x {rows} nodes"]
     if x is None and y is None:
-        notes.append("it tells no x and y: they are numbers of column and row, from 0")
+        notes.append("it has no x and y: they are numbers of column and row, from 0")
     x = numpy.arange(columns) if x is None else numpy.asarray(x)
     y = numpy.arange(rows) if y is None else numpy.asarray(y)
     if x.shape == (columns,) and y.shape == (rows,):
@@ -143,7 +143,7 @@ def columns_of_rows(path):
     """({name: column}, notes) of an array of rows, or with fields, which is not read yet."""
     array = loaded(path)
     if hasattr(array, "keys") or not array.dtype.names and not are_rows(array):
-        raise FileError(f"{path}: is no array of rows of x, y and z, so it is not read in pieces")
+        raise FileError(f"{path}: is not an array of rows of x, y and z, so it is not read in pieces")
     return columns_of(path, array)
 
 
@@ -153,7 +153,7 @@ class ArraySlices:
     def __init__(self, path, options, part):
         self.path, self.progress = path, options.progress
         columns, self.notes = columns_of_rows(path)
-        self.part = part.of(len(columns["x"]))
+        self.part = part.rows(len(columns["x"]))
         self.others = [name for name in columns if name not in "xyz"]
 
     def __iter__(self):
@@ -169,7 +169,7 @@ class ArraySlices:
         return {}
 
     def finish(self, _, cloud):
-        """Adds to a Cloud what is told once all points are read."""
+        """Adds to a Cloud what is reported once all points are read."""
         cloud.notes += self.notes
         if self.others:
             cloud.notes.append(f"left out: {', '.join(self.others)}")

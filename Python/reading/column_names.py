@@ -29,13 +29,13 @@ def in_brackets(name):
 
 @dataclasses.dataclass(frozen=True)
 class Meaning:
-    """What a name tells: an axis with rank and direction, or the role of something else."""
+    """What a name means: an axis with rank and direction, or the role of something else."""
 
     axis: str = ""
     rank: int = 0
     direction: str = ""
     role: str = ""
-    beside: tuple = ()  # the words beside the name of the axis
+    beside: tuple = ()  # the words next to the name of the axis
 
 
 def meaning(name):
@@ -61,14 +61,14 @@ def meaning(name):
 def _axis_of(words, joined, extra):
     whole = [(a, r, d) for a, r, d, names in AXES if joined in names]
     found = [(a, r, d, w) for a, r, d, names in AXES for w in words if w in names]
-    # "Longitude_E": the word tells more than the letter.
+    # "Longitude_E": the word says more than the letter.
     found = [one for one in found if one[3] not in LETTERS_OF_AXES] or found
     found = whole or [one[:3] for one in found]
     found += [(a, r, d) for a, r, d, names in AXES for w in extra if w in names]
     if not found:
         return None
     if len({axis for axis, _, _ in found}) > 1:
-        # "X (Nord)": the word tells more than the letter.
+        # "X (Nord)": the word says more than the letter.
         found = [(a, r, d) for a, r, d in found if r == 1 and a != "z"]
         if len({axis for axis, _, _ in found}) != 1:
             return None
@@ -83,13 +83,13 @@ def _axis_of(words, joined, extra):
         strange.append("alt")  # "Höhe_alt": the old one
     if strange:
         if max(len(word) for word in words if word in known) < 2 or rank == 4:
-            return None  # a single letter among words that tell something else
+            return None  # a single letter among words that mean something else
         rank += 5
     return Meaning(axis, rank, direction, "", tuple(sorted(beside)))
 
 
 def unit_of(name):
-    """The unit of length that a column's name tells, as "feet" for "Z (ft)" and "elev_ft", or ""."""
+    """The unit of length in a column's name, as "feet" for "Z (ft)" and "elev_ft", or ""."""
     outside, inside = in_brackets(name)
     words = plain(inside) or plain(outside)[1:]
     return next((unit for unit, names in UNITS.items() if words and words[-1] in names), "")
@@ -121,7 +121,7 @@ def is_seismic(name):
 
 
 def is_beside(name):
-    """Whether a word may stand beside the name of an axis, as "coordinate" does."""
+    """Whether a word may stand next to the name of an axis, as "coordinate" does."""
     return all(word in BESIDE for word in plain(name))
 
 

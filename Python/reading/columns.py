@@ -3,7 +3,7 @@
 """Which columns of a table are x, y and z: by their names, else by their values.
 
 Names, or the places of columns, give the readings that are possible; each has a score. If the best is clearly
-better than the next, a note tells what it rests on. If not, an error shows both, with the first rows.
+better than the next, a note says what it rests on. If not, an error shows both, with the first rows.
 """
 
 import dataclasses
@@ -43,7 +43,7 @@ class Choice:
     of_numbers: list
     notes: list
     z_name: str = ""  # what z is called, with its unit
-    is_horizon: bool = False  # whether lines and traces of a seismic survey stand beside
+    is_horizon: bool = False  # whether lines and traces of a seismic survey stand next to them
     texts: dict = dataclasses.field(default_factory=dict)
     angles: str = "no"  # as of a Cloud
 
@@ -205,14 +205,14 @@ class Search:
     # -- names
 
     def by_names(self):
-        """Whether names tell the columns; sets the indices then."""
+        """Whether the names give the columns; sets the indices then."""
         named = {axis: self.best_named(axis) for axis in self.axes}
         if not any(named.values()):
             return False
         missing = [axis for axis in self.axes if not named[axis]]
         free = self.free_columns(sum(named.values(), []), len(missing)) if missing else []
         known = ", ".join(f"{a} = {self.called(c[0])}" for a, c in named.items() if c)
-        why = f"the names tell {known}, but not {' and '.join(missing)}"
+        why = f"the names give {known}, but not {' and '.join(missing)}"
         if len(free) < len(missing):
             self.ask([], f"{why}; no column is left for it")
         readings = {}
@@ -237,7 +237,7 @@ class Search:
         return [i for i in found if self.meanings[i].rank == best]
 
     def is_pair(self, x, y):
-        """Whether names of x and y have the same words beside, as X_utm and Y_utm do."""
+        """Whether names of x and y have the same further words, as X_utm and Y_utm do."""
         x, y = self.meanings[x], self.meanings[y]
         return bool(x.axis and y.axis) and x.beside == y.beside and abs(x.rank - y.rank) < 2
 
@@ -309,7 +309,7 @@ class Search:
             each = self.is_whole(i) and len(numpy.unique(values)) == len(values)
             self.ids |= {i} if each else set()
             reasons[i] = (
-                "an id: whole numbers, each once" if each else "no coordinate beside the next"
+                "an id: whole numbers, each once" if each else "no coordinate next to the next"
             )
         if self.needed == 3:
             self.east_and_north(reasons)
@@ -454,7 +454,7 @@ class Search:
         return bool((steps > 0).all() and (near == 1).mean() > 0.6)
 
     def is_class(self, i, beside):
-        """A few small whole numbers beside a column of quite other ones."""
+        """A few small whole numbers next to a column of quite other ones."""
         values = self.finite(i)
         if len(values) < 20 or not self.is_whole(i) or values.min() < 0 or values.max() > 255:
             return False
@@ -482,7 +482,7 @@ class Search:
         return []
 
     def may_be_place(self, i):
-        """Whether a column may be a line, trace, latitude or longitude beside x and y."""
+        """Whether a column may be a line, trace, latitude or longitude in addition to x and y."""
         return self.is_whole(i) or self.decimals[i] >= 4 and abs(self.finite(i)).max(initial=0) <= 360
 
     def place_in_grid(self, columns):
@@ -574,7 +574,7 @@ class Search:
     def east_and_north(self, reasons):
         """x and y of points with numbers: surveyors write the northing first.
 
-        Metres of UTM tell which it is. Otherwise a code behind z speaks for point, northing,
+        Metres of UTM decide it. Otherwise a code behind z speaks for point, northing,
         easting, elevation, code, and x,y,z as they stand is as likely. So is it behind dates, where
         latitude and longitude stand.
         """
@@ -609,7 +609,7 @@ class Search:
             return False
         return bool(160e3 < x.min() and x.max() < 840e3 and 1.1e6 < y.min() and y.max() < 10e6)
 
-    # -- what the values tell of the choice
+    # -- what the values say about the choice
 
     def look_at_values(self):
         x, y = self.indices[:2]
@@ -660,7 +660,7 @@ class Search:
     # -- the other columns
 
     def extras(self):
-        """{index: name} of the columns of numbers that are no coordinates."""
+        """{index: name} of the columns of numbers that are not coordinates."""
         result, text = {}, []
         for i in range(self.width):
             if i in self.indices or self.needed == 2:

@@ -3,7 +3,7 @@
 """Whether a mesh is an elevation surface: seen from above, each place once.
 
 Only the points of a mesh are read, and points of a folded or closed one make a woven surface. Its
-faces tell: some face down where their neighbours face up, or are vertical. Which side a face turns
+faces show it: some face down where their neighbours face up, or are vertical. Which side a face turns
 up depends on the order of its corners, and whole files are in the other order, or in none. So where
 faces differ, VTK first makes the order of neighbours the same, and of each part of the mesh the
 rarer side counts.
@@ -17,13 +17,13 @@ from ..clouds import cells_of, make_points
 from ..messages import ElevationSurfaceError, FileError, counted
 from ..names import option
 
-FEW = 0.01  # of the faces; more of them is no slip of the program that wrote the mesh
+FEW = 0.01  # of the faces; more of them are not a slip of the program that wrote the mesh
 FLAT_CELLS = range(10)  # VTK's numbers of cells without volume, up to VTK_QUAD
 
 
 def check_faces(path, data, options):
     """Notes on the faces of a data set, of which only the points are used. Raises FileError where
-    it is no elevation surface, unless options say that the points are wanted all the same."""
+    it is not an elevation surface, unless options say that the points are wanted all the same."""
     if options.points_only or data is None:
         return []
     faces = faces_of(data)
@@ -53,7 +53,7 @@ def notes_on_faces(faces):
     if share <= FEW:
         return [f"{words}: the mesh folds there, and only its points are used"]
     raise ElevationSurfaceError(
-        f"is no elevation surface: {words} ({100 * share:.0f} %), so it is closed, or folds; "
+        f"is not an elevation surface: {words} ({100 * share:.0f} %), so it is closed, or folds; "
         "split it into parts that do not"
     )
 

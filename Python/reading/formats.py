@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What kind of file a file is: told by its content, and where that says nothing by its name."""
+"""What kind of file a file is: by its content, and where that says nothing by its name."""
 
 import dataclasses
 import importlib
@@ -17,7 +17,7 @@ HEAD, LONG_HEAD = 4096, 1 << 16
 class Format:
     """A kind of file, and the module of this package that reads it.
 
-    is_it   tells from (first bytes, path) whether a file is of this kind
+    is_it   decides from (first bytes, path) whether a file is of this kind
     module  the module that reads points, by read_points() if no other function is named
     lines   the module whose read_lines(path, singular) reads boundaries and faults, or ""
     slices  the class that reads points slice by slice, or ""

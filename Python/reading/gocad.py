@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from ..clouds import Cloud, add_array, make_points
 from ..messages import FileError
-from ..progress import told_lines
+from ..progress import lines_with_progress
 from ..selecting import words_of
 from .facing import check_faces, made_of
 
@@ -37,7 +37,7 @@ class Gocad:
         self.objects = []
         key = ""
         with open(path, encoding="latin-1") as stream:
-            for number, line in enumerate(told_lines(stream, progress), 1):
+            for number, line in enumerate(lines_with_progress(stream, progress), 1):
                 words = line.split()
                 if not words or words[0].startswith("#"):
                     continue

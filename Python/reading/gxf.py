@@ -20,17 +20,17 @@ def read_grid(path, options):
     begin = GRID.search(text).end()
     found = {key.decode(): value.replace(b'"', b"").split() for key, value in KEYWORD.findall(text[:begin])}
 
-    def told(key, default):
+    def value(key, default):
         return float(found.get(key, [default])[0])
 
     try:
-        columns, rows, x, y = (told(key, "none") for key in ("POINTS", "ROWS", "XORIGIN", "YORIGIN"))
-        dx, dy = told("PTSEPARATION", 1), told("RWSEPARATION", 1)
-        turned, sense = told("ROTATION", 0), told("SENSE", 1)
-        dummy, is_packed = told("DUMMY", "nan"), told("GTYPE", 0) != 0
+        columns, rows, x, y = (value(key, "none") for key in ("POINTS", "ROWS", "XORIGIN", "YORIGIN"))
+        dx, dy = value("PTSEPARATION", 1), value("RWSEPARATION", 1)
+        turned, sense = value("ROTATION", 0), value("SENSE", 1)
+        dummy, is_packed = value("DUMMY", "nan"), value("GTYPE", 0) != 0
         scale, offset, *_ = map(float, found.get("TRANSFORM", ["1", "0"]))
     except (ValueError, IndexError):
-        raise FileError(f"{path}: is damaged: it does not tell POINTS, ROWS, XORIGIN and YORIGIN as numbers") from None
+        raise FileError(f"{path}: is damaged: it does not give POINTS, ROWS, XORIGIN and YORIGIN as numbers") from None
     if is_packed or sense not in (1, -2):
         what = "its numbers are packed" if is_packed else f"its SENSE is {sense:g}"
         raise FileError(f"{path}: {what}, which is not read: gdal_translate {path} grid.tif makes a raster of it")

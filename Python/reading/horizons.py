@@ -12,7 +12,7 @@ from ..clouds import Cloud, add_array, make_lines, make_points
 from .columns import meaning
 from .formats import HEAD
 from ..messages import FileError, Reason, counted
-from ..progress import no_progress, told_lines
+from ..progress import no_progress, lines_with_progress
 from .rasters import points_of_raster
 
 AT_ONCE = 1 << 22  # bytes
@@ -62,7 +62,7 @@ def check_count(path, found, count):
 
 
 def grid_cloud(path, x, y, z, note):
-    """Nodes of a grid as points. x, y, z: arrays of one shape; NaN is no data."""
+    """Nodes of a grid as points. x, y, z: arrays of one shape; NaN is not data."""
     cloud = points_of_raster(path, x, y, z)
     cloud.is_horizon = True
     cloud.notes.append(f"{note}, {z.shape[1]} x {z.shape[0]} nodes")
@@ -80,10 +80,10 @@ def cloud_of_columns(path, x, y, values, is_null, name):
     order of y."""
     check_count(path, len(values), len(x) * len(y))
     values = numpy.where(is_null(values), numpy.nan, values)
-    as_told, swapped = (roughness(values.reshape(shape)) for shape in ((len(x), len(y)), (len(y), len(x))))
-    if as_told > MOST_ROUGHNESS * swapped:
+    as_given, swapped = (roughness(values.reshape(shape)) for shape in ((len(x), len(y)), (len(y), len(x))))
+    if as_given > MOST_ROUGHNESS * swapped:
         raise FileError(
-            f"{path}: is no {name} as it should be: neighbours in a row differ by {as_told:.4g}, and by {swapped:.4g} "
+            f"{path}: is not a valid {name}: neighbours in a row differ by {as_given:.4g}, and by {swapped:.4g} "
             "if the numbers go row by row; its program mixed up rows and columns: write it in another format, as .asc"
         )
     z = values.reshape(len(x), len(y)).T
@@ -124,7 +124,7 @@ def read_zmap(path, options):
         (rows, columns), end = map(int, places[:2]), head.end()
         x_min, x_max, y_min, y_max = map(float, places[2:6])
     except (AttributeError, IndexError, ValueError):
-        raise FileError(f"{path}: is damaged: its header does not tell rows, columns and limits") from None
+        raise FileError(f"{path}: is damaged: its header does not give rows, columns and limits") from None
     body = text[end:]
     values = numbers(body, options.progress)
     if len(values) != rows * columns:  # numbers of fixed width may touch
@@ -135,7 +135,7 @@ def read_zmap(path, options):
     cloud = cloud_of_columns(path, x, y, values, lambda z: numpy.isclose(z, null, 1e-6, 0.0), "ZMAP+ grid")
     if b"." not in body and form[3].strip(b"0"):
         cloud.notes.append(
-            f"none of its numbers has a decimal sign, though the header tells {form[3].decode()} decimals: they are read as "
+            f"none of its numbers has a decimal sign, though the header says {form[3].decode()} decimals: they are read as "
             "they stand"
         )
     if by_gdal:
@@ -157,7 +157,7 @@ def read_table(path, names, first, progress, null=None):
 
     def lines(stream):
         nonlocal number
-        for number, line in enumerate(told_lines(stream, progress), 1):
+        for number, line in enumerate(lines_with_progress(stream, progress), 1):
             if number > first and line.strip() and not line.startswith((b"#", b"!")):
                 yield line
 
@@ -176,7 +176,7 @@ def read_table(path, names, first, progress, null=None):
             try:
                 rows = load(places)
             except (ValueError, IndexError):
-                raise FileError(f"{path}, line {number}: is no row of {', '.join(names)}") from None
+                raise FileError(f"{path}, line {number}: is not a row of {', '.join(names)}") from None
     if not rows.size:
         raise FileError(f"{path}: holds no points")
     keep = numpy.isfinite(rows[:, 2]) & (rows[:, 2] != null if null is not None else True)
@@ -246,7 +246,7 @@ def segments(path, progress):
             rows.clear()
 
     with open(path, "rb") as stream:
-        for number, line in enumerate(told_lines(stream, progress), 1):
+        for number, line in enumerate(lines_with_progress(stream, progress), 1):
             if line.startswith(SEPARATORS) or END_OF_LINE.fullmatch(line):
                 close()
                 found = re.search(rb"-Z\s*([-+.\deE]+)", line)
@@ -256,7 +256,7 @@ def segments(path, progress):
                     words = [float(word) for word in line.replace(b",", b" ").split()[:3]]
                     rows.append(words if len(words) == 3 else [words[0], words[1], z])
                 except (ValueError, IndexError):
-                    raise FileError(f"{path}, line {number}: is no point of a line") from None
+                    raise FileError(f"{path}, line {number}: is not a point of a line") from None
     close()
     if not parts:
         raise FileError(f"{path}: holds no points")

@@ -8,7 +8,7 @@ import numpy
 
 from ..clouds import Cloud, add_array, make_lines, make_points
 from ..messages import FileError, Reason
-from ..progress import told_lines
+from ..progress import lines_with_progress
 from ..selecting import words_of
 
 NUMBER = rb"\s*([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?|[-+]?\d+\.)"
@@ -28,7 +28,7 @@ def profiles(path, progress):
     """[(name, type, unit of z, rows of x, y, segment and z)] of a file. Petrel leaves out the EOD at its end."""
     found, is_over = [], False
     with open(path, "rb") as stream:
-        for number, line in enumerate(told_lines(stream, progress), 1):
+        for number, line in enumerate(lines_with_progress(stream, progress), 1):
             head = PROFILE.match(line)
             if head:
                 name, kind, rest = (part.decode("latin-1") for part in head.groups())
@@ -42,7 +42,7 @@ def profiles(path, progress):
             row = found and row_of(line, ROWS[found[-1][1]])
             if not row:
                 shown = line.decode("latin-1").strip()[:40]
-                raise FileError(f"{path}, line {number}: '{shown}' is no row of an IESX profile")
+                raise FileError(f"{path}, line {number}: '{shown}' is not a row of an IESX profile")
             found[-1][3].append(row)
     if not is_over and not line.endswith(b"\n"):
         raise FileError(f"{path}: is cut off within its last line")

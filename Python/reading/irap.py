@@ -47,7 +47,7 @@ def cloud_of(path, name, header, values):
     """Rows from south to north, which may be turned about a point, as a Cloud."""
     rows, dx, dy, x_min, x_max, y_min, _, columns, turned, x0, y0 = header
     if not (rows >= 1 and columns >= 1 and dx > 0 and dy > 0 and rows * columns < 1e12):
-        raise FileError(f"{path}: is no {name}: {columns:g} x {rows:g} nodes")
+        raise FileError(f"{path}: is not a valid {name}: {columns:g} x {rows:g} nodes")
     check_count(path, len(values), int(rows) * int(columns))
     x, y = numpy.meshgrid(x_min + dx * numpy.arange(columns), y_min + dy * numpy.arange(rows))
     note = name

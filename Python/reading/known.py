@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is known of tables: the words and signs by which columns, nulls and layouts are told, and what speaks
-for a reading of columns. Nothing here does anything."""
+"""What is known of tables: the words and signs by which columns, nulls and layouts are
+recognised, and what speaks for a reading of columns. Nothing here does anything."""
 
 import re
 
@@ -57,7 +57,7 @@ AXES = (
     )),
     ("z", 4, "time", _words("time zeit temps tiempo tempo tid tijd czas")),
 )
-# Words that may stand beside the name of an axis.
+# Words that may stand next to the name of an axis.
 BESIDE = _words(
     "utm coord coords coordinate coordinates koordinate koordinaten koordinat koordinaat "
     "coordinaat coordenada coordenadas coordonnee coordonnees coordinata wspolrzedna wsp point pt "
@@ -71,8 +71,8 @@ BESIDE = _words(
     "utme utmn magna irenet osgb bng cs crs srs seabed seafloor bottom dtm dem dgm dsm mdt bunn fond fondo "
     "bodem grund uber ueber sobre sur over reduced boven l ii iii iv sjobunn"
 )
-# What a column with such a name is, when it is no coordinate. A name that holds one of the words of
-# "measure" is no coordinate whatever else it holds.
+# What a column with such a name is, when it is not a coordinate. A name that holds one of the words of
+# "measure" is not a coordinate whatever else it holds.
 ROLES = (
     ("an id", _words(
         "id fid oid objectid nr no num nummer number numero point pt pkt punkt punktnr "
@@ -130,7 +130,7 @@ MISSING = set(
     "na n/a #n/a n.a. null none nil nodata no-data missing void - -- ? * -nan nan(ind)".split()
 ) | {""}
 ESRI_GRID, SURFER_GRID = "an ESRI ASCII grid", "a Surfer grid"  # which GDAL reads
-# How files begin that are no tables, and what they are.
+# How files begin that are not tables, and what they are.
 NO_TABLES = (
     (r"ncols\b", ESRI_GRID),
     (r"dsaa\b", SURFER_GRID),
@@ -209,7 +209,7 @@ WEIGHTS = {
     "z rises along lines": -10,  # whole numbers, as those of lines are
     "z behind lines": -8,
 }
-# A reading is certain if the next is this much worse; more, where the reading itself is no good one.
+# A reading is certain if the next is this much worse; more, where the reading itself is not a good one.
 GOOD, CLEAR, CLEAR_OF_POOR = 33, 4, 6
 # The parts of a time: least, most, and how many seconds they are.
 PARTS_OF_TIME = {

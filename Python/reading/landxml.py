@@ -82,7 +82,7 @@ def read_points(path, options):
         try:
             corners = numpy.array([[places[key] for key in face] for face in faces])
         except KeyError as error:
-            raise FileError(f"{path}: is damaged: a face has the corner {error}, which is no point") from None
+            raise FileError(f"{path}: is damaged: a face has the corner {error}, which is not a point") from None
         if len(faces) and not options.points_only:
             cloud.notes.append("only the points are used, not the file's cells")
             cloud.notes += check_faces(path, made_of(numpy.array(list(points.values())), corners), options)

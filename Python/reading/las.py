@@ -24,7 +24,7 @@ AT_ONCE = 1 << 20
 
 
 class Header:
-    """What the header and the records behind it tell. Raises FileError."""
+    """The contents of the header and of the records behind it. Raises FileError."""
 
     def __init__(self, path):
         self.path = path
@@ -147,7 +147,7 @@ class Chosen:
 
     def __init__(self, path, options, part=WHOLE):
         self.path, self.options, self.header = path, options, Header(path)
-        self.part = part.of(self.header.count)
+        self.part = part.rows(self.header.count)
         self.total = self.count = self.withheld = 0
         self.of_class = numpy.zeros(256, "i8")
 
@@ -191,8 +191,8 @@ class Chosen:
             for number in numpy.flatnonzero(self.of_class)
         )
 
-    def tell(self, cloud):
-        """Adds to a Cloud what is told once all points are read."""
+    def report(self, cloud):
+        """Adds to a Cloud what is reported once all points are read."""
         header = self.header
         several = numpy.count_nonzero(self.of_class) > 1 and not self.options.classes
         cloud.crs = header.crs
@@ -227,12 +227,12 @@ class LasSlices(Chosen):
         }
 
     def finish(self, facts, cloud):
-        """Takes the facts of the whole file, and adds to a Cloud what is told then."""
+        """Takes the facts about the whole file, and adds to a Cloud what is reported then."""
         self.total, self.count, self.withheld = facts["total"], facts["count"], facts["withheld"]
         for number, count in facts["classes"].items():
             self.of_class[int(number)] = count
         self.check()
-        self.tell(cloud)
+        self.report(cloud)
         cloud.notes.append("left out: point arrays, as intensity")
 
 
@@ -265,7 +265,7 @@ def read_points(path, options):
                 arrays[name][here] = rows[name]
     chosen.check()
     cloud = Cloud(make_points(points[: chosen.count], copy=False))
-    chosen.tell(cloud)
+    chosen.report(cloud)
     for name, values in arrays.items():
         values = values[: chosen.count]
         if name == "RGB":

@@ -195,9 +195,9 @@ def degrees_in_columns(rows, width):
 
 
 def check_names(path, layout, before, rows, names, width, advice):
-    """Refuses a header that tells x, y and z but has more or fewer names than there are columns.
+    """Refuses a header that names x, y and z but has more or fewer names than there are columns.
 
-    before  the lines before the data that are no comments
+    before  the lines before the data that are not comments
     rows    some lines of data as words
     names   of the columns as far as they were found, or None
     """
@@ -217,9 +217,9 @@ def check_names(path, layout, before, rows, names, width, advice):
         if known_axes(found) < set("xyz") or len(found) == width:
             continue
         own = other.separator and other.separator == layout.separator
-        told = [meaning(name) for name in found]
-        if own or all(m.axis or m.role or is_beside(name) for m, name in zip(told, found)):
-            degrees = any(m.rank == 3 for m in told) and width in (5, 7)
+        meanings = [meaning(name) for name in found]
+        if own or all(m.axis or m.role or is_beside(name) for m, name in zip(meanings, found)):
+            degrees = any(m.rank == 3 for m in meanings) and width in (5, 7)
             why = f"{DEGREES}, or " if degrees else ""
             if layout.separator == "," and len(found) < width:
                 why = "commas within numbers part them too, else "
@@ -298,15 +298,15 @@ def unquoted(word):
 
 
 def doubtful_units(layout, head, names, indices):
-    """Notes where the header tells one unit of length for x and y, and another for z.
+    """Notes where the header has one unit of length for x and y, and another for z.
 
     The units stand in the names, as in "Z (ft)", in a line of their own, as in "m,m,ft", or where
     Petrel writes them.
     """
     rows = [[unit_of(name) for name in names or []]]
     rows += [[unit_of(f"({word.strip('()[]')})") for word in layout.words(line)] for line in head]
-    told = re.compile(r"unit in (x and y direction|depth):\s*(\w+)", re.I)
-    petrel = {where.lower(): unit_of(f"({unit})") for where, unit in told.findall("\n".join(head))}
+    pattern = re.compile(r"unit in (x and y direction|depth):\s*(\w+)", re.I)
+    petrel = {where.lower(): unit_of(f"({unit})") for where, unit in pattern.findall("\n".join(head))}
     named = [[row[i] if i < len(row) else "" for i in indices] for row in rows]
     across = petrel.get("x and y direction", "")
     for units in [*named, [across, across, petrel.get("depth", "")]]:

@@ -13,9 +13,9 @@ from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_FLOAT
 
 from ..clouds import coordinates_of, keep_points
 from .known import NULL_ROWS, NULLS
-from ..messages import Reason, counted, of_reason
+from ..messages import Reason, counted, counted_reason
 from ..names import option
-from ..progress import share, told_items
+from ..progress import share, items_with_progress
 from ..ranks import all_values, before, summed, together, total, widest
 from ..spreading import ids_of, places_of
 
@@ -57,7 +57,7 @@ def take_out(cloud, options, ranks=None):
     progress(0.35)
     if counts and number_of(ranks, ~null):
         if options.keep_nulls:
-            words = ", ".join(of_reason(count, name) for name, count in counts.items())
+            words = ", ".join(counted_reason(count, name) for name, count in counts.items())
             cloud.notes.append(f"kept: {words}")
         else:
             if null.any():
@@ -303,14 +303,14 @@ def blunders(x, y, z, numbers, progress):
     if not cells.count:
         return []
     parts = [slice(start, start + CHUNK) for start in range(0, len(x), CHUNK)]
-    told, count = share(progress, 0.0, 0.4), len(parts)
-    cell = [cells.of(x[p], y[p], z[p]) for p in told_items(parts, told, count, 1)]
+    shown, count = share(progress, 0.0, 0.4), len(parts)
+    cell = [cells.of(x[p], y[p], z[p]) for p in items_with_progress(parts, shown, count, 1)]
     cell = numpy.concatenate([numpy.zeros(0, "i4"), *cell])
     middle = z[:SAMPLE][numpy.abs(z[:SAMPLE]) < FAR]
     middle = all_values(ranks, middle, "f8")
     middle = float(numpy.median(middle)) if len(middle) else 0.0
     sums = numpy.zeros((3, cells.count))
-    for part in told_items(parts, share(progress, 0.4, 0.7), count, 1):
+    for part in items_with_progress(parts, share(progress, 0.4, 0.7), count, 1):
         known = cell[part] != cells.count - 1
         height = numpy.where(known, z[part] - middle, 0.0)
         for row, weights in zip(sums, (None, height, height * height)):
@@ -332,7 +332,7 @@ def blunders(x, y, z, numbers, progress):
             numpy.zeros(0, "i8"),
             *(
                 part.start + numpy.flatnonzero(abs(z[part] - mean[cell[part]]) > limit[cell[part]])
-                for part in told_items(parts, share(progress, 0.7, 0.9), count, 1)
+                for part in items_with_progress(parts, share(progress, 0.7, 0.9), count, 1)
             ),
         ]
     )
@@ -369,7 +369,7 @@ def compared(suspects, near, around, least, progress):
     order = numpy.argsort(near[1], kind="stable")
     ids, starts, heights = (one[order] for one in near)
     result = []
-    for point, cell, z in told_items(suspects, progress, len(suspects), 50):
+    for point, cell, z in items_with_progress(suspects, progress, len(suspects), 50):
         first = numpy.searchsorted(starts, cell + around)
         last = numpy.searchsorted(starts, cell + around, "right")
         rows = numpy.concatenate([numpy.arange(a, b) for a, b in zip(first, last)])

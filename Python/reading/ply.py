@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from ..clouds import Cloud, ReadOptions, add_array, make_points, rounding_note
 from ..messages import FileError, Messages
-from ..progress import share, told_items
+from ..progress import share, items_with_progress
 from .facing import check_faces, made_of
 from .vtk_checks import survives
 
@@ -174,7 +174,7 @@ def read_lines(path, singular, progress):
         rows = {}
         for element in elements:
             rows[element.name] = []
-            for i in told_items(range(element.count), progress, element.count):
+            for i in items_with_progress(range(element.count), progress, element.count):
                 row = element.read_row(stream, order)
                 if row is None:
                     raise FileError(f"{path}: is damaged in its {element.name} {i + 1}")
@@ -185,7 +185,7 @@ def read_lines(path, singular, progress):
     edges = [(row.get("vertex1"), row.get("vertex2")) for row in rows.get("edge", ())]
     for ids in faces or edges:
         if ids is None or None in ids:
-            raise FileError(f"{path}: its faces or edges do not tell their vertices")
+            raise FileError(f"{path}: its faces or edges do not list their vertices")
         bad = next((i for i in ids if not 0 <= i < points.GetNumberOfPoints()), None)
         if bad is not None:
             count = points.GetNumberOfPoints()
@@ -200,7 +200,7 @@ def read_lines(path, singular, progress):
 
 
 def add_arrays(points, rows):
-    """Colours as one array RGB, every other number that is no coordinate by its name."""
+    """Colours as one array RGB, every other number that is not a coordinate by its name."""
     names = [name for name in rows.dtype.names if name not in ("x", "y", "z")]
     arrays = {}
     if set(COLOURS) <= set(names) and all(rows[name].dtype == numpy.uint8 for name in COLOURS):
@@ -218,7 +218,7 @@ def read_text(path, stream, number, vertex, before, after, progress):
 
     def lines():
         nonlocal number, last
-        for number, last in zip(seen, told_items(stream, progress, vertex.count)):
+        for number, last in zip(seen, items_with_progress(stream, progress, vertex.count)):
             yield last
 
     try:
@@ -227,7 +227,7 @@ def read_text(path, stream, number, vertex, before, after, progress):
         rows = numpy.loadtxt(rows, vertex.row_type(""), comments=None, ndmin=1)
     except (ValueError, OverflowError) as error:
         words = str(error).split(" at row")[0]
-        raise FileError(f"{path}, line {number}: is no vertex: {words}") from None
+        raise FileError(f"{path}, line {number}: is not a vertex: {words}") from None
     check_count(path, len(rows), vertex)
     notes = []
     if not last.endswith(b"\n"):
@@ -256,7 +256,7 @@ def read_binary(path, stream, order, vertex, before, after, _progress):
 
 
 def step_over(path, stream, order, element):
-    """Moves the stream behind an element, whose lists tell their lengths row by row."""
+    """Moves the stream behind an element, whose lists have their lengths in each row."""
     if not element.has_list():
         stream.seek(element.count * element.least_size(), os.SEEK_CUR)
         return

@@ -7,14 +7,14 @@ import os
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
 
-from ..clouds import Cloud, Frame, ReadOptions, frame_of_nodes, grid_of, make_points, pixels_of
+from ..clouds import Cloud, Frame, ReadOptions, node_frame, grid_of, make_points, pixels_of
 from .column_names import direction_of
 from .formats import HEAD, is_saga_header, numbers_of
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError, Reason
 from ..names import option
 from ..paths import suffix_of
-from ..progress import share, told_lines
+from ..progress import share, lines_with_progress
 
 # Text of decimals would else become single precision, plain axes x and y be overlooked.
 OPEN_OPTIONS = {
@@ -26,9 +26,9 @@ OPEN_OPTIONS = {
 TEXT_KINDS = ("AAIGrid", "GRASSASCIIGrid", "GSAG")
 IN_NUMBERS = b" \t\r\n+-.,*0123456789eEdDnNaAiIfF#"
 HINTS = {
-    ".flt": "; is its .hdr beside it?",
-    ".bil": "; is its .hdr beside it?",
-    ".hgt": "; its name must tell its place, as N45E006.hgt, and its size be whole",
+    ".flt": "; is its .hdr next to it?",
+    ".bil": "; is its .hdr next to it?",
+    ".hgt": "; its name must give its place, as N45E006.hgt, and its size must be that of a whole file",
 }
 # Pixels that are read at once.
 AT_ONCE = 1 << 20
@@ -36,7 +36,7 @@ WORDS = 0.5  # of the work: the words of text are looked at first
 
 
 def data_of_saga(path):
-    """The .sdat beside the header of a SAGA grid; other files as they are."""
+    """The .sdat next to the header of a SAGA grid; other files as they are."""
     with open(path, "rb") as stream:
         if not is_saga_header(stream.read(HEAD), path):
             return path
@@ -59,8 +59,8 @@ def open_raster(path, options):
         settings = OPEN_OPTIONS.get(kind, [])
         data, notes = gdal.OpenEx(path, flags, [kind], settings), []
         if data.GetMetadataItem("HAS_SUPERGRIDS") == "TRUE":  # by default GDAL gives its overview alone
-            told = data.GetMetadata()
-            least, most = (float(told.get(f"{end}_RESOLUTION_X", "nan")) for end in ("MIN", "MAX"))
+            metadata = data.GetMetadata()
+            least, most = (float(metadata.get(f"{end}_RESOLUTION_X", "nan")) for end in ("MIN", "MAX"))
             notes = [f"the resolution varies from {least:g} to {most:g}: the nodes of all refined cells are read"]
             data = gdal.OpenEx(path, flags, [kind], settings + ["MODE=RESAMPLED_GRID"])
         if "UGRID" in data.GetMetadata().get("NC_GLOBAL#Conventions", ""):
@@ -90,12 +90,12 @@ def body_of(kind, stream):
 
 
 def check_words(path, kind, nodes, progress):
-    """Refuses text that is no number, and more or fewer numbers than nodes. Returns notes."""
+    """Refuses text that is not a number, and more or fewer numbers than nodes. Returns notes."""
     count, line = 0, b"\n"
     with open(path, "rb") as stream:
-        for number, line in body_of(kind, told_lines(stream, progress)):
+        for number, line in body_of(kind, lines_with_progress(stream, progress)):
             if line.translate(None, IN_NUMBERS):
-                raise FileError(f"{path}, band 1, line {number}: holds a word that is no number")
+                raise FileError(f"{path}, band 1, line {number}: holds a word that is not a number")
             count += len(line.split())
     if count != nodes:
         raise FileError(f"{path}, band 1: {nodes:,} numbers are announced, {count:,} found")
@@ -161,7 +161,7 @@ def note_of_dem(path):
 
 
 def alpha_of(data, band):
-    """The band of opacity beside a band of elevations, or None."""
+    """The band of opacity that belongs to a band of elevations, or None."""
     bands = [data.GetRasterBand(i) for i in range(1, data.RasterCount + 1)]
     alpha = gdal_module().GCI_AlphaBand
     others = [other for other in bands if other.GetBand() != band.GetBand()]
@@ -232,7 +232,7 @@ def read_points(path, options):
     if lost:
         cloud.left_out[Reason("pixel", "without data")] = lost
     cloud.crs = reference.ExportToWkt() if reference else None
-    cloud.grid, cloud.frame, cloud.angles = grid, frame, "are angles" if tells_degrees(data) else ""
+    cloud.grid, cloud.frame, cloud.angles = grid, frame, "are angles" if is_in_degrees(data) else ""
     return cloud
 
 
@@ -246,18 +246,18 @@ def frame_of(path):
         return frame, reference.ExportToWkt() if reference else None
 
 
-def tells_degrees(data):
+def is_in_degrees(data):
     """Whether the axes of netCDF have degrees as their unit."""
     units = [words for name, words in data.GetMetadata().items() if name.endswith("#units")]
     return sum(words.lower().startswith("degree") for words in units) > 1
 
 
 def name_of_z(band):
-    """What a band says that its values are, with their unit."""
-    told = band.GetMetadata()
-    names = [told.get(key, "") for key in ("NETCDF_VARNAME", "standard_name", "long_name")]
+    """The name of a band's values, with their unit."""
+    metadata = band.GetMetadata()
+    names = [metadata.get(key, "") for key in ("NETCDF_VARNAME", "standard_name", "long_name")]
     names = [f"{name} ({band.GetUnitType()})" for name in [*names, band.GetDescription()] if name]
-    if told.get("positive", "").lower() == "down":
+    if metadata.get("positive", "").lower() == "down":
         names.insert(0, "depth")
     return next((name for name in names if direction_of(name)), "")
 
@@ -318,5 +318,5 @@ def points_of_raster(path, x, y, z, ids=None):
         array.SetName("GlobalNodeIds")
         cloud.points.GetPointData().SetGlobalIds(array)
     cloud.pixels, cloud.grid = pixels, grid_of([pixels])
-    cloud.frame = frame_of_nodes(x, y) if ids is None else None
+    cloud.frame = node_frame(x, y) if ids is None else None
     return cloud

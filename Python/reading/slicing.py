@@ -5,7 +5,7 @@
 Several ranks read at the same time. The bytes of all files, one behind the other, are cut into as many
 shares, so that the points are in the order of the files, rank after rank. A rank reads a part of the
 rows of an array or a LAS file, or of the blocks of a text. What is not cut, such as a packed file, is
-read by the rank in whose share it begins. What is told of a file is found in all its parts: each
+read by the rank in whose share it begins. What is reported about a file is found in all its parts: each
 rank gives what it has found, as plain values, and the one with the beginning adds them up.
 """
 
@@ -27,7 +27,7 @@ from .nulls import null_rows, usual_nulls
 from .unpacking import STANDARD_INPUT, is_plain, named, unpacked
 from .upwards import notes_on_range
 
-MOST_SEEN = 20_000  # points of earlier slices that are kept, to tell nulls in later ones
+MOST_SEEN = 20_000  # points of earlier slices that are kept, to recognise nulls in later ones
 
 
 def check_sliced(path, kind):
@@ -105,7 +105,7 @@ class SlicedFile:
         check_nulls(self.local, numpy.concatenate((self.others, self.seen, self.doubtful)))
 
     def check_rest(self):
-        """Refuses nulls that fill a part of a file, beside which no other values are."""
+        """Refuses nulls that fill a part of a file, in which there are no other values."""
         z = self.seen[:, 2]
         if len(self.seen) and (numpy.isin(z[numpy.isfinite(z)], NULLS).all() or not self.seen.any()):
             self.check()
@@ -117,7 +117,7 @@ class SlicedFile:
             self.reader.finish(facts["reader"], cloud)
             self.selection.take(facts["selection"])
             cloud.notes += self.selection.check(facts["chosen"])
-            self.selection.tell(cloud.left_out)
+            self.selection.add_to(cloud.left_out)
             if not facts["count"]:
                 words = "all points have the elevation that marks missing data"
                 raise FileError(f"{self.local}: {getattr(self.reader, 'without_data', words)}")

@@ -32,7 +32,7 @@ from .layouts import (
     touching_in,
 )
 from ..messages import FileError, Reason, counted
-from ..progress import no_progress, told_items
+from ..progress import no_progress, items_with_progress
 from ..projecting import note_on_degrees
 from ..selecting import MOST_VALUES, WordReader
 from ..names import option
@@ -49,7 +49,7 @@ MOST_UNEVEN = 0.2  # lines of numbers that are left out, as a share of rows
 
 
 class BadLine(FileError):
-    """A line that is no row of the table."""
+    """A line that is not a row of the table."""
 
 
 # ---- blocks -----------------------------------------------------------------------------------
@@ -75,7 +75,7 @@ class Blocks:
         elif b"\0" in (head.rstrip(END_MARKS) or head):
             raise FileError(f"{path}: is not a text file")
         self.count = max(1, -(-self.size // BLOCK))
-        self.blocks = part.of(self.count)
+        self.blocks = part.rows(self.count)
         self.begin = self.begin_of_line(self.blocks.start * BLOCK)
 
     def __iter__(self):
@@ -146,7 +146,7 @@ def lines_of(block):
 
 
 class Table:
-    """What the first block tells of a table.
+    """What the first block shows of a table.
 
     layout, words    how lines become words, and how many a line has
     width            how many of these are columns: a separator may stand behind the last
@@ -158,9 +158,9 @@ class Table:
     first            index of the first line of data
     z_name, is_horizon, angles  see Choice
     advice           what a user can do where columns are wrong; None: choose others
-    has_summaries    whether lines that begin with "Total" or such are no data
+    has_summaries    whether lines that begin with "Total" or such are not data
     sees_summaries   whether there are such at the start or at the end of the first block
-    head_lines       lines before the data that are no comments, without blanks around
+    head_lines       lines before the data that are not comments, without blanks around
     headers, comments  how many lines before the data are such
     notes            for the user
     skips            whether lines of other kinds are left out; bad_lines are [number, text] of those
@@ -177,7 +177,7 @@ class Table:
         behind = lines[self.first : near] + lines[max(near, len(lines) - TAIL) :]
         behind = [line for line in behind if is_data(line)]
         summaries = sum(bool(SUMMARY.match(line)) for line in behind)
-        # Points may have such names; then they are no few.
+        # Points may have such names; then they are many.
         self.has_summaries = summaries < len(behind) and summaries <= 5 + len(behind) // 100
         self.sees_summaries = self.has_summaries and summaries > 0
         rows, consecutive = self.sample(lines)
@@ -204,7 +204,7 @@ class Table:
         self.headers = sum(number <= self.first for number, _ in preamble) - len(self.bad_lines)
 
     def read_head(self, lines):
-        """(lines before the data, those of them that are no comments, number of comments).
+        """(lines before the data, those of them that are not comments, number of comments).
 
         The second as (number, words). Sets first.
         """
@@ -235,7 +235,7 @@ class Table:
         return self.layout.numbers(line) >= self.needed
 
     def bad_line(self, number, line, why, advice=""):
-        """The error for a line that is no row."""
+        """The error for a line that is not a row."""
         touching = touching_in(line)
         if touching:
             why, advice = are_touching(touching), ""
@@ -286,7 +286,7 @@ class Table:
         no_words = re.fullmatch(r"[-+\d.,;\seE]+", " ".join(words)) is not None
         if 2 <= len(words) < self.width and (None not in values or no_words):
             why = f"{len(words)} columns found where other lines have {self.width}"
-            raise self.bad_line(number, line, f"{why} (mark it with # if it is no row of data)")
+            raise self.bad_line(number, line, f"{why} (mark it with # if it is not a row of data)")
         if len(words) < self.width:
             return False
         values = [values[i] for i in self.indices]
@@ -320,14 +320,14 @@ class Parser:
         self.after_blank = True
         self.before = None  # lines before this part of the file, once a message needs their number
         self.ragged = []  # the first line with more words than others, and their number
-        self.no_numbers = {}  # {index of an extra: [count, first line, word] of what is no number}
+        self.no_numbers = {}  # {index of an extra: [count, first line, word] of what is not a number}
         self.summaries = []  # (line number, word)
         # Lines of other kinds, and the first of them: [number, text].
         first = table.bad_lines if blocks.begin == 0 else []
         self.skipped, self.skipped_lines = len(first), first[:NAMED]
 
     def add(self, block, lines, skip):
-        """Takes the lines of a block, but for the first so many, which are no data."""
+        """Takes the lines of a block, but for the first so many, which are not data."""
         before = self.skipped
         if self.table.skips:
             lines = self.without_short(block, lines, skip)
@@ -379,7 +379,7 @@ class Parser:
         """The words of the columns of text."""
         for index, reader in list(self.words.items()):
             reader.add(self.words_in(lines, index))
-            if len(reader.known) > MOST_VALUES and not self.named:
+            if len(reader.codes) > MOST_VALUES and not self.named:
                 del self.words[index]
 
     def words_in(self, lines, index):
@@ -398,7 +398,7 @@ class Parser:
         return {self.table.texts[index]: reader.take() for index, reader in self.words.items()}
 
     def load(self, lines, quoted):
-        """numpy's rows of some lines, or None where a word is no number."""
+        """numpy's rows of some lines, or None where a word is not a number."""
         if self.table.layout.decimal_comma:
             if quoted:
                 return None
@@ -418,7 +418,7 @@ class Parser:
     def add_carefully(self, lines, skip, quoted):
         """Lines among which are comments, blank lines, missing values, quotes or errors."""
         kept = []
-        for i, line in enumerate(told_items(lines, self.alive, len(lines), 20 * CHUNK)):
+        for i, line in enumerate(items_with_progress(lines, self.alive, len(lines), 20 * CHUNK)):
             if i < skip or not line.strip():
                 self.after_blank |= i >= skip or not self.count
             elif is_comment(line):
@@ -553,7 +553,7 @@ class Parser:
         return taken
 
     def facts(self):
-        """What told() tells of lines, as plain values that can be added to those of other parts."""
+        """What final_notes() reports about lines, as plain values that can be added to those of other parts."""
         return {
             **{name: getattr(self, name) for name in SUMMED},
             "no_numbers": {str(i): [found] for i, found in self.no_numbers.items()},
@@ -567,7 +567,7 @@ class Parser:
             for i, found in facts["no_numbers"].items()
         }
 
-    def told(self):
+    def final_notes(self):
         """Notes, once all lines are read. Raises FileError where many rows have other numbers of columns."""
         table = self.table
         if self.uneven > MOST_UNEVEN * self.count:
@@ -600,7 +600,7 @@ class Parser:
             more = f" and {self.skipped - NAMED:,} more" if self.skipped > NAMED else ""
             notes.append(f"lines of other kinds are left out: {', '.join(words)}{more}")
         for index, (count, line, word) in self.no_numbers.items():
-            words = counted(count, "word is no number", "words are no numbers")
+            words = counted(count, "word is not a number", "words are not numbers")
             where = f"line {line:,}" if count == 1 else f"first in line {line:,}"
             notes.append(f"column {table.extras[index]}: {words} ({where}: {word[:40]})")
         return notes
@@ -636,7 +636,7 @@ def parse(path, columns, needed, advice, progress, named=False, skips=False):
         pass
     if not parser.parts:
         raise FileError(f"{path}: no line is a row of x, y and z")
-    return (parser, *parser.take(), parser.told())
+    return (parser, *parser.take(), parser.final_notes())
 
 
 def read_table(path, needed=3, progress=no_progress):
@@ -645,7 +645,7 @@ def read_table(path, needed=3, progress=no_progress):
     Returns (rows, line numbers, starts, notes): rows is an array of n * needed doubles, a start is
     the index of a row that follows a blank line or one that begins with ">".
     """
-    advice = f"a header line with {', '.join('xyz'[:needed])} tells the columns"
+    advice = f"a header line with {', '.join('xyz'[:needed])} names the columns"
     parser, rows, numbers, notes = parse(path, None, needed, advice, progress)
     return rows[:, :needed].copy(), numbers, parser.starts, notes
 
@@ -713,10 +713,10 @@ class TextSlices:
         return self.parser.facts()
 
     def finish(self, facts, cloud):
-        """Takes the facts of the whole file, and adds to a Cloud what is told then."""
+        """Takes the facts about the whole file, and adds to a Cloud what is reported then."""
         table = self.parser.table
         self.parser.take_facts(facts)
-        cloud.notes += self.parser.told()
+        cloud.notes += self.parser.final_notes()
         cloud.z_name, cloud.is_horizon = table.z_name, table.is_horizon
         if table.angles != "no":
             cloud.notes.append(note_on_degrees(table.angles))

@@ -25,7 +25,7 @@ def arrays_of(path):
 
 def mesh_of(arrays):
     """(name, attributes) of the first mesh, or None."""
-    meshes = ((name, told) for name, (_, told) in arrays.items() if told.get("cf_role") == "mesh_topology")
+    meshes = ((name, attributes) for name, (_, attributes) in arrays.items() if attributes.get("cf_role") == "mesh_topology")
     return next((mesh for mesh in meshes if mesh[1].get("node_coordinates")), None)
 
 
@@ -44,16 +44,16 @@ def values_of(array):
     return values * (array.GetScale() or 1.0) + (array.GetOffset() or 0.0)
 
 
-def means_height(name, told):
-    names = (name, told.get("standard_name", ""), told.get("long_name", ""))
+def means_height(name, attributes):
+    names = (name, attributes.get("standard_name", ""), attributes.get("long_name", ""))
     return name.endswith("node_z") or any(meaning(one).axis == "z" for one in names)
 
 
-def name_of_z(name, told):
+def name_of_z(name, attributes):
     """What the variable says that its values are."""
-    if str(told.get("positive", "")).lower() == "down":
+    if str(attributes.get("positive", "")).lower() == "down":
         return "depth"
-    names = (name, told.get("standard_name", ""), told.get("long_name", ""))
+    names = (name, attributes.get("standard_name", ""), attributes.get("long_name", ""))
     return next((one for one in names if one and direction_of(one)), "")
 
 
@@ -62,18 +62,18 @@ def read_points(path, options):
     with quiet():
         try:
             arrays = arrays_of(path)
-            mesh, told = mesh_of(arrays)
-            x, y, *height = (arrays[name] for name in told["node_coordinates"].split())
+            mesh, attributes = mesh_of(arrays)
+            x, y, *height = (arrays[name] for name in attributes["node_coordinates"].split())
             count = x[0].GetDimensions()[0].GetSize()
             of_nodes = [
-                name for name, (array, told) in arrays.items()
-                if told.get("mesh") == mesh and told.get("location") == "node"
+                name for name, (array, attributes) in arrays.items()
+                if attributes.get("mesh") == mesh and attributes.get("location") == "node"
                 and [one.GetSize() for one in array.GetDimensions()] == [count]
             ] or [array.GetName() for array, _ in height]
             heights = [name for name in of_nodes if means_height(name, arrays[name][1])]
             of_nodes = of_nodes if options.layer or len(heights) != 1 else heights
             name = choose_layer(path, options.layer, of_nodes, "variables with one value for each node")
-            array, told = arrays[name]
+            array, attributes = arrays[name]
             columns = [values_of(one) for one in (x[0], y[0], array)]
             reference = array.GetSpatialRef()
         except FileError:
@@ -89,7 +89,7 @@ def read_points(path, options):
     cloud.notes.append("only the points are used, not the file's cells")
     if not keep.all():
         cloud.left_out[Reason("node", "without data")] = int(count - numpy.count_nonzero(keep))
-    cloud.z_name = name_of_z(name, told)
+    cloud.z_name = name_of_z(name, attributes)
     cloud.crs = reference.ExportToWkt() if reference else None
     cloud.angles = "are angles" if x[0].GetUnit().lower().startswith("degree") else ""
     return cloud

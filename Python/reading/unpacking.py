@@ -21,7 +21,7 @@ PACKED = ((b"\x1f\x8b", gzip.open), (b"BZh", bz2.open), (b"\xfd7zXZ\0", lzma.ope
 STANDARD_INPUT = "standard input"
 # ZIP files that are one file to their readers, and tables of spreadsheets, which recognise() names.
 WHOLE = re.compile(r"\.(npy|kml)$|^(xl/|word/|ppt/|mimetype$|\[Content_Types\])")
-# What lies beside a file that is read, and belongs to it or to nobody.
+# What lies next to a file that is read, and belongs to it or to nobody.
 BESIDE = (
     ".dbf .shx .prj .qpj .cpg .sbn .sbx .qix .qmd .xml .tfw .wld .aux .ovr .hdr .stx .txt .pdf .md .html .htm .jpg .png "
     ".sdat .gfs .fix .idx .atx .gdbtable .gdbtablx .gdbindexes .spx .freelist"
@@ -52,7 +52,7 @@ def is_archive(path):
 
 
 def unzipped(path, folder, progress):
-    """The path of the one file in an archive that can be read; what lies beside it is unpacked too."""
+    """The path of the one file in an archive that can be read; what lies next to it is unpacked too."""
     try:
         with zipfile.ZipFile(path) as archive:
             members = [one for one in archive.infolist() if not one.is_dir() and "__MACOSX" not in one.filename]

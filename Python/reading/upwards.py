@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Whether z counts upwards: what its name, its unit, its sign and the kind of file say together.
 
-All readers ask here. z is never turned over because of it, but a doubt is told, once, with both
+All readers ask here. z is never turned over because of it, but a doubt is reported, once, with both
 readings.
 """
 

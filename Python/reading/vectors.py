@@ -13,12 +13,12 @@ from .formats import HEAD, is_table_with_geometry
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError, Reason
 from ..names import option
-from ..progress import share, told_items
+from ..progress import share, items_with_progress
 from ..selecting import words_of
 
 OPEN_OPTIONS = {
     "CSV": ["AUTODETECT_TYPE=YES", "GEOM_POSSIBLE_NAMES=WKT,*wkt*,*geom*,shape"],
-    "GML": ["WRITE_GFS=NO"],  # nothing beside the user's file
+    "GML": ["WRITE_GFS=NO"],  # nothing next to the user's file
 }
 
 
@@ -108,7 +108,7 @@ class Layer:
         columns = [[] for _ in names]
         count = 0
         try:
-            for number, feature in enumerate(told_items(layer, progress, layer.GetFeatureCount(0))):
+            for number, feature in enumerate(items_with_progress(layer, progress, layer.GetFeatureCount(0))):
                 count = number + 1
                 for i, column in enumerate(columns):
                     column.append(feature.GetField(i))
@@ -146,7 +146,7 @@ class Layer:
         return numpy.concatenate([points for _, points in self.parts])
 
     def numbers(self, name):
-        """The values of an attribute as doubles, or None where one of them is no number."""
+        """The values of an attribute as doubles, or None where one of them is not a number."""
         try:
             return numpy.array([numpy.nan if v is None else v for v in self.fields[name]], "f8")
         except (TypeError, ValueError):
@@ -220,7 +220,7 @@ def read_layer(path, wanted, columns, progress, as_lines=False):
             raise FileError(f"{path}: layer {found.GetName()} holds no geometry")
         if reference and reference.IsGeographic() and not are_angles(layer):
             # GDAL takes GeoJSON that names no system for degrees.
-            notes.append(f"x,y are no angles, so it is not in {reference.GetName()}; see {option('crs')}")
+            notes.append(f"x,y are not angles, so it is not in {reference.GetName()}; see {option('crs')}")
             reference = None
         crs = reference.ExportToWkt() if reference else None
     progress(0.85)

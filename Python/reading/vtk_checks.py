@@ -151,7 +151,7 @@ def why_no_xml(path):
     for text in re.findall(rb"""\b(?:Whole)?Extent\s*=\s*["']([^"']*)["']""", head):
         box = [int(word) for word in text.split() if re.fullmatch(rb"[-+]?\d+", word)]
         if len(box) != 6 or any(a > b for a, b in zip(box[::2], box[1::2])):
-            return f"is damaged: '{text.decode('latin-1')[:60]}' is no extent of a grid"
+            return f"is damaged: '{text.decode('latin-1')[:60]}' is not an extent of a grid"
         boxes.append(box)
     for box in boxes:
         whole = boxes[0]
@@ -206,7 +206,7 @@ def why_no_legacy(path, progress):
                 count, kind = int(words[0]) * (3 if name == "POINTS" else 1), words[1]
             size = TYPES[re.sub(b"^(un)?signed_", b"", kind.lower()).decode("latin-1")]
         except (ValueError, IndexError, KeyError):
-            continue  # VTK tells itself what this is
+            continue  # VTK reports itself what this is
         there = (len(data) - at) // size
         if is_text:
             there = len(numbers(data[at:], progress)) if count else 0

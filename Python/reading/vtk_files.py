@@ -21,7 +21,7 @@ from ..clouds import Cloud, crs_of, make_points, marked_points, rounding_note
 from .formats import FORMATS, HEAD
 from ..messages import FileError, Messages
 from ..paths import suffix_of
-from ..progress import no_progress, share, told_lines
+from ..progress import no_progress, share, lines_with_progress
 from .facing import check_faces, made_of
 from .rasters import points_of_raster
 from .vtk_checks import check, survives
@@ -166,7 +166,7 @@ def read_points(path, options):
 
 
 def faces_of_text(path, suffix):
-    """The faces of an STL or OBJ file of text, as exact as it tells them; VTK rounds to floats."""
+    """The faces of an STL or OBJ file of text, as exact as they stand there; VTK rounds to floats."""
     points = vertices_of_text(path, VERTEX[suffix], no_progress, once=False)
     if suffix == ".stl":
         return made_of(points, numpy.arange(len(points) // 3 * 3).reshape(-1, 3))
@@ -196,7 +196,7 @@ def vertices_of_text(path, word, progress, once=True):
 
     def rows(stream):
         nonlocal number
-        for number, line in enumerate(told_lines(stream, progress), 1):
+        for number, line in enumerate(lines_with_progress(stream, progress), 1):
             words = line.split(None, 4) if line.lstrip()[:1].lower() == b"v" else ()
             if words and words[0].lower() == word:
                 yield b" ".join(words[1:4])
@@ -208,7 +208,7 @@ def vertices_of_text(path, word, progress, once=True):
             if len(found) and found.shape[1] != 3:
                 raise ValueError
         except ValueError:
-            raise FileError(f"{path}, line {number}: is no vertex of three numbers") from None
+            raise FileError(f"{path}, line {number}: is not a vertex of three numbers") from None
     if not len(found):
         return numpy.empty((0, 3))
     if not once:

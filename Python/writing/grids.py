@@ -69,12 +69,12 @@ class Grid:
         path = os.fspath(path)
         check_suffix(path, tuple(FORMATS), "written as a grid")
         notes = write_grid(self, path)
-        for other in beside(path) if self.crs else []:
+        for other in side_files(path) if self.crs else []:
             write_prj(other, self.crs)
         return notes
 
 
-def frame_of_step(surface, step):
+def step_frame(surface, step):
     """(Frame of square pixels over a surface, 0); their edges are multiples of step."""
     (x0, x1), (y0, y1) = extent_of(vtk_to_numpy(surface.GetPoints().GetData()), surface)
     first, last = [math.floor(v / step) for v in (x0, y0)], [math.ceil(v / step) for v in (x1, y1)]
@@ -89,7 +89,7 @@ def extent_of(points, surface):
     return list(zip(used.min(axis=0), used.max(axis=0)))
 
 
-def frame_of_lattice(lattice, surface):
+def lattice_frame(lattice, surface):
     """The Frame whose centres are the nodes of a lattice, see lattice_of(), that a surface covers."""
     steps = sorted(lattice["steps"], key=lambda step: abs(step[0]) / math.hypot(*step))
     down, across = (numpy.array(step) for step in steps)
@@ -108,7 +108,7 @@ def own_frame(result):
     they may be from centres); (None, 0) for other points."""
     if result.cloud.frame:
         return result.cloud.frame, 0.0
-    return (frame_of_lattice(result.lattice, result.surface), ON_NODE) if result.lattice else (None, 0.0)
+    return (lattice_frame(result.lattice, result.surface), ON_NODE) if result.lattice else (None, 0.0)
 
 
 def frame_for(result, step, like):
@@ -122,11 +122,11 @@ def frame_for(result, step, like):
         return frame, own_frame(result)[1], notes
     frame, near = own_frame(result)
     if step is None and frame is None:
-        raise ElevationSurfaceError("a step is needed: the points are from no raster or lattice with even steps")
+        raise ElevationSurfaceError("a step is needed: the points are not from a raster or lattice with even steps")
     square = frame and (abs(numpy.array(frame.transform)[[1, 2, 4, 5]]) - (step, 0, 0, step) if step else 0.0)
     if step is None or frame and abs(square).max() <= EVEN * step:
         return frame, near, []
-    return *frame_of_step(result.surface, step), []
+    return *step_frame(result.surface, step), []
 
 
 def grid_of(result, step=None, like=None, progress=None):
@@ -255,12 +255,12 @@ def crossed(points, corners, y):
 
 
 def no_data_value(z):
-    """A value for pixels outside that is no elevation."""
+    """A value for pixels outside that does not occur as an elevation."""
     return next(v for v in (-9999.0, -99999.0, -999999.0, -1e30) if not (z == v).any())
 
 
 def write_grid(grid, path, progress=no_progress):
-    """Writes a Grid as GeoTIFF, .asc or ZMAP+, told by the suffix. Returns notes for the user.
+    """Writes a Grid as GeoTIFF, .asc or ZMAP+, by the suffix. Returns notes for the user.
 
     GeoTIFF holds errors as a second band, and the coordinate reference system. Raises OSError and
     FileError.
@@ -357,13 +357,13 @@ def write_zmap(grid, path, progress):
             progress(i / columns)
 
 
-def beside(path):
+def side_files(path):
     """Other files that belong to the file of a result: an .asc has its .prj."""
     return [os.path.splitext(path)[0] + ".prj"] if suffix_of(path) == ".asc" else []
 
 
 def write_prj(path, crs):
-    """The file beside an .asc that tells its coordinate reference system."""
+    """The file next to an .asc that holds its coordinate reference system."""
     with open(path, "w", encoding="utf-8") as stream:
         stream.write(reference_of(crs).ExportToWkt(["FORMAT=WKT1_ESRI"]) + "\n")
 

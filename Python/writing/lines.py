@@ -83,7 +83,7 @@ def index_arrays(cells):
 def outlines(result):
     """[(points, attributes)]: the boundary and the holes of a Reconstruction, as closed lines.
 
-    kind is "boundary" or "hole"; holes have what the report tells of them.
+    kind is "boundary" or "hole"; holes have what the report says about them.
     """
     lines = []
     if result.boundary is not None and result.boundary.GetNumberOfLines():
@@ -92,8 +92,8 @@ def outlines(result):
         lines += [(xyz[ids], {"kind": "boundary"}) for ids in rings]
     if result.holes is not None and result.holes.GetNumberOfLines():
         xyz = vtk_to_numpy(result.holes.GetPoints().GetData())
-        told = result.report["holes"]["list"]
-        for ids, hole in zip(index_arrays(result.holes.GetLines()), told):
+        rows = result.report["holes"]["list"]
+        for ids, hole in zip(index_arrays(result.holes.GetLines()), rows):
             plain = {name: value for name, value in hole.items() if name not in ("box", "centre")}
             lines.append((xyz[ids], {"kind": "hole", **plain}))
     return lines
@@ -104,7 +104,7 @@ def write_lines(lines, path, layer, crs=None, progress=None):
 
     layer  the layer's name
     crs    WKT or AUTHORITY:CODE, or None
-    DXF has no attributes: z tells the elevation there, and the layer the kind.
+    DXF has no attributes: z is the elevation there, and the layer names the kind.
     """
     from osgeo import ogr
 

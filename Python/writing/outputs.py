@@ -27,15 +27,15 @@ def grid(result, path, pixels, progress):
 
 
 def contours(result, path, step, progress):
-    from .lines import contours as made, write_lines
+    from .lines import contours as contour_lines, write_lines
 
-    return write_lines(made(result.surface, step, progress), path, "contours", result.crs, progress)
+    return write_lines(contour_lines(result.surface, step, progress), path, "contours", result.crs, progress)
 
 
 def outlines(result, path, _step, progress):
-    from .lines import outlines as made, write_lines
+    from .lines import outlines as outline_lines, write_lines
 
-    return write_lines(made(result), path, "outlines", result.crs, progress)
+    return write_lines(outline_lines(result), path, "outlines", result.crs, progress)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -65,7 +65,7 @@ OUTPUTS = (
 
 
 def default_name(output, surface_path):
-    """survey_surface.vtp -> survey_grid.tif, beside it"""
+    """survey_surface.vtp -> survey_grid.tif, next to it"""
     return re.sub("_surface$", "", os.path.splitext(surface_path)[0]) + output.ending
 
 

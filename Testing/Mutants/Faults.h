@@ -3,7 +3,7 @@
 /**
  * @file
  * The switch of the faults that Utilities/test --mutants compiles into its copy of the code. The
- * environment tells which one is on, and where the numbers of those are written that a program came by.
+ * environment says which one is on, and where the numbers of those are written that a program passed.
  */
 #ifndef Faults_h
 #define Faults_h

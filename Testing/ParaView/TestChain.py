@@ -71,18 +71,18 @@ check_equal(set(numpy.flatnonzero(is_new)), set(range(old_points, filled.GetNumb
 error = array(filled.GetPointData(), "FilledError")
 check((error[is_new == 0] == 0).all(), "points of the input have no error")
 check(numpy.isnan(error[is_new == 1]).any() or (error[is_new == 1] > 0).all(),
-      "new points have an error, or none that can be told")
-check((error[is_new == 1] > 0).mean() > 0.9, "most errors of new points can be told")
+      "new points have an error, or none that can be given")
+check((error[is_new == 1] > 0).mean() > 0.9, "most errors of new points can be given")
 hole_id = array(filled.GetCellData(), "HoleId")
 check((hole_id[:old_triangles] == -1).all() and (hole_id[old_triangles:] >= 0).all(),
       "HoleId marks the new triangles")
 
-number_of_holes = information(fill, "NumberOfHoles")
-check(number_of_holes > 0, "the buildings are holes")
-check_equal(holes.GetNumberOfLines(), number_of_holes, "outlines of holes")
+hole_count = information(fill, "NumberOfHoles")
+check(hole_count > 0, "the buildings are holes")
+check_equal(holes.GetNumberOfLines(), hole_count, "outlines of holes")
 status = array(holes.GetCellData(), "Status")
-check_equal((status == 0).sum(), number_of_holes, "holes with the status filled")
-check_equal(information(fill, "NumberOfFilledHoles"), number_of_holes, "filled holes")
+check_equal((status == 0).sum(), hole_count, "holes with the status filled")
+check_equal(information(fill, "NumberOfFilledHoles"), hole_count, "filled holes")
 check_equal(array(holes.GetCellData(), "NumberOfInsertedPoints").sum(), is_new.sum(),
             "inserted points of all holes")
 check_close(signed_areas(filled).sum(),
@@ -110,8 +110,8 @@ fill.Interpolation = "Adaptive"
 fill.MaximumHoleSize = 10
 limited = fetch(fill, 1)
 status = array(limited.GetCellData(), "Status")
-check_equal(limited.GetNumberOfLines(), number_of_holes, "outlines of holes with a limit")
-check(0 < (status == 1).sum() < number_of_holes, "some holes are too large")
+check_equal(limited.GetNumberOfLines(), hole_count, "outlines of holes with a limit")
+check(0 < (status == 1).sum() < hole_count, "some holes are too large")
 check_equal(information(fill, "NumberOfFilledHoles"), (status == 0).sum(), "filled holes with a limit")
 fill.MaximumHoleSize = 0
 
@@ -122,7 +122,7 @@ shown = simple.Show(fill, view)
 simple.ColorBy(shown, ("CELLS", "HoleId"))
 shown.LookupTable = simple.CreateLookupTable(
     RGBPoints=[-1, 0.62, 0.74, 0.62, -0.5, 0.62, 0.74, 0.62, 0, 0.85, 0.45, 0.2,
-               number_of_holes, 0.95, 0.75, 0.3], ColorSpace="RGB")
+               hole_count, 0.95, 0.75, 0.3], ColorSpace="RGB")
 shown.SetRepresentationType("Surface With Edges")
 shown.EdgeColor = [0.25, 0.3, 0.25]
 shown.LineWidth = 0.5

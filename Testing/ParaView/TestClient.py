@@ -36,7 +36,7 @@ def check_surface(folder, name, largest_hole):
     surface, holes = fetch(source), fetch(source, 1)
     check_equal(surface.GetNumberOfPoints() > 10266, not largest_hole, name + ": points are added")
     status = set(array(holes.GetCellData(), "Status"))
-    check_equal(status, {1} if largest_hole else {4}, name + ": what became of the holes")
+    check_equal(status, {1} if largest_hole else {4}, name + ": the status of holes")
     check(numpy.array_equal(array(surface.GetPointData(), "Elevation"), points(surface)[:, 2]),
           name + ": Elevation is z")
     view = simple.GetActiveView()

@@ -13,13 +13,13 @@ for filter_type, outputs in ((simple.TrimOutwardTriangles, 3), (simple.FillEleva
     name = filter_type.__name__
     source = filter_type(Input=quadrilaterals)
     errors = messages_of(source)
-    check_equal(len(errors), 1, name + ": number of errors for cells that are no triangles")
+    check_equal(len(errors), 1, name + ": number of errors for cells that are not triangles")
     check(errors and "cell 0" in errors[0].lower(),
           "%s: the error does not name the cell: %s" % (name, errors))
     for port in range(outputs):
         check_equal(fetch(source, port).GetNumberOfPoints(), 0, "%s: points of output %d" % (name, port))
 
-# An open line is no boundary, even if it runs along edges of the surface.
+# An open line is not a boundary, even if it runs along edges of the surface.
 surface = simple.GridDelaunay2D(Input=quadrilaterals)
 line = simple.Line(Point1=[-0.5, -0.5, 0], Point2=[0.5, -0.5, 0], Resolution=3)
 trimmed = simple.TrimOutwardTriangles(Input=surface, Boundary=line)

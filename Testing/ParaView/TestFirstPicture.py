@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The first picture of elevations: their colours and plain numbers, seen obliquely, with a vertical
-exaggeration that suits the relief. What is shown beside has the same scale; what the user has chosen
+exaggeration that suits the relief. What is shown with it has the same scale; what the user has chosen
 stays."""
 import os
 
@@ -70,11 +70,11 @@ check_equal([bar.LabelFormat % 104.04, bar.RangeLabelFormat % 104.04], ["104.0",
             "numbers of the scalar bar")
 check_equal(bar.AutomaticLabelFormat, 0, "the format of the scalar bar is used")
 
-# ---- what is beside it -------------------------------------------------------------------------
+# ---- what is shown with it ----------------------------------------------------------------------
 shown.Scale = [1, 1, 3]
 simple.Hide(reader, view)
 outlines = simple.Show(simple.OutputPort(surface, 2), view)
-check_equal((list(outlines.Scale), outlines.LineWidth), ([1, 1, 3], 3), "the boundary, beside the surface")
+check_equal((list(outlines.Scale), outlines.LineWidth), ([1, 1, 3], 3), "the boundary, next to the surface")
 simple.Hide(simple.OutputPort(surface, 2), view)
 view.CameraPosition, view.CameraViewUp = [200, 200, 900], [0, 1, 0]
 view.CameraFocalPoint = [200, 200, 300]
@@ -115,7 +115,7 @@ shown = simple.Show(surface, view)
 check_equal(list(shown.Scale), [1, 1, factor], "scale of the surface of such points")
 check(numpy.allclose(direction_of(view), OBLIQUE), "its first picture is oblique")
 check_equal(list(simple.Show(simple.GridDelaunay2D(Input=cloud), view).Scale), [1, 1, factor],
-            "another surface beside it has its scale")
+            "another surface next to it has its scale")
 
 # ---- without an entry in Python upstream: by the bounds ----------------------------------------
 view = forget()
@@ -137,10 +137,10 @@ simple.Show(surface, view)
 shown = simple.Show(simple.OutputPort(surface, 1), view)
 table = fetch(surface, 1).GetCellData()
 names = [table.GetAbstractArray("StatusName").GetValue(i) for i in range(2)]
-check_equal(sorted(names), ["replaced", "too large"], "what became of two holes")
+check_equal(sorted(names), ["replaced", "too large"], "the status of two holes")
 check(set(names) <= set(look.STATUS), "each has its colour")
 check_equal((list(shown.ColorArrayName), shown.LineWidth), (["CELLS", "StatusName"], 4),
-            "outlines are thick and coloured by what became of them")
+            "outlines are thick and coloured by status")
 check_equal(list(shown.LookupTable.Annotations), [word for one in look.STATUS for word in (one, one)],
             "words of the colours")
 colours = numpy.reshape(list(shown.LookupTable.IndexedColors), (-1, 3))

@@ -127,18 +127,18 @@ def nothing_left():
     return messages_of(simple.GridDelaunay2D(Input=olinda(), MaximumEdgeLength=50), "WarningEvent")
 
 
-@provokes("The cells are no triangles")
+@provokes("The cells are not triangles")
 def quadrilaterals():
     return messages_of(simple.FillElevationHoles(Input=simple.Plane()))
 
 
 # ---- the messages ------------------------------------------------------------------------------
-told = guide_messages("What can go wrong")
-check_equal(sorted(told), sorted(CASES), "headings with a message, and cases of this test")
+messages = guide_messages("What can go wrong")
+check_equal(sorted(messages), sorted(CASES), "headings with a message, and cases of this test")
 for heading, case in CASES.items():
     messages = case()
     check_equal(len(messages), 1, "%s: number of messages %s" % (heading, messages))
-    expected = told.get(heading, "")
+    expected = messages.get(heading, "")
     check(messages and is_message(messages[0], expected),
           "%s: %s, not %s" % (heading, messages, expected))
 

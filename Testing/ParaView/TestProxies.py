@@ -66,7 +66,7 @@ def printed(algorithm, name):
 
 
 def members(header):
-    """Names of the parameters of a class, and of what it tells after Update(), from its header."""
+    """Names of the parameters of a class, and of its results after Update(), from its header."""
     parameters = set(re.findall(r"vtkSet\w*Macro\((\w+)", header))
     parameters |= set(re.findall(r"void Set(\w+)\([^)]+\)", header))
     # The second inputs, and the processes.
@@ -139,24 +139,24 @@ for one in DESCRIBED.values():
             continue
         for proxy in PROXIES[place](one):
             own = one.name_in(place)
-            told = "%s of %s" % (own, type(proxy).__name__)
+            title = "%s of %s" % (own, type(proxy).__name__)
             entry = proxy.SMProxy.GetProperty(own)
-            check(entry is not None, "there is no " + told)
-            check_equal(entry.GetXMLLabel(), one.label_in(place), "label of " + told)
+            check(entry is not None, "there is no " + title)
+            check_equal(entry.GetXMLLabel(), one.label_in(place), "label of " + title)
             text = " ".join(entry.GetDocumentation().GetDescription().split())
-            check_equal(text, one.help_in(place), "words of " + told)
+            check_equal(text, one.help_in(place), "words of " + title)
             visibility = "advanced" if place in one.words.get("advanced", "") else "default"
-            check_equal(entry.GetPanelVisibility(), visibility, "visibility of " + told)
-            if one.kind.of != "string":
+            check_equal(entry.GetPanelVisibility(), visibility, "visibility of " + title)
+            if one.kind.value_type != "string":
                 default = one.kind.numbers(one.default_in(place) or "0")
                 has = [entry.GetElement(i) for i in range(entry.GetNumberOfElements())]
-                check_equal(has, default, "default of " + told)
+                check_equal(has, default, "default of " + title)
             domain = entry.GetDomain("enum")
             count = domain.GetNumberOfEntries() if domain else 0
             check_equal([domain.GetEntryText(i) for i in range(count)],
-                        [titled(choice) for choice in one.choices], "choices of " + told)
+                        [titled(choice) for choice in one.choices], "choices of " + title)
             check_equal([domain.GetEntryValue(i) for i in range(count)], list(range(count)),
-                        "numbers of the choices of " + told)
+                        "numbers of the choices of " + title)
 
 # What was used of a property is right below it.
 for proxy in (chain, FILTERS["TrimOutwardTriangles"]):

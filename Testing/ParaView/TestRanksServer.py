@@ -91,7 +91,7 @@ if server:
         sphere = simple.Sphere(ThetaResolution=60, PhiResolution=40)  # of which each rank makes a part
         check(cells(sphere) > 4000, "the server makes a sphere")
         errors = errors_at_client(simple.TrimOutwardTriangles(Input=sphere))
-        check(len(errors) == 1 and "is flat in x,y" in errors[0], "what the client is told: %s" % errors)
+        check(len(errors) == 1 and "is flat in x,y" in errors[0], "the message to the client: %s" % errors)
         together = simple.AggregateDataset(Input=sphere)
         together.NumberOfTargetProcesses = 1
         surface = simple.GridDelaunay2D(Input=sphere)
@@ -107,7 +107,7 @@ if server:
         check(fetch(whole, 3).GetNumberOfRows() > 8, "the rows of the report come to the client")
         wrong = simple.ElevationPoints(FileName="/no/such/file.csv")
         errors = errors_at_client(wrong)
-        check(len(errors) == 1 and "no such file" in errors[0], "the client is told of a wrong file: %s" % errors)
+        check(len(errors) == 1 and "no such file" in errors[0], "the client gets the error on a wrong file: %s" % errors)
         simple.Disconnect()
     finally:
         stop(server)

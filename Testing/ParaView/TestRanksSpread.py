@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkImageData, vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPolyData, vtkRectilinearGrid, vtkTable,
     vtkUnstructuredGrid)
 
-from plugin_testing import alone, given, information, start, update
+from plugin_testing import alone, data_source, information, start, update
 import meshes
 from meshes import array_of
 from on_ranks import COUNT, LAST, RANK, check, check_equal, end, gather
@@ -76,13 +76,13 @@ def check_points(mesh, ids, claim):
 
 
 def check_told(messages, part, claim):
-    """One message of all ranks, which the first tells."""
+    """One message of all ranks, which the first prints."""
     check_equal(len(messages), 1 if part and RANK == 0 else 0, "messages %s, %s" % (messages, claim))
     check(not messages or part in messages[0][1], "%s: %r in %s" % (claim, part, messages))
 
 
 ALL = numpy.arange(len(XYZ))
-WHOLE = alone(simple.GridDelaunay2D(Input=given(cloud(ALL))))[0]
+WHOLE = alone(simple.GridDelaunay2D(Input=data_source(cloud(ALL))))[0]
 check(WHOLE.GetNumberOfPolys() > 900 and WHOLE.GetFieldData().GetArray("UnusedPointIds").GetNumberOfTuples() == 4,
       "each rank for itself makes a surface, and leaves four points")
 
@@ -90,12 +90,12 @@ check(WHOLE.GetNumberOfPolys() > 900 and WHOLE.GetFieldData().GetArray("UnusedPo
 spreads = {
     "slices": numpy.array_split(ALL, COUNT),
     "in no order": numpy.array_split(random.permutation(ALL), COUNT),
-    "two points beside all others": [ALL[2:]] + [[]] * (COUNT - 2) + [ALL[:2]],
+    "two points apart from all others": [ALL[2:]] + [[]] * (COUNT - 2) + [ALL[:2]],
 }
 for claim, rows in spreads.items():
     for ids in (True, False) if claim == "slices" else (True,):
         kind = vtkUnstructuredGrid if claim == "slices" and ids else vtkPolyData
-        source = simple.GridDelaunay2D(Input=given(cloud(rows[RANK], ids, kind)))
+        source = simple.GridDelaunay2D(Input=data_source(cloud(rows[RANK], ids, kind)))
         messages, (mesh,) = update(source)
         check_told(messages, "", claim)
         check_same(mesh, WHOLE, claim)
@@ -113,10 +113,10 @@ for ids in (True, False):
     mine = cloud(numpy.append(rows[RANK], rows[RANK - 1][:9]), ids)
     marks = numpy.arange(mine.GetNumberOfPoints()) >= len(rows[RANK])
     mine.GetPointData().AddArray(array_of(marks.astype("u1") * meshes.DUPLICATE, meshes.GHOSTS))
-    source = simple.GridDelaunay2D(Input=given(mine))
+    source = simple.GridDelaunay2D(Input=data_source(mine))
     messages, (mesh,) = update(source)
-    check_same(mesh, alone(simple.GridDelaunay2D(Input=given(cloud(ALL[:-4]))))[0], "points of other ranks")
-    check_equal(information(source, "NumberOfDuplicatePoints"), 0, "points of other ranks are no duplicates")
+    check_same(mesh, alone(simple.GridDelaunay2D(Input=data_source(cloud(ALL[:-4]))))[0], "points of other ranks")
+    check_equal(information(source, "NumberOfDuplicatePoints"), 0, "points of other ranks are not duplicates")
 
 # Triangles: the common points of ranks are one. Ghosts are left out.
 used = numpy.unique(meshes.triangles_of(WHOLE))
@@ -125,12 +125,12 @@ owner = random.integers(0, COUNT, WHOLE.GetNumberOfPolys())
 owner[: len(owner) // 2] = 0  # which has most
 here = numpy.flatnonzero(owner == RANK)
 for ids in (True, False):
-    beside = numpy.flatnonzero(owner == (RANK + 1) % COUNT)[:50]
-    for ghosts in ((), beside):
+    next_rank = numpy.flatnonzero(owner == (RANK + 1) % COUNT)[:50]
+    for ghosts in ((), next_rank):
         claim = "%s, %d ghosts" % ("ids" if ids else "no ids", len(ghosts))
         mine = piece(WHOLE, here, ids, ghosts)
-        trim = simple.TrimOutwardTriangles(Input=given(mine), Boundary=given(RING if RANK == LAST else EMPTY))
-        alike = simple.TrimOutwardTriangles(Input=given(BARE), Boundary=given(RING))
+        trim = simple.TrimOutwardTriangles(Input=data_source(mine), Boundary=data_source(RING if RANK == LAST else EMPTY))
+        alike = simple.TrimOutwardTriangles(Input=data_source(BARE), Boundary=data_source(RING))
         messages, outputs = update(trim)
         expected = alone(alike)
         check_told(messages, "", "trim, " + claim)
@@ -141,9 +141,9 @@ for ids in (True, False):
                      expected[0].GetFieldData().GetArray("NumberOfInsertedPoints").GetValue(0)),
                     "counts of trim, " + claim)
         long = 3.0  # of the triangles over the gap
-        fill = simple.FillElevationHoles(Input=given(mine), OpenEdgeLength=long, Interpolation="Membrane")
+        fill = simple.FillElevationHoles(Input=data_source(mine), OpenEdgeLength=long, Interpolation="Membrane")
         messages, outputs = update(fill)
-        expected = alone(simple.FillElevationHoles(Input=given(BARE), OpenEdgeLength=long,
+        expected = alone(simple.FillElevationHoles(Input=data_source(BARE), OpenEdgeLength=long,
                                                    Interpolation="Membrane"))
         check_told(messages, "marked copies of triangles" if len(ghosts) else "", "fill, " + claim)
         for port in range(2):
@@ -161,10 +161,10 @@ for ids in (True, False):
                         "ids of new points follow the largest")
 
 # The three filters in a row.
-mine = given(cloud(spreads["in no order"][RANK]))
+mine = data_source(cloud(spreads["in no order"][RANK]))
 chain = simple.FillElevationHoles(Input=simple.TrimOutwardTriangles(Input=simple.GridDelaunay2D(Input=mine)))
 expected = simple.FillElevationHoles(
-    Input=simple.TrimOutwardTriangles(Input=simple.GridDelaunay2D(Input=given(cloud(ALL)))))
+    Input=simple.TrimOutwardTriangles(Input=simple.GridDelaunay2D(Input=data_source(cloud(ALL)))))
 messages, outputs = update(chain)
 check_told(messages, "", "filters in a row")
 check_same(outputs[0], alone(expected)[0], "filters in a row")
@@ -200,8 +200,8 @@ for claim, mine, whole in (
         ("table", table(slice_of_mine), table(ALL)),
         ("image", grid(vtkImageData, cuts[RANK], cuts[RANK + 1]), grid(vtkImageData, 0, 30)),
         ("grid", grid(vtkRectilinearGrid, cuts[RANK], cuts[RANK + 1]), grid(vtkRectilinearGrid, 0, 30))):
-    source = simple.ReconstructElevationSurface(Input=given(mine))
-    alike = simple.ReconstructElevationSurface(Input=given(whole))
+    source = simple.ReconstructElevationSurface(Input=data_source(mine))
+    alike = simple.ReconstructElevationSurface(Input=data_source(whole))
     messages, outputs = update(source)
     expected = alone(alike)
     twice = "3 places have several heights" if claim.startswith(("points", "table")) else ""
@@ -214,7 +214,7 @@ for claim, mine, whole in (
     check_equal(outputs[3].GetNumberOfRows(), expected[3].GetNumberOfRows() if RANK == 0 else 0,
                 "rows of the report, " + claim)
 messages, outputs = update(simple.ReconstructElevationSurface(
-    Input=given(table(slice_of_mine) if RANK == LAST else cloud(slice_of_mine))))
+    Input=data_source(table(slice_of_mine) if RANK == LAST else cloud(slice_of_mine))))
 check_told(messages, "different kinds of it: points and tables", "kinds")
 check_equal(outputs[0].GetNumberOfPoints(), 0, "points of different kinds")
 
@@ -224,22 +224,22 @@ mine = vtkMultiBlockDataSet()
 for i, block in enumerate((whole, cloud(spreads["slices"][RANK]))):
     mine.SetBlock(i, block)
 mine.GetMetaData(1).Set(mine.NAME(), "north")
-messages, (blocks,) = update(simple.GridDelaunay2D(Input=given(mine)))
+messages, (blocks,) = update(simple.GridDelaunay2D(Input=data_source(mine)))
 check_told(messages, "", "blocks")
 for i in range(2):
     check_same(blocks.GetBlock(i), WHOLE, "block %d" % i)
 mine.SetBlock(1, cloud(ALL[:1]) if RANK in (0, LAST) else EMPTY)
-messages, _ = update(simple.GridDelaunay2D(Input=given(mine)))
+messages, _ = update(simple.GridDelaunay2D(Input=data_source(mine)))
 check_told(messages, 'Block 1 ("north"): No triangle was made: the 1 input points', "two ranks with one point")
 parts = vtkPartitionedDataSet()
 for i, rows in enumerate(numpy.array_split(spreads["in no order"][RANK], 2)):
     parts.SetPartition(i, cloud(rows))
-messages, (parts,) = update(simple.GridDelaunay2D(Input=given(parts)))
+messages, (parts,) = update(simple.GridDelaunay2D(Input=data_source(parts)))
 check_told(messages, "", "partitions")
 check_same(parts.GetPartition(0), WHOLE, "partitions of all ranks are one surface")
 check_equal(parts.GetPartition(1).GetNumberOfPolys(), 0, "triangles of the second partition")
 
-# What is wrong on one rank is told by the first, and leaves nothing on any.
+# What is wrong on one rank is reported by the first, and leaves nothing on any.
 wrong = piece(WHOLE, here)
 if RANK == LAST:
     wrong.GetPolys().ReplaceCellAtId(3, 3, [0, 1, 100000])
@@ -249,21 +249,21 @@ for make, data, part in (
         (simple.TrimOutwardTriangles, wrong, "On rank %d: Cell 3 names point 100000" % LAST),
         (simple.FillElevationHoles, wrong, "On rank %d: Cell 3 names point 100000" % LAST),
         (simple.GridDelaunay2D, short, 'On rank %d: Point array "Amplitude" has 5' % LAST)):
-    messages, outputs = update(make(Input=given(data)))
+    messages, outputs = update(make(Input=data_source(data)))
     check_told(messages, part, "wrong input")
     check_equal([output.GetNumberOfPoints() for output in outputs], [0] * len(outputs),
                 "points after an error")
 bare = cloud(spreads["slices"][RANK])
 if RANK == LAST:
     bare.GetPointData().RemoveArray("Amplitude")
-messages, (mesh,) = update(simple.GridDelaunay2D(Input=given(bare)))
+messages, (mesh,) = update(simple.GridDelaunay2D(Input=data_source(bare)))
 check_told(messages, 'the point array "Amplitude"', "an array that one rank lacks")
 check_equal(sum(gather(mesh.GetNumberOfPolys())), WHOLE.GetNumberOfPolys(), "triangles without an array")
 
 # A stop on one rank stops all of them.
 for make, data in ((simple.GridDelaunay2D, cloud(spreads["slices"][RANK])), (simple.FillElevationHoles, piece(WHOLE, here))):
     for stopped in (0, LAST):
-        source = make(Input=given(data))
+        source = make(Input=data_source(data))
         if RANK == stopped:
             algorithm = source.SMProxy.GetClientSideObject()
             algorithm.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Elevation Points reads any file of points, tells what it recognised, and why it cannot, once."""
+"""Elevation Points reads any file of points, and reports what it recognised, or why it cannot, once."""
 import os
 
 import numpy
@@ -54,10 +54,10 @@ check(numpy.array_equal(array(cloud.GetPointData(), "Elevation"), points(cloud)[
       "the array Elevation is z")
 recognised = information(reader, "Recognised")
 check("10,266 points" in recognised and "separated by blanks" in recognised,
-      "the panel tells what was recognised: " + recognised)
+      "the panel shows what was recognised: " + recognised)
 words = cloud.GetFieldData().GetAbstractArray("Recognised")
 lines = [words.GetValue(i) for i in range(words.GetNumberOfValues())]
-check_equal("\n".join(lines), recognised, "the field array tells the same")
+check_equal("\n".join(lines), recognised, "the field array holds the same")
 shown = simple.Show(reader, simple.CreateRenderView())
 check_equal(list(shown.ColorArrayName), ["POINTS", "Elevation"], "what points are coloured by")
 
@@ -67,7 +67,7 @@ table = written("columns.csv", "Top,Easting,Northing,Base\n" + "".join(
     for i in range(200)))
 reader = simple.ElevationPoints(FileName=table, Columns="Easting,Northing,Base")
 check_equal(fetch(reader).GetNumberOfPoints(), 199, "points without the null value")
-check("null values" in information(reader, "Recognised"), "what was left out is told, with its reason")
+check("null values" in information(reader, "Recognised"), "what was left out is reported, with its reason")
 reader.KeepNulls = 1
 check_equal(points(fetch(reader))[5].tolist(), [500050, 4000000, -9999], "a null value that is kept")
 reader.Columns = "2,3,1"
@@ -93,20 +93,20 @@ for change, expected in (
     errors = messages_of(reader)
     check_equal(len(errors), 1, "number of errors with %r: %s" % (change, errors))
     check(errors and expected in errors[0] and "--" not in errors[0] and "\n" not in errors[0],
-          "the error with %r does not tell why: %s" % (change, errors))
+          "the error with %r does not say why: %s" % (change, errors))
     check_equal(fetch(reader).GetNumberOfPoints(), 0, "points with %r" % change)
 
-# What is made of it does not tell the cause again; nor does it after the user has stopped the reader.
+# The chain does not report the cause again; nor does it after the user has stopped the reader.
 chain = simple.ReconstructElevationSurface(Input=reader)
 check_equal(messages_of(chain), [], "errors of the chain behind a reader that failed")
-check("reader" in information(chain, "Report"), "the report says who has told why")
+check("reader" in information(chain, "Report"), "the report says who has reported why")
 reader.FileName = olinda
 algorithm = reader.SMProxy.GetClientSideObject()
 tag = algorithm.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
 check_equal(messages_of(reader), [], "errors when the user stops the reader")
 algorithm.RemoveObserver(tag)
 check_equal(fetch(reader).GetNumberOfPoints(), 0, "points when the user stops the reader")
-check("stopped" in information(reader, "Recognised"), "the panel tells that the reader was stopped")
+check("stopped" in information(reader, "Recognised"), "the panel shows that the reader was stopped")
 check_equal(messages_of(chain), [], "errors of the chain behind a reader that was stopped")
 algorithm.Modified()
 check_equal(fetch(chain).GetNumberOfPoints() > 10266, True, "the surface comes when the file is read")
@@ -152,7 +152,7 @@ try:
 except ImportError:
     errors = messages_of(grid)
     check(len(errors) == 1 and "python3-gdal" in errors[0],
-          "what is missing for rasters is not told: %s" % errors)
+          "what is missing for rasters is not reported: %s" % errors)
 else:
     check_equal(fetch(grid).GetNumberOfPoints(), 5, "pixels with data")
 

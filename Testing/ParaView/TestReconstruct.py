@@ -112,7 +112,7 @@ whole.Trim = whole.FillHoles = 0
 # ---- warnings ----------------------------------------------------------------------------------
 strict = simple.ReconstructElevationSurface(Input=cloud, GapTolerance=1)
 warnings = messages_of(strict, "WarningEvent")
-check(len(warnings) == 1 and "leaves out" in warnings[0], "what the filters warn of is told: %s" % warnings)
+check(len(warnings) == 1 and "leaves out" in warnings[0], "the filters' warnings are reported: %s" % warnings)
 check("leaves out" in information(strict, "Report"), "warnings are in the report too")
 
 # ---- progress and abort ------------------------------------------------------------------------
@@ -137,14 +137,14 @@ for each, event in ((whole, "ErrorEvent"), (delaunay, "WarningEvent"), (trim, "W
 
         tag = algorithm.AddObserver("ProgressEvent", stop)
         each.NumberOfThreads = 2 + number
-        told = messages_of(each, event)
-        check_equal(len(told), 0 if each is whole else 1, "%s: messages at an abort, %s" % (name, told))
-        check(each is whole or "Stopped" in told[0], "%s: what is told of an abort" % name)
+        messages = messages_of(each, event)
+        check_equal(len(messages), 0 if each is whole else 1, "%s: messages at an abort, %s" % (name, messages))
+        check(each is whole or "Stopped" in messages[0], "%s: the message on an abort" % name)
         algorithm.RemoveObserver(tag)
         for port in range(algorithm.GetNumberOfOutputPorts()):
             check_equal(algorithm.GetOutputDataObject(port).GetNumberOfElements(0), 0,
                         "%s: points of output %d after an abort at %g" % (name, port, share))
-        check(each is not whole or "stopped" in information(whole, "Report"), "the report tells it")
+        check(each is not whole or "stopped" in information(whole, "Report"), "the report says so")
         algorithm.SetAbortExecute(0)  # with newer VTKs, what a script has set stays
         each.NumberOfThreads = 1
         check(fetch(each).GetNumberOfPolys() > 0, "%s: the surface comes back after an abort" % name)
@@ -163,7 +163,7 @@ check(numpy.array_equal(points(fetch(of_table))[0, :2], points(fetch(of_file))[0
 of_table.Columns = "Depth"
 errors = messages_of(of_table)
 check(len(errors) == 1 and "three names" in errors[0],
-      "wrong columns are told: %s" % errors)
+      "wrong columns are reported: %s" % errors)
 
 image = simple.Wavelet(WholeExtent=[-10, 10, -8, 8, 0, 0])
 of_image = simple.ReconstructElevationSurface(Input=image)
@@ -184,9 +184,9 @@ check_equal(surfaces.GetNumberOfBlocks(), 2, "blocks of the output")
 single = fetch(simple.ReconstructElevationSurface(Input=plane))
 check(same(surfaces.GetBlock(1), single), "each block is a surface for itself")
 rows = report(blocks)
-check(("all blocks", "points", "13,329 read") in rows, "the report tells the sum of all blocks")
+check(("all blocks", "points", "13,329 read") in rows, "the report has the sum of all blocks")
 check(any(block.startswith("Block 1") and item == "points" and value.startswith("30 ")
-          for block, item, value in rows), "the report tells of each block")
+          for block, item, value in rows), "the report covers each block")
 
 # ---- time steps --------------------------------------------------------------------------------
 names = [data_file("jacksboro_fault.vtp"), data_file("horizon_synthetic.vtp")]

@@ -20,11 +20,11 @@ def guide_messages(section):
     return dict(re.findall(block, heading + text, re.M))
 
 
-def is_message(message, told):
-    """Whether a message is what the guide tells, where "…" stands for anything.
+def is_message(message, expected):
+    """Whether a message is what the guide shows, where "…" stands for anything.
 
     Of the message counts what Output Messages shows: not its kind, class and address.
     """
     place = r"^\s*((ERROR|Warning): )?(In \S+, line \d+\n)?(\w+ \(0x[0-9a-f]+\): )?"
-    words = r"\s+".join(re.escape(word) for word in told.split()).replace("…", ".*?")
+    words = r"\s+".join(re.escape(word) for word in expected.split()).replace("…", ".*?")
     return re.fullmatch(words, re.sub(place, "", message).strip(), re.DOTALL) is not None

@@ -84,7 +84,7 @@ def messages_of(source, event="ErrorEvent"):
     return [text for kind, text in update(source)[0] if kind == event]
 
 
-def given(data):
+def data_source(data):
     """A source of the pipeline with these data."""
     source = simple.TrivialProducer()
     source.GetClientSideObject().SetOutput(data)
@@ -113,7 +113,7 @@ def alone(source):
 
 
 def information(source, name):
-    """The value of a property that tells a result, after the last update."""
+    """The value of a property that holds a result, after the last update."""
     source.SMProxy.UpdatePropertyInformation()
     return source.GetPropertyValue(name)
 

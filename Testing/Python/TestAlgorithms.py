@@ -64,7 +64,7 @@ GRID = numpy.mgrid[0:6, 0:5].reshape(2, -1).astype(float)
 
 class Algorithms(unittest.TestCase):
     def setUp(self):
-        vtkOutputWindow.GetInstance().SetDisplayModeToNever()  # what the algorithms tell
+        vtkOutputWindow.GetInstance().SetDisplayModeToNever()  # what the algorithms print
 
     def test_a_pipeline_is_read_and_reconstruct(self):
         path = os.path.join(sys.argv[sys.argv.index("-D") + 1], "aegean_sea.csv")
@@ -129,7 +129,7 @@ class Algorithms(unittest.TestCase):
         numpy.testing.assert_array_equal(vtk_to_numpy(data.GetArray("Elevation")), x)
         numpy.testing.assert_array_equal(vtk_to_numpy(data.GetArray("Elevation of the input")), y)
 
-    def test_the_count_of_a_file_is_told_as_such(self):
+    def test_the_count_is_reported_as_that_of_the_file(self):
         for count, words in ((30, "note       f.xyz: 30 points\n"),
                              (24, "note       f.xyz: 30 points; this surface is of 24 points\n")):
             chain, data = ReconstructElevationSurface(), cloud(count)
@@ -186,23 +186,23 @@ class Algorithms(unittest.TestCase):
             reader.SetDepth(True)
             self.assertEqual(errors_of(reader), [])
             self.assertEqual(points(reader.GetOutputDataObject(0))[:, 2].tolist(), [18.0, -11.0])
-            for name, value, told in (
+            for name, value, expected in (
                 ("Columns", "1,2,4", "Columns"), ("NoData", "0", "No Data"), ("Band", 2, "Band"),
                 ("Classes", "2", "Classes"), ("Layer", "a", "Layer"), ("KeepNulls", 1, "Keep Nulls"),
             ):
                 getattr(reader, "Set" + name)(value)
-                self.assertIn(f"{told}: of points only", " ".join(errors_of(reader)))
+                self.assertIn(f"{expected}: of points only", " ".join(errors_of(reader)))
                 getattr(reader, "Set" + name)(type(value)())
             reader.SetContents(0)
-            for name, value, told in (
+            for name, value, expected in (
                 ("Classes", "2-5", "Classes takes numbers from 0 to 255, as 2,8"),
                 ("Band", -1, "Band takes a number from 1, not -1"),
             ):
                 getattr(reader, "Set" + name)(value)
-                self.assertIn(told, " ".join(errors_of(reader)))
+                self.assertIn(expected, " ".join(errors_of(reader)))
                 getattr(reader, "Set" + name)(type(value)())
 
-    def test_several_heights_are_told_and_chosen_by_a_column(self):
+    def test_several_heights_are_reported_and_chosen_by_a_column(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "horizons.csv")
             with open(path, "w", encoding="utf-8") as file:
@@ -217,8 +217,8 @@ class Algorithms(unittest.TestCase):
             self.assertIn("36 of 36 places have several heights, up to 89 apart", errors)
             chain.SetDuplicates("keep-highest")  # as a panel does, which has always one of them
             self.assertEqual(errors_of(chain), [])
-            told = "36 places have several heights, up to 89 apart: the highest"
-            self.assertIn(told, chain.GetReport())
+            expected = "36 places have several heights, up to 89 apart: the highest"
+            self.assertIn(expected, chain.GetReport())
             reader.SetWhere("name=Base")
             self.assertEqual(errors_of(chain), [])
             self.assertNotIn("several heights", chain.GetReport())
@@ -249,9 +249,9 @@ class Algorithms(unittest.TestCase):
         self.assertIn("27 read; 3 rows without numbers left out", chain.GetReport())
         z[3] = "high"
         chain.SetInputDataObject(0, table_of(x=x, y=y, z=z))
-        self.assertIn("row 3 of column z is no number: high", " ".join(errors_of(chain)))
+        self.assertIn("row 3 of column z is not a number: high", " ".join(errors_of(chain)))
 
-    def test_depths_and_null_values_of_a_table_are_set_where_they_are_told(self):
+    def test_depths_and_null_values_of_a_table_are_set_by_options(self):
         x, y = GRID
         depth = numpy.where(numpy.arange(x.size) % 7, 1000 + x, 0)
         chain = ReconstructElevationSurface()
@@ -268,19 +268,19 @@ class Algorithms(unittest.TestCase):
         chain.SetNoData("none")
         self.assertIn("No Data takes a number, not 'none'", " ".join(errors_of(chain)))
 
-    def test_an_array_of_words_is_no_elevation(self):
+    def test_an_array_of_words_is_not_an_elevation(self):
         chain, data = ReconstructElevationSurface(), cloud()
         for array in table_of(s=["a"] * 30, h=numpy.arange(30.0), v=numpy.ones((30, 3))).GetRowData(),:
             for i in range(3):
                 data.GetPointData().AddArray(array.GetAbstractArray(i))
         chain.SetInputDataObject(0, data)
-        for name, told in (("s", "point array s holds words"), ("v", "is no single number"), ("w", "named w")):
+        for name, expected in (("s", "point array s holds words"), ("v", "is not a single number"), ("w", "named w")):
             chain.SetElevationArray(name)
             errors = errors_of(chain)
-            self.assertIn(told, errors[0])
+            self.assertIn(expected, errors[0])
             self.assertIn("; there are: h ", errors[0] + " ")
 
-    def test_a_boundary_is_no_cloud(self):
+    def test_a_boundary_is_not_a_cloud(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "ring.txt")
             with open(path, "w", encoding="utf-8") as file:
@@ -329,7 +329,7 @@ class Algorithms(unittest.TestCase):
 
 
 def composites():
-    """{what it is: composite input}; blocks of two points are no surface."""
+    """{what it is: composite input}; blocks of two points do not make a surface."""
     nested = blocks(None, blocks(cloud(2), None, cloud(), name="south"), cloud(2), name="north")
     pieces = vtkMultiPieceDataSet()
     pieces.SetPiece(0, cloud(2))
@@ -396,9 +396,9 @@ class Composites(unittest.TestCase):
                 names = []
                 for algorithm, event in ((chain, "ErrorEvent"), (filtered, "WarningEvent")):
                     algorithm.SetInputDataObject(0, data)
-                    told = errors_of(algorithm, event)
-                    self.assertEqual(len(told), 1, told)
-                    names.append(re.findall(r"((?:Block|Partition) [^:\n]*): ", told[0]))
+                    errors = errors_of(algorithm, event)
+                    self.assertEqual(len(errors), 1, errors)
+                    names.append(re.findall(r"((?:Block|Partition) [^:\n]*): ", errors[0]))
                 self.assertEqual(*names)
                 self.assertEqual(len(names[0]), 1 + (what in ("nested", "pieces", "collection")))
                 surfaces = chain.GetOutputDataObject(0)
@@ -417,7 +417,7 @@ class Composites(unittest.TestCase):
         self.assertEqual(len(errors), 1)
         self.assertIn("the input has no points", errors[0])
 
-    def test_an_error_of_all_blocks_is_told_once(self):
+    def test_an_error_common_to_all_blocks_is_reported_once(self):
         chain = ReconstructElevationSurface()
         chain.SetInputDataObject(0, blocks(cloud(), cloud(), name="north"))
         chain.SetSpacing(-1)

@@ -20,7 +20,7 @@ FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../Utiliti
 def load():
     path = os.path.join(FOLDER, "run-all")
     sys.path.insert(0, FOLDER)
-    sys.dont_write_bytecode = True  # beside the sources
+    sys.dont_write_bytecode = True  # next to the sources
     loader = importlib.machinery.SourceFileLoader("run_all", path)
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader("run_all", loader))
     loader.exec_module(module)
@@ -82,14 +82,14 @@ class Comparison(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("1 of 2 figures are worse", text)
 
-    def test_nothing_in_common_or_another_way_of_measuring_is_no_success(self):
+    def test_nothing_in_common_or_another_way_of_measuring_is_not_a_success(self):
         old = run({"a": [1.0]})
         self.assertEqual(exit_code(run({"b": [1.0]}), old)[0], 2)
         code, text = exit_code(run({"a": [1.0]}, commands={"B": "--y"}), old)
         self.assertEqual(code, 2)
         self.assertIn("measured in another way: B", text)
 
-    def test_figures_that_are_missing_and_other_processors_are_told(self):
+    def test_missing_figures_and_other_processors_are_reported(self):
         _, text = exit_code(run({"a": [1.0]}, "Q"), run({"a": [1.0], "gone": [1.0]}))
         self.assertIn("another processor", text)
         self.assertRegex(text, r"gone +not measured")
@@ -189,13 +189,13 @@ class Programs(unittest.TestCase):
             with open(path, encoding="utf-8") as stream:
                 return json.load(stream)
 
-    def test_pieces_and_memory_are_told_beside_each_other(self):
+    def test_pieces_and_memory_are_reported_next_to_each_other(self):
         rows = self.run_script(
             "benchmark-pieces", "random", "--points", "20000", "--pieces", "2")
         self.assertEqual(list(rows), ["in memory", "in pieces, random, 20,000 points"])
         self.assertTrue(all(seconds > 0.0 for seconds in rows.values()))
 
-    def test_the_program_is_told_beside_loadtxt_with_options_of_its_own(self):
+    def test_the_program_is_reported_next_to_loadtxt_with_options_of_its_own(self):
         rows = self.run_script(
             "benchmark-reconstruct", "--points", "1000", "--no-picture", "--threads", "2")
         self.assertEqual(list(rows), ["numpy.loadtxt", "the program, 1,000 points of text"])

@@ -42,12 +42,12 @@ class InFolder(Program):
 
 
 class Options(InFolder):
-    def test_the_version_is_told(self):
+    def test_the_version_is_printed(self):
         done = self.call("--version")
         self.assertEqual(done.returncode, 0)
         self.assertRegex(done.stdout, r"^reconstruct \d+\.\d+\.\d+ \(VTK 9")
 
-    def test_a_misspelt_option_is_told_with_the_right_one(self):
+    def test_a_misspelt_option_is_named_with_the_right_one(self):
         for wrong, right in (
             ("--maximum-edg-length", "--maximum-edge-length"),
             ("--breakline", "--breaklines"),
@@ -204,7 +204,7 @@ class Interrupts(InFolder):
 
 
 class Supervised(InFolder):
-    """What happens in the child is told by the parent."""
+    """The parent reports what happens in the child."""
 
     def supervise(self, body):
         script = f"import os, signal, sys, time\nfrom vtkelevationsurface import supervisor\n{body}\n"
@@ -230,7 +230,7 @@ class Supervised(InFolder):
             with self.subTest(signal=name):
                 done = self.supervise(body.format(name))
                 self.assertEqual(done.returncode, 1)
-                # Before it, libraries may tell of the crash in their way.
+                # Before it, libraries may report the crash in their way.
                 line = done.stderr.splitlines()[-1]
                 self.assertTrue(line.startswith("reconstruct: error: the run "), done.stderr)
                 self.assertIn(words, line)
@@ -280,7 +280,7 @@ class Supervised(InFolder):
                 self.assertEqual(made, ["a_surface.json", "a_surface.vtp"])
                 self.assertIn("written", done.stdout)
 
-    def test_each_is_stopped_between_files_and_tells_what_is_written(self):
+    def test_each_is_stopped_between_files_and_prints_what_is_written(self):
         for name in "abc":
             self.file(f"{name}.xyz", sheet(5))
         body = (

@@ -123,7 +123,7 @@ class TestData(unittest.TestCase):
             size = os.path.getsize(os.path.join(DATA, name))
             self.assertLessEqual(size, LARGEST_FILE, name)
 
-    def test_counts_bounds_and_finite_values_are_as_told(self):
+    def test_counts_bounds_and_finite_values_are_as_documented(self):
         for name, (count, bounds, _) in read_table().items():
             with self.subTest(name):
                 points = coordinates(read(name))

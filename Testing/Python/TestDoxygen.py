@@ -17,7 +17,7 @@ from vtkelevationsurface import vtkElevationSurface as module
 
 HERE = sys.argv.index("--doxygen")
 PROGRAM, DOXYFILE = sys.argv[HERE + 1 :]
-# What vtkTypeMacro declares, and the ends of ranges, which the words on a setter tell.
+# What vtkTypeMacro declares, and the ends of ranges, which the words on a setter give.
 OF_EVERY_CLASS = {
     "GetNumberOfGenerationsFromBase",
     "GetNumberOfGenerationsFromBaseType",

@@ -40,7 +40,7 @@ def outcome(work):
     try:
         return ranks.agreed(RANKS, work)
     except Exception as error:  # pylint: disable=broad-except
-        check(ranks.is_of_all_ranks(error) and error.is_reported_here == (RANK == 0),
+        check(ranks.is_on_all_ranks(error) and error.is_reported_here == (RANK == 0),
               "%r is of all ranks, and the first reports it" % error)
         return error
 
@@ -60,7 +60,7 @@ def main():
         check_fails("%s, all but one fail" % name,
                     {rank: ValueError("rank %d" % rank) for rank in range(1, COUNT)}, exchange,
                     ValueError, "rank 1")
-        check_fails("%s, an abort beside an error" % name, {0: Aborted(), LAST: ValueError("wrong")} if LAST else {},
+        check_fails("%s, an abort besides an error" % name, {0: Aborted(), LAST: ValueError("wrong")} if LAST else {},
                     exchange, ValueError, "wrong")
         check_fails("%s, a stop" % name, {LAST: Aborted()}, exchange, Aborted, "")
         check_equal(gather(outcome(exchange)), first, "%s works as before the errors" % name)

@@ -4,7 +4,7 @@
 
 Each cell is computed and compared with the one that stands there; both are printed. Alone, the script
 does the modes of one process; with --ranks, started by mpirun, those of so many ranks. --only TEXT does
-the rows that have it. What the words mean is told in Documentation/Features.md.
+the rows that have it. Documentation/Features.md explains the words.
 """
 
 import argparse
@@ -45,21 +45,21 @@ def words_of(row, case):
 
 
 def word_for(row, case, parts, expected):
-    """The word for what parts have made, beside one run in memory, and what differs."""
+    """The word for what parts have made, compared with one run in memory, and what differs."""
     found = outcomes.joined(parts)
     errors = {text for event, text in found["messages"] if event == "ErrorEvent"}
     if errors and not any(map(is_error, expected["messages"])):
         is_named = len(errors) == 1 and any(word in text for text in errors for word in words_of(row, case))
         is_empty = not any(len(block["points"]) for port in found["ports"] for block in port)
         return "refused" if is_named and is_empty else "differs", str(errors)
-    told = outcomes.take_gathering(found["messages"])
+    gathering = outcomes.take_gathering(found["messages"])
     why = outcomes.difference(found, expected)
     if why:
         remark = [str(number) for number, begin in REMARKS.items() if why.startswith(begin)]
         return " ".join(["differs", *(remark[-1:])]), why
     shares = found["shares"]
     if len(shares) > 1 and sum(shares) > FEW and max(shares) == sum(shares):
-        return ("gathers", "") if len(told) == 1 else ("differs", "%d warnings of gathering" % len(told))
+        return ("gathers", "") if len(gathering) == 1 else ("differs", "%d warnings of gathering" % len(gathering))
     return "same", ""
 
 

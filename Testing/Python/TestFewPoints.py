@@ -71,7 +71,7 @@ class Surface(unittest.TestCase):
         """The points that are left out are near the surface, and the report counts them."""
         few, reasons = result.report["simplified"], result.reasons
         left = points[reasons == WITHIN_ERROR]
-        # A point just outside of the outline may be as far above a slope as it is beside it.
+        # A point just outside of the outline may be as far above a slope as it is away from it.
         self.assertLessEqual(residuals(result, left, reach).max(), error + reach)
         self.assertLessEqual(few["largest_elevation_error"], error)
         self.assertEqual(few["points_redundant"], len(left))
@@ -226,7 +226,7 @@ class Outline(unittest.TestCase):
         outline = make_lines([numpy.vstack((ring, ring[:1])) for ring in rings])
         return simplified(outline, 1.0, error)
 
-    def test_points_beside_a_straight_line_go_within_both_bounds(self):
+    def test_points_off_a_straight_line_go_within_both_bounds(self):
         corners = numpy.array([(0.0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)])
         for point, count in (((5, 0.4, 0.05), 4), ((5, 0.6, 0), 5), ((5, 0, 0.2), 5)):
             ring = numpy.insert(corners, 1, point, axis=0)
@@ -265,8 +265,8 @@ class Outline(unittest.TestCase):
         self.assertTrue(outside_of(lines, outside, 0.1).all())
 
 
-class OfProgram(Program):
-    def test_the_report_tells_what_is_kept(self):
+class FewPointsInProgram(Program):
+    def test_the_report_lists_what_is_kept(self):
         self.file("a.xyz", "".join("%.17g %.17g %.17g\n" % tuple(row) for row in cloud()))
         done = self.call(
             "a.xyz", "--maximum-elevation-error", "0.2", "--no-picture", "--report", "a.json"

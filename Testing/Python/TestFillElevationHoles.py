@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkelevationsurface import vtkFillElevationHoles
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from mesh_rules import findings, number_of_border_edges  # noqa: E402
+from mesh_rules import findings, border_edge_count  # noqa: E402
 
 
 def sheet(size, is_empty, elevation):
@@ -193,7 +193,7 @@ class TestFillElevationHoles(unittest.TestCase):
         fill.Update()
         self.assertEqual((fill.GetNumberOfHoles(), fill.GetNumberOfFilledHoles()), (2, 1))
         self.assertEqual(findings(fill.GetOutput()), [])
-        self.assertEqual(number_of_border_edges(fill.GetOutput()), 40 + 14)
+        self.assertEqual(border_edge_count(fill.GetOutput()), 40 + 14)
         status = vtk_to_numpy(fill.GetOutput(1).GetCellData().GetArray("Status"))
         self.assertEqual(sorted(status), [fill.FILLED, fill.TOO_LARGE])
         fill.SetMaximumHoleSize(0.0)

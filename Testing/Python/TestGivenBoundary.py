@@ -68,7 +68,7 @@ def filled(surface, **properties):
 
 
 def heights(surface, places):
-    """z of a surface at places, found by vertical lines; NaN beside it."""
+    """z of a surface at places, found by vertical lines; NaN outside of it."""
     locator = vtkStaticCellLocator()
     locator.SetDataSet(surface)
     locator.BuildLocator()
@@ -239,14 +239,14 @@ class Drape(unittest.TestCase):
         xy, corners = meshes.points_of(after)[:, :2], meshes.triangles_of(after)
         a, b = self.LINES[0, :2], self.LINES[1, :2]
         way = (b - a) / numpy.hypot(*(b - a))
-        along, beside = (xy - a) @ way, (xy - a) @ (-way[1], way[0])
-        on = (abs(beside) < 1e-12) & (along > -1e-12) & (along < numpy.hypot(*(b - a)) + 1e-12)
+        along, aside = (xy - a) @ way, (xy - a) @ (-way[1], way[0])
+        on = (abs(aside) < 1e-12) & (along > -1e-12) & (along < numpy.hypot(*(b - a)) + 1e-12)
         edges = numpy.vstack((corners[:, :2], corners[:, 1:], corners[:, ::2]))
         edges = numpy.unique(numpy.sort(edges[on[edges].all(axis=1)], axis=1), axis=0)
         length = abs(along[edges[:, 1]] - along[edges[:, 0]]).sum()
         self.assertAlmostEqual(length, numpy.hypot(*(b - a)), places=9)
 
-    def test_lines_beside_the_points_are_an_error_as_others_are(self):
+    def test_lines_outside_the_points_are_an_error_as_others_are(self):
         lines = meshes.lines(self.LINES + 1e4, [[0, 1]])
         delaunay = vtkGridDelaunay2D()
         delaunay.SetInputData(meshes.cloud(grid()))

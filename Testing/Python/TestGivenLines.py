@@ -13,7 +13,7 @@ import meshes
 from in_folder import Program
 from osgeo import gdal, ogr, osr
 from vtkelevationsurface import reading, reconstruct, vtkGridDelaunay2D
-from vtkelevationsurface.clouds import Cloud, bare_lines, make_lines, make_points, parts_of_lines
+from vtkelevationsurface.clouds import Cloud, bare_lines, make_lines, make_points, line_parts
 from vtkelevationsurface.draping import Surface, draped
 from vtkelevationsurface.mending import length_of, mended
 from vtkelevationsurface.messages import ElevationSurfaceError
@@ -77,14 +77,14 @@ def shoreline():
 
 
 class Gaps(unittest.TestCase):
-    def test_a_gap_is_closed_and_told_with_its_ring_place_and_size(self):
+    def test_a_gap_is_closed_and_noted_with_its_ring_place_and_size(self):
         ring = circle(5.5, 5.5, 4.0, 100)
-        whole, told = quietly(SHEET, boundary=make_lines([ring]))
-        self.assertEqual(told, [])
-        result, told = quietly(SHEET, boundary=make_lines([ring[:-1]]))
-        self.assertEqual(len(told), 1)
+        whole, notes = quietly(SHEET, boundary=make_lines([ring]))
+        self.assertEqual(notes, [])
+        result, notes = quietly(SHEET, boundary=make_lines([ring[:-1]]))
+        self.assertEqual(len(notes), 1)
         self.assertRegex(
-            told[0],
+            notes[0],
             r"^the boundary: line \(cell 0\) is not closed: its ends are 0\.2513 apart at "
             r"\(9\.5, 5\.5\), which is 1 % of the ring's length 25\.13: closed by a straight edge$",
         )
@@ -105,11 +105,11 @@ class Gaps(unittest.TestCase):
     def test_ends_that_nearly_meet_become_one_point(self):
         ring = circle(5.5, 5.5, 4.0, 60)
         ring[-1, :2] += 1e-9
-        made, told = mended(make_lines([ring]), "b")
-        names, parts = parts_of_lines(made)
+        made, notes = mended(make_lines([ring]), "b")
+        names, parts = line_parts(made)
         self.assertEqual((len(names), len(parts[0])), (1, 61))
         numpy.testing.assert_array_equal(parts[0][0], parts[0][-1])
-        self.assertRegex(told[0], "the second is moved onto the first$")
+        self.assertRegex(notes[0], "the second is moved onto the first$")
 
     def test_lines_from_everywhere_meet_in_any_order_and_direction(self):
         random = numpy.random.RandomState(4)
@@ -124,27 +124,27 @@ class Gaps(unittest.TestCase):
             parts = [part[:: random.choice((1, -1))] for part in parts]
             parts = [parts[i] for i in random.permutation(len(parts))]
             with self.subTest(run=run):
-                made, told = mended(make_lines(parts), "b")
-                self.assertEqual(len(told), len(cuts))
+                made, notes = mended(make_lines(parts), "b")
+                self.assertEqual(len(notes), len(cuts))
                 result, _ = quietly(SHEET, boundary=made)
                 self.assertEqual(result.boundary.GetNumberOfLines(), 1)
                 self.assertAlmostEqual(area_of(result), enclosed(ring), delta=0.5)
 
-    def test_many_gaps_are_told_by_the_first_and_the_widest(self):
+    def test_notes_on_many_gaps_name_the_first_and_the_widest(self):
         rings = [circle(10.0 * i, 0.0, 4.0, 100) for i in range(30)]
         for i, ring in enumerate(rings):
             ring[-1, 1] += 0.001 + 0.001 * i
-        _, told = mended(make_lines(rings), "b")
-        self.assertEqual(len(told), 21)
-        self.assertEqual(told[-1], "b: gaps of up to 0.03, and 10 more like these")
+        _, notes = mended(make_lines(rings), "b")
+        self.assertEqual(len(notes), 21)
+        self.assertEqual(notes[-1], "b: gaps of up to 0.03, and 10 more like these")
 
 
 class Crossings(unittest.TestCase):
     BOW = flat([(2, 2), (9, 9), (9, 2), (2, 9), (2, 2)])
 
-    def test_each_lobe_stays_and_all_is_told(self):
-        result, told = quietly(SHEET, boundary=self.BOW)
-        self.assertEqual(told, [
+    def test_each_lobe_stays_and_everything_is_noted(self):
+        result, notes = quietly(SHEET, boundary=self.BOW)
+        self.assertEqual(notes, [
             "the boundary: the line crosses itself at (5.5, 5.5): made valid by GEOS, 2 polygons, "
             "the largest with 50 % of the area"
         ])
@@ -157,9 +157,9 @@ class Crossings(unittest.TestCase):
     def test_an_overshoot_does_not_open_a_hole(self):
         ring = flat([(2, 2), (9, 2), (9, 9), (2, 9), (2, 1.5), (3, 1.5), (3, 2.5), (1.5, 2.5),
                      (1.5, 2), (2, 2)])
-        result, told = quietly(SHEET, boundary=ring)
-        self.assertEqual(len(told), 1)
-        self.assertRegex(told[0], "made valid by GEOS")
+        result, notes = quietly(SHEET, boundary=ring)
+        self.assertEqual(len(notes), 1)
+        self.assertRegex(notes[0], "made valid by GEOS")
         middle = numpy.array(result.surface.GetCenter())
         self.assertEqual(result.boundary.GetNumberOfLines(), 1, middle)
         self.assertGreaterEqual(area_of(result), 49.0)
@@ -181,15 +181,15 @@ class Crossings(unittest.TestCase):
                 flat([(2, 2), (9, 2)]), flat([(9, 9), (9, 2)]), flat([(9, 9), (2, 2)])])),
         ):
             with self.subTest(name=name):
-                made, told = mended(boundary, "b", strict=True)
+                made, notes = mended(boundary, "b", strict=True)
                 self.assertIs(made, boundary)
-                self.assertEqual(told, [])
+                self.assertEqual(notes, [])
 
     def test_rings_that_cross_each_other_stay_an_error(self):
         with self.assertRaisesRegex(ElevationSurfaceError, "rings of the boundary cross"):
             reconstruct(SHEET, boundary=[circle(4, 4, 2, 20), circle(6, 6, 2, 20)])
 
-    def test_what_cannot_be_mended_is_told_by_the_filter(self):
+    def test_what_cannot_be_mended_is_reported_by_the_filter(self):
         ring = circle(5, 5, 4, 40)
         spoke, flatly = flat([(5, 5), (9, 5)]), flat([(2, 2), (9, 2), (5, 2), (7, 2), (2, 2)])
         for boundary, words in (
@@ -198,8 +198,8 @@ class Crossings(unittest.TestCase):
             (vtkPolyData(), "no line and no polygon"),
         ):
             with self.subTest(words=words):
-                made, told = mended(boundary, "b")
-                self.assertEqual((made is boundary, told), (True, []))
+                made, notes = mended(boundary, "b")
+                self.assertEqual((made is boundary, notes), (True, []))
                 with self.assertRaisesRegex(ElevationSurfaceError, words):
                     reconstruct(SHEET, boundary=boundary)
 
@@ -210,7 +210,7 @@ class Crossings(unittest.TestCase):
             xy = random.rand(9, 2) * 10.0 if run % 2 else random.randint(0, 10, (9, 2)).astype("f8")
             ring = flat(numpy.vstack((xy, xy[:1])))
             with self.subTest(run=run):
-                result, told = quietly(field, boundary=make_lines([ring]))
+                result, notes = quietly(field, boundary=make_lines([ring]))
                 shape = ogr.Geometry(ogr.wkbPolygon)
                 outline = ogr.Geometry(ogr.wkbLinearRing)
                 for x, y, _ in ring.tolist():
@@ -265,14 +265,14 @@ class Shoreline(Program):
             with self.subTest(name=name):
                 done = self.call("hills.xyz", "--boundary", name, "--no-picture", "--no-fill")
                 self.assertEqual((done.returncode, done.stderr), (0, ""))
-                told = re.findall(rf"note +({name}: .*)\n", done.stdout)
-                self.assertEqual(len(told), 3, done.stdout)
-                for words, lines, gap in zip(told, gaps, ("3.76", "0.19")):
+                notes = re.findall(rf"note +({name}: .*)\n", done.stdout)
+                self.assertEqual(len(notes), 3, done.stdout)
+                for words, lines, gap in zip(notes, gaps, ("3.76", "0.19")):
                     words, place = words.split(" apart at ")
                     self.assertEqual(words, f"{name}: {lines} do not meet: they are {gap}")
                     self.assertRegex(place, r"^\([\d.]+, [\d.]+\), which is 0\.0[\d]+ % of")
                 words = f"{ring} crosses itself at (1990.962047, 2807.063391): made valid by GEOS"
-                self.assertIn(words, told[2])
+                self.assertIn(words, notes[2])
                 surface = reading.read(self.path("hills_surface.vtp")).points
                 triangles = surface.GetPolys().GetNumberOfCells()
                 self.assertGreater(triangles, 4000)
@@ -354,9 +354,9 @@ class Draping(Program):
 
     def test_the_surface_goes_through_the_fault_as_it_was(self):
         fault = numpy.array([(310.0, 420.0), (2715.0, 3050.0), (3500.0, 3100.0)])
-        result, told = quietly(HILLS, faults=fault)
-        self.assertEqual(len(told), 1)
-        self.assertIn("the faults: 1 of 1 line without z (first: the line): they follow", told[0])
+        result, notes = quietly(HILLS, faults=fault)
+        self.assertEqual(len(notes), 1)
+        self.assertIn("the faults: 1 of 1 line without z (first: the line): they follow", notes[0])
         plain, _ = quietly(HILLS)
         added = result.to_numpy()[0][len(HILLS) :]
         self.assertGreater(len(added), 100)
@@ -366,32 +366,32 @@ class Draping(Program):
 
     def test_z_of_0_counts_as_none_where_the_points_never_have_it(self):
         fault, given = flat([(310.0, 420.0), (2715.0, 3050.0)]), {"faults_z": "given"}
-        result, told = quietly(HILLS, faults=fault)
-        self.assertRegex(told[0], "z of its lines is 0 everywhere .*--faults-z given takes the 0")
+        result, notes = quietly(HILLS, faults=fault)
+        self.assertRegex(notes[0], "z of its lines is 0 everywhere .*--faults-z given takes the 0")
         self.assertGreater(result.to_numpy()[0][:, 2].min(), 300.0)
-        result, told = quietly(HILLS, faults=fault, **given)
-        self.assertEqual((told, result.to_numpy()[0][:, 2].min()), ([], 0.0))
-        result, told = quietly(HILLS * (1, 1, 0.01) - (0, 0, 4), faults=fault)
-        self.assertEqual(told, [])  # the points have 0 too
+        result, notes = quietly(HILLS, faults=fault, **given)
+        self.assertEqual((notes, result.to_numpy()[0][:, 2].min()), ([], 0.0))
+        result, notes = quietly(HILLS * (1, 1, 0.01) - (0, 0, 4), faults=fault)
+        self.assertEqual(notes, [])  # the points have 0 too
         other = numpy.vstack((fault, (3000.0, 3000.0, 390.0)))
         self.assertEqual(quietly(HILLS, faults=other)[1], [])
-        _, told = quietly(HILLS, faults=other, faults_z="drape")
-        self.assertRegex(told[0], "z of its lines is left aside, as --faults-z says")
+        _, notes = quietly(HILLS, faults=other, faults_z="drape")
+        self.assertRegex(notes[0], "z of its lines is left aside, as --faults-z says")
         for more in ({"strict": True}, given):
             words = "without z.*--faults-z drape takes"
             with self.assertRaisesRegex(ElevationSurfaceError, words) as caught:
                 reconstruct(HILLS, faults=fault[:, :2], **more)
             self.assertEqual(caught.exception.about, "faults")
 
-    def test_what_lies_outside_of_the_points_is_left_out_and_told(self):
+    def test_what_lies_outside_of_the_points_is_left_out_and_noted(self):
         fault = flat([(3000, 2000), (4500, 2000), (4500, 1000), (3000, 1000)])
         given = {"faults_z": 2}
-        faults, told = draped(Cloud(make_points(HILLS)), make_lines([fault]), "f", given)
-        _, parts = parts_of_lines(faults)
+        faults, notes = draped(Cloud(make_points(HILLS)), make_lines([fault]), "f", given)
+        _, parts = line_parts(faults)
         self.assertEqual(len(parts), 2)
         self.assertEqual([part[:, 0].max() for part in parts], [4000.0, 4000.0])
         words = "left out of 1 line without z, a length of 2000 of line (cell 0), at (4500, 2000)"
-        self.assertIn(words, told[1])
+        self.assertIn(words, notes[1])
         with self.assertRaisesRegex(ElevationSurfaceError, "The constraints do not overlap the points"):
             reconstruct(HILLS, faults=fault[1:3])
 
@@ -436,7 +436,7 @@ class Draping(Program):
         polys.InsertNextCell(3, [0, 1, 2])
         data.SetLines(lines)
         data.SetPolys(polys)
-        names, parts = parts_of_lines(data)
+        names, parts = line_parts(data)
         self.assertEqual(names, ["line (cell 1)", "polygon (cell 2)"])
         self.assertEqual([len(part) for part in parts], [2, 4])
         self.assertEqual(bare_lines(data).tolist(), [False, False])

@@ -29,7 +29,7 @@ def triangles(data):
 
 
 class TestPackage(unittest.TestCase):
-    def test_a_python_without_vtk_is_told_which_one_has_it(self):
+    def test_a_python_without_vtk_names_the_one_that_has_it(self):
         folder = os.path.dirname(os.path.dirname(vtkelevationsurface.__file__))
         # Without -S, Python finds the packages that are installed.
         done = subprocess.run(
@@ -94,7 +94,7 @@ class TestGridDelaunay2D(unittest.TestCase):
             sets.append(corner_sets(delaunay.GetOutput()))
         self.assertEqual(sets[0], sets[1])
 
-    def test_a_turned_and_rounded_grid_is_found_and_told(self):
+    def test_a_turned_and_rounded_grid_is_found_and_reported(self):
         j, i = numpy.mgrid[0:20, 0:30]
         u, v = numpy.array([20.0, 15.0]), numpy.array([-15.0, 20.0])
         xy = numpy.array([612000.0, 6073000.0]) + i.reshape(-1, 1) * u + j.reshape(-1, 1) * v

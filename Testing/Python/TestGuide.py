@@ -27,7 +27,7 @@ def flat_share(surface):
 
 
 class Gaps(unittest.TestCase):
-    """The table of what becomes of gaps, on rough squares with two gaps inside and two at the border."""
+    """The table of how gaps are treated, on rough squares with two gaps inside and two at the border."""
 
     BOXES = {"narrow": (10, 13, 10, 25), "wide": (35, 46, 10, 25),
              "narrow bay": (10, 13, 48, 70), "wide bay": (35, 46, 48, 70)}
@@ -40,7 +40,7 @@ class Gaps(unittest.TestCase):
         self.points = numpy.column_stack((xy, numpy.sin(xy[:, 0] / 9)))
 
     def fates(self, option, **properties):
-        """{gap: what became of it}, and how many points are new"""
+        """{gap: how it was treated}, and how many points are new"""
         self.assertRegex(GUIDE, rf"\| {option} \| ")
         result = reconstruct(self.points, **properties)
         places = result.to_numpy()[0][len(self.points):, :2]
@@ -72,14 +72,14 @@ class Guide(unittest.TestCase):
         cls.addClassCleanup(folder.cleanup)
         cls.folder = folder.name
         make_folder(cls.folder)
-        cls.printed = [(run(language, code, cls.folder), code, told)
-                       for language, code, told in examples_of(GUIDE)]
+        cls.printed = [(run(language, code, cls.folder), code, expected)
+                       for language, code, expected in examples_of(GUIDE)]
 
     def test_each_example_prints_the_lines_below_it(self):
         self.assertGreaterEqual(len(self.printed), 6)
-        for printed, code, told in self.printed:
-            self.assertTrue(told, code)
-            for line in told:
+        for printed, code, expected in self.printed:
+            self.assertTrue(expected, code)
+            for line in expected:
                 self.assertIn(line, printed, code)
 
     def test_each_picture_is_made_by_an_example_and_is_small(self):
@@ -103,7 +103,7 @@ class Guide(unittest.TestCase):
                     self.assertTrue(os.path.exists(path), target)
 
     def test_contour_lines_that_are_opened_make_few_flat_triangles(self):
-        told = re.search(r"(\d+) % of this map are flat triangles; with it, (\d+) %.*?"
+        figures = re.search(r"(\d+) % of this map are flat triangles; with it, (\d+) %.*?"
                          r"from (\S+) to (\S+) m", GUIDE, re.S).groups()
         run_commands("Utilities/reconstruct lines.gpkg --faults lines.gpkg --no-trim --open-edge-length 0 "
                      "--no-picture -o flat.vtp", self.folder)
@@ -114,7 +114,7 @@ class Guide(unittest.TestCase):
             shares.append(f"{100 * flat_share(surface):.0f}")
             z, _ = interpolated(surface, true.frame)
             errors.append(f"{numpy.sqrt(numpy.nanmean((z - true.z) ** 2)):.1f}")
-        self.assertEqual((*shares, *errors), told)
+        self.assertEqual((*shares, *errors), figures)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Points that are marked as hidden are not used, and cells that are hidden are no cells."""
+"""Points that are marked as hidden are not used, and cells that are hidden are not cells."""
 
 import unittest
 
@@ -24,7 +24,7 @@ XYZ = numpy.array([(x, y, 0.1 * x * y) for y in range(SIDE) for x in range(SIDE)
 BLANK = [30, 31, 39, 40, 48]
 
 
-def made(kind, data, **more):
+def run_filter(kind, data, **more):
     algorithm = kind()
     algorithm.SetInputData(data)
     for name, value in more.items():
@@ -52,14 +52,14 @@ def unused(output):
 
 class Points(unittest.TestCase):
     def test_hidden_ones_are_unused_with_a_reason(self):
-        delaunay = made(vtkGridDelaunay2D, marked())
+        delaunay = run_filter(vtkGridDelaunay2D, marked())
         output = delaunay.GetOutput()
         self.assertEqual(unused(output), [BLANK, [4] * 5])
         self.assertTrue(set(BLANK).isdisjoint(meshes.triangles_of(output).ravel()))
         self.assertEqual(delaunay.GetNumberOfNonFinitePoints(), 0)
         self.assertEqual(output.GetPoint(BLANK[0])[2], -9999)
 
-    def test_hidden_ones_above_others_are_no_second_surface(self):
+    def test_hidden_ones_above_others_are_not_a_second_surface(self):
         marks = numpy.repeat(numpy.array((0, HIDDEN_POINT), "u1"), len(XYZ))
         above = XYZ + (0.0, 0.0, 50.0)
         both = meshes.cloud(numpy.vstack((XYZ, above)), arrays=[(meshes.GHOSTS, marks)])
@@ -102,7 +102,7 @@ class Points(unittest.TestCase):
 
 class Cells(unittest.TestCase):
     def setUp(self):
-        self.surface = made(vtkGridDelaunay2D, meshes.cloud(XYZ)).GetOutput()
+        self.surface = run_filter(vtkGridDelaunay2D, meshes.cloud(XYZ)).GetOutput()
         count = self.surface.GetNumberOfPolys()
         middle = XYZ[meshes.triangles_of(self.surface)].mean(axis=1)[:, :2]
         self.hidden = numpy.hypot(*(middle - 4).T) < 1.5
@@ -113,17 +113,17 @@ class Cells(unittest.TestCase):
         marks = numpy.where(self.hidden, HIDDEN_CELL, 0).astype("u1")
         self.surface.GetCellData().AddArray(meshes.array_of(marks, meshes.GHOSTS))
 
-    def test_hidden_ones_are_no_surface_to_trim(self):
+    def test_hidden_ones_are_not_a_surface_to_trim(self):
         self.hide_cells()
         ring = meshes.rings([numpy.array([(1, 1), (7, 1), (7, 7), (1, 7.0)])])
-        trim = made(vtkTrimOutwardTriangles, self.surface, BoundaryData=ring)
+        trim = run_filter(vtkTrimOutwardTriangles, self.surface, BoundaryData=ring)
         found = [vtk_to_numpy(trim.GetOutput(port).GetCellData().GetArray("Value")) for port in (0, 1)]
         self.assertEqual(sorted(numpy.concatenate(found)), self.values[~self.hidden].tolist())
 
     def test_hidden_ones_are_a_hole_to_fill(self):
         before = self.surface.GetNumberOfPolys()
         self.hide_cells()
-        fill = made(vtkFillElevationHoles, self.surface)
+        fill = run_filter(vtkFillElevationHoles, self.surface)
         self.assertEqual(fill.GetNumberOfFilledHoles(), 1)
         new = vtk_to_numpy(fill.GetOutput().GetCellData().GetArray("HoleId")) == 0
         self.assertEqual(numpy.count_nonzero(~new), numpy.count_nonzero(~self.hidden))
@@ -133,15 +133,15 @@ class Cells(unittest.TestCase):
         marks = numpy.zeros(len(XYZ), "u1")
         marks[40] = HIDDEN_POINT
         self.surface.GetPointData().AddArray(meshes.array_of(marks, meshes.GHOSTS))
-        fill = made(vtkFillElevationHoles, self.surface)
+        fill = run_filter(vtkFillElevationHoles, self.surface)
         self.assertEqual(fill.GetNumberOfFilledHoles(), 1)
         self.assertNotIn(40, meshes.triangles_of(fill.GetOutput()))
 
-    def test_hidden_lines_are_no_constraints(self):
+    def test_hidden_lines_are_not_constraints(self):
         xyz = numpy.array([(0.5, 0.5, 0), (7.5, 6.5, 0), (0.5, 6.5, 0), (7.5, 0.5, 0)], "f8")
         lines = meshes.lines(xyz, [[0, 1], [2, 3]])
         lines.GetCellData().AddArray(meshes.array_of(numpy.array([0, HIDDEN_CELL], "u1"), meshes.GHOSTS))
-        delaunay = made(vtkGridDelaunay2D, meshes.cloud(XYZ), SourceData=lines)
+        delaunay = run_filter(vtkGridDelaunay2D, meshes.cloud(XYZ), SourceData=lines)
         self.assertEqual(delaunay.GetNumberOfConstraintCrossings(), 0)
 
 

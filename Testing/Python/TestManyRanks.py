@@ -45,7 +45,7 @@ def check_part(delaunay, claim):
     check(numpy.isin(numpy.arange(own, count), triangles_of(output)).all(),
           claim + ": points of other ranks are corners")
     work = output.GetFieldData().GetArray("WorkOfRank")
-    check(not work or work.GetComponent(0, 0) == own, claim + ": the number of own points is told")
+    check(not work or work.GetComponent(0, 0) == own, claim + ": the number of own points is reported")
 
 
 def compare(claim, coordinates, owners, ids=None, arrays=(), **properties):
@@ -77,7 +77,7 @@ def check_union(parts, whole, claim):
 
 
 def check_given_lattice(random):
-    """A given lattice is that of all ranks; of the points beside it, the first is told."""
+    """A given lattice is that of all ranks; of the points off it, the first is named."""
     i, j = numpy.meshgrid(numpy.arange(40.0), numpy.arange(30.0))
     turned_nodes = numpy.stack((612000 + 20.0 * i.ravel() - 9.0 * j.ravel(),
                                 6073000 + 15.0 * i.ravel() + 12.0 * j.ravel(), (i * j).ravel()), axis=1)
@@ -88,13 +88,13 @@ def check_given_lattice(random):
         owners = random.integers(COUNT, size=len(nodes))
         for ids in (None, random.permutation(len(nodes))):
             compare("given lattice, part %g" % part, nodes, owners, ids, Lattice=given)
-        unfit = [("beside the lattice", nodes + [5.0, 0.0, 0.0], given),
+        unfit = [("off the lattice", nodes + [5.0, 0.0, 0.0], given),
                  ("two on a node", numpy.vstack((nodes, nodes[-1:] + [0.01, 0.0, 0.0])), given),
                  ("too unequal steps", nodes, (612000.0, 6073000.0, 20.0, 15.0, -9e-9, 12e-9)),
                  ("steps on a line", nodes, given[:4] + (40.0, 30.0))]
-        beside = nodes.copy()
-        beside[random.integers(len(nodes), size=3), :2] += [3.0, 1.0]
-        unfit.append(("some beside the lattice", beside, given))
+        off = nodes.copy()
+        off[random.integers(len(nodes), size=3), :2] += [3.0, 1.0]
+        unfit.append(("some off the lattice", off, given))
         for claim, points, lattice in unfit:
             compare(claim, points, random.integers(COUNT, size=len(points)), None, Lattice=lattice)
     nodes = turned_nodes[:40]
@@ -108,7 +108,7 @@ def check_given_lattice(random):
 
 
 def check_elevation_error(random):
-    """With an elevation error, the points are gathered on one rank, which is told; all tell the counts."""
+    """With an elevation error, the points are gathered on one rank, with a warning; all have the counts."""
     points = random.random((2000, 3))
     owners = owners_in_places(random, points)
     for error in (0.2, -1.0):
@@ -117,10 +117,10 @@ def check_elevation_error(random):
         alone, expected = triangulate(
             cloud(numpy.concatenate([points[owners == rank] for rank in range(COUNT)])), True,
             MaximumElevationError=error)
-        told = outcomes.take_gathering(parts[0]["messages"])
-        is_told = error > 0.0 and len(set(owners)) > 1
-        check(len(told) == is_told, "elevation error %s: one warning if it is right, not %s" % (error, told))
-        check(all("MaximumElevationError chooses" in text for _, text in told), "why: %s" % told)
+        warnings = outcomes.take_gathering(parts[0]["messages"])
+        is_warned = error > 0.0 and len(set(owners)) > 1
+        check(len(warnings) == is_warned, "elevation error %s: one warning if it is right, not %s" % (error, warnings))
+        check(all("MaximumElevationError chooses" in text for _, text in warnings), "why: %s" % warnings)
         check_union(parts, outcomes.made_by([alone], expected), "elevation error %s" % error)
         shares = outcomes.joined(parts)["shares"]
         check(max(shares) == sum(shares), "elevation error: %s triangles are on one rank" % shares)
@@ -142,7 +142,7 @@ def clusters(random, count):
 
 
 def lattice(random, count):
-    """Nodes of a lattice along the axes or turned, some missing; sometimes a point beside them."""
+    """Nodes of a lattice along the axes or turned, some missing; sometimes a point off them."""
     side = max(2, int(count ** 0.5))
     i, j = numpy.meshgrid(numpy.arange(side), numpy.arange(side))
     kept = random.random(side * side) < random.choice([1.0, 0.8, 0.3])
@@ -226,7 +226,7 @@ def check_errors(random):
     for culprit in range(min(COUNT, 3)):
         data = cloud(random.random((COUNT, 50, 3))[RANK], None, [("short", numpy.zeros(50 if RANK != culprit else 49))])
         check_refused(vtkGridDelaunay2D(), data, 'On rank %d: Point array "short" has 49 tuples' % culprit, "a short array")
-    # Several points of one part of the plane have the same id, 7 or 7 + COUNT: one of them is told, which
+    # Several points of one part of the plane have the same id, 7 or 7 + COUNT: one of them is named, which
     # of the two, depends on the rank that is first.
     corner = numpy.array([[0.0, 0.0, 0.0], [1e-3, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.001, 0.0]])
     check_refused(vtkGridDelaunay2D(), cloud(corner + [1e-5 * RANK, 0.0, 0.0], numpy.array([7, 7 + COUNT, 8 + COUNT + RANK, 9 + 3 * COUNT + RANK])),

@@ -53,8 +53,8 @@ def compare(claim, coordinates, owners, lines, holders, ids=None, arrays=(), **p
     if ids is not None and len(set(owners)) == 1:
         mine = mine[numpy.argsort(ids[mine])]  # on one rank, places decide, not ids
     order = numpy.argsort(owners, kind="stable") if ids is None else numpy.argsort(ids, kind="stable")
-    parts_of_lines = [kept(*lines, [holder in (-1, rank) for holder in holders]) for rank in range(COUNT)]
-    own = parts_of_lines[RANK]
+    line_parts = [kept(*lines, [holder in (-1, rank) for holder in holders]) for rank in range(COUNT)]
+    own = line_parts[RANK]
     part, messages = triangulate(
         cloud(coordinates[mine], None if ids is None else ids[mine], [(n, a[mine]) for n, a in arrays]), False,
         SourceData=lines_of(*own) if len(own[0]) else vtkPolyData(), **properties)
@@ -63,7 +63,7 @@ def compare(claim, coordinates, owners, lines, holders, ids=None, arrays=(), **p
     if RANK == 0:
         whole, expected = triangulate(
             cloud(coordinates[order], None, [(n, a[order]) for n, a in arrays]), True,
-            SourceData=lines_of(*(joined(parts_of_lines) if holders[0] >= 0 else parts_of_lines[0])), **properties)
+            SourceData=lines_of(*(joined(line_parts) if holders[0] >= 0 else line_parts[0])), **properties)
         added = whole.GetOutput().GetNumberOfPoints() - len(order)
         numbers = numpy.arange(len(order)) if ids is None else ids[order]
         first = numbers.max(initial=-1) + 1
@@ -121,17 +121,17 @@ def compare_random(random, claim):
     if random.random() < 0.2:
         coordinates[random.integers(len(coordinates)), random.integers(3)] = numpy.nan
     count = len(coordinates)
-    arrays, arrays_of_lines = (), ()
+    arrays, line_arrays = (), ()
     if random.random() < 0.5:
         arrays = (("whole", random.integers(-9, 9, count).astype(numpy.int16)),
                   ("vector", random.random((count, 3))),
                   ("text", numpy.array(["t" * (i % 4) + str(i) for i in range(count)], dtype="U")))
-        arrays_of_lines = (("vector", random.random((len(places), 3)).astype(numpy.float32)),
+        line_arrays = (("vector", random.random((len(places), 3)).astype(numpy.float32)),
                            ("whole", random.integers(-9, 9, len(places)).astype(numpy.int16)))
     kind = random.integers(3)  # the same on all ranks, all on one, or spread
     holders = (numpy.full(len(cells), -1) if kind == 0 else numpy.full(len(cells), random.integers(COUNT))
                if kind == 1 else random.integers(COUNT, size=len(cells)))
-    compare(claim, coordinates, owners_in_places(random, coordinates), (places, cells, arrays_of_lines), holders,
+    compare(claim, coordinates, owners_in_places(random, coordinates), (places, cells, line_arrays), holders,
             random.permutation(3 * count)[:count] if random.random() < 0.3 and COUNT > 1 else None, arrays,
             DuplicatePolicy=int(random.integers(POLICIES)),
             MaximumEdgeLength=float(random.choice([0.0, 0.0, 0.05, 30.0])))

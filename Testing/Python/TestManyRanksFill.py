@@ -27,7 +27,7 @@ def surface(coordinates, triangles, ids=None, arrays=(), holes=None):
     return data
 
 
-def part_of_rank(rank, coordinates, triangles, owners, ids, arrays, are_marked, holes=None):
+def rank_part(rank, coordinates, triangles, owners, ids, arrays, are_marked, holes=None):
     """The triangles that a rank has, with their points; the lowest rank with a point owns it."""
     mine = triangles[owners == rank]
     used = numpy.unique(mine)
@@ -49,7 +49,7 @@ def fill(data, alone, **properties):
 def compare(claim, coordinates, triangles, owners, ids=None, arrays=(), are_marked=False, holes=None,
             **properties):
     """Fills a surface on all ranks, and on rank 0 alone; triangles are in the order of their ranks there."""
-    data = part_of_rank(RANK, coordinates, triangles, owners, ids, arrays, are_marked, holes)
+    data = rank_part(RANK, coordinates, triangles, owners, ids, arrays, are_marked, holes)
     filler, messages = fill(data, False, **properties)
     check(filler.GetOutput().GetNumberOfPolys() >= numpy.count_nonzero(owners == RANK),
           claim + ": it keeps its triangles")
@@ -64,8 +64,8 @@ def compare(claim, coordinates, triangles, owners, ids=None, arrays=(), are_mark
             [(n, a[used]) for n, a in arrays], None if holes is None else holes[order]), True, **properties)
         whole = outcomes.made_by([whole], expected)
         check(not any(part["messages"] for part in parts[1:]), claim + ": other ranks are silent")
-        told = sum(bool(part["ports"][1][0]["report"]) for part in parts)
-        check(told == bool(whole["ports"][1][0]["report"]), claim + ": the report is on one rank")
+        count = sum(bool(part["ports"][1][0]["report"]) for part in parts)
+        check(count == bool(whole["ports"][1][0]["report"]), claim + ": the report is on one rank")
         why = outcomes.difference(outcomes.joined(parts, False, True), outcomes.joined([whole], False, True))
         check(not why, "%s: %s" % (claim, why))
 
@@ -165,7 +165,7 @@ def check_filled_before(random, claim):
 
 
 def check_errors(random):
-    """What is no elevation surface is refused in the words of one rank."""
+    """What is not an elevation surface is refused in the words of one rank."""
     coordinates = numpy.column_stack((random.random((300, 2)), numpy.zeros(300)))
     triangles = triangulated(coordinates)
     twice = numpy.vstack((triangles, triangles[:1]))
@@ -173,7 +173,7 @@ def check_errors(random):
     for claim, points, cells in (("a triangle twice", coordinates, twice),
                                  ("over another", overlapping, numpy.vstack((triangles, [[300, 301, 302]])))):
         owners = numpy.sort(random.integers(COUNT, size=len(cells)))
-        data = part_of_rank(RANK, points, cells, owners, numpy.arange(len(points)), (), False)
+        data = rank_part(RANK, points, cells, owners, numpy.arange(len(points)), (), False)
         check_refused(vtkFillElevationHoles(), data, "", claim)
 
 
@@ -185,7 +185,7 @@ def check_aborts(random, count):
 
     def make(_):
         filler = vtkFillElevationHoles()
-        filler.SetInputData(part_of_rank(RANK, coordinates, triangles, owners, None, (), False))
+        filler.SetInputData(rank_part(RANK, coordinates, triangles, owners, None, (), False))
         return filler
 
     check_stops(random, count, 0.8, make)

@@ -17,7 +17,7 @@ import outcomes
 from meshes import cloud, lines, rings
 from vtkelevationsurface.vtkElevationSurfacePieces import vtkReconstructPieces
 
-FIRST, BESIDE = RANK == 0, (RANK + 1) % COUNT  # a rank beside this one
+FIRST, NEXT = RANK == 0, (RANK + 1) % COUNT
 
 
 def cloud_of(random):
@@ -64,11 +64,11 @@ class Source:
         made[0]["messages"] = self.messages
         return made
 
-    def told(self):
+    def take_messages(self):
         """The messages since the last time, without the event."""
-        told = [text for _, text in self.messages]
+        texts = [text for _, text in self.messages]
         self.messages.clear()
-        return told
+        return texts
 
     def end(self):
         self.pieces.Reset()
@@ -125,9 +125,9 @@ def check_refused(source, words, claim, each=2):
     """One error of all, by the first rank; nobody gets anything, nor waits when it asks again."""
     for again in ("", ", again"):
         made = source.ask_for_own(each)
-        told = source.told()
-        is_right = len(told) == each and all(words in text for text in told) if FIRST else not told
-        check(is_right, "%s%s: %s" % (claim, again, told))
+        errors = source.take_messages()
+        is_right = len(errors) == each and all(words in text for text in errors) if FIRST else not errors
+        check(is_right, "%s%s: %s" % (claim, again, errors))
         check_equal(counts_of(made), 0, claim + ": no triangle")
 
 
@@ -144,14 +144,14 @@ def check_errors(random):
     # What this rank alone asks for is its own error, and nothing is lost.
     source.add(own)
     source.ask(0, 2 * COUNT + 1)
-    told = source.told()
-    check(len(told) == 1 and "is %d, but %d processes" % (2 * COUNT + 1, COUNT) in told[0], "a wrong number: %s" % told)
-    source.ask(2 * BESIDE, 2 * COUNT)
-    told = source.told()
-    check(len(told) == 1 and "this one makes pieces %d to %d." % (2 * RANK, 2 * RANK + 1) in told[0],
-          "another's piece: %s" % told)
+    errors = source.take_messages()
+    check(len(errors) == 1 and "is %d, but %d processes" % (2 * COUNT + 1, COUNT) in errors[0], "a wrong number: %s" % errors)
+    source.ask(2 * NEXT, 2 * COUNT)
+    errors = source.take_messages()
+    check(len(errors) == 1 and "this one makes pieces %d to %d." % (2 * RANK, 2 * RANK + 1) in errors[0],
+          "another's piece: %s" % errors)
     source.pieces.SetController(None)
-    check("Controller cannot be changed" in source.told()[0], "the controller is taken with the points")
+    check("Controller cannot be changed" in source.take_messages()[0], "the controller is taken with the points")
 
     # What one rank has wrong is the error of all, and can be put right.
     source.set(Delaunay_MaximumEdgeLength=-1.0 if RANK == LAST else 0.0)
@@ -160,20 +160,20 @@ def check_errors(random):
     source.pieces.Modified()
     each = 3 if RANK == LAST else 2
     source.ask(each * RANK, each * COUNT)
-    told = source.told()
-    check(len(told) == FIRST and (not FIRST or "different numbers" in told[0]), "different numbers: %s" % told)
+    errors = source.take_messages()
+    check(len(errors) == FIRST and (not FIRST or "different numbers" in errors[0]), "different numbers: %s" % errors)
     source.pieces.Modified()
     check_equal(sum(gather(counts_of(source.ask_for_own(2)))), right, "what is put right gives all triangles")
     check_equal(source.pieces.GetNumberOfTriangles(), right, "all ranks count all triangles")
     check_equal(source.pieces.GetNumberOfPoints(), len(xyz), "all ranks count all points")
-    check_equal(source.told(), [], "nothing is reported")
+    check_equal(source.take_messages(), [], "nothing is reported")
 
     # After the first piece each rank goes on alone.
     if FIRST:
         source.set(Delaunay_LatticeTolerance=0.1)
     check_equal(counts_of([source.ask(2 * RANK, 2 * COUNT)]) > 0, not FIRST, "the piece, unless properties are others")
-    told = source.told()
-    check(len(told) == FIRST and (not FIRST or "Properties were changed" in told[0]), "a changed property: %s" % told)
+    errors = source.take_messages()
+    check(len(errors) == FIRST and (not FIRST or "Properties were changed" in errors[0]), "a changed property: %s" % errors)
     source.end()
 
 
@@ -183,13 +183,13 @@ def check_lost(random):
     source = Source()
     source.add(own)
     check_equal(source.add(own, ("more", own[:, 2])) if RANK == LAST else False, False, "other arrays are refused")
-    check(len(source.told()) == (RANK == LAST), "by the rank that adds them")
+    check(len(source.take_messages()) == (RANK == LAST), "by the rank that adds them")
     check_refused(source, "On rank %d: The points are not complete" % LAST, "lost points")
     source.pieces.Reset()
     source.add(own, *([("more", own[:, 2])] if RANK == LAST else []))
     source.ask(RANK, COUNT)
-    told = source.told()
-    check(len(told) == FIRST and (not FIRST or "the same point arrays" in told[0]), "arrays of one rank: %s" % told)
+    errors = source.take_messages()
+    check(len(errors) == FIRST and (not FIRST or "the same point arrays" in errors[0]), "arrays of one rank: %s" % errors)
     source.pieces.Reset()
     if RANK == LAST:
         source.set(Folder="")
@@ -200,7 +200,7 @@ def check_lost(random):
         source.set(Folder=source.folder.name)
     source.pieces.Modified()
     check(sum(gather(counts_of(source.ask_for_own(1)))) > 0, "a rank without points takes part")
-    check_equal(source.told(), [], "nothing is reported")
+    check_equal(source.take_messages(), [], "nothing is reported")
     source.end()
 
 

@@ -45,7 +45,7 @@ def trim(mesh, boundary, alone, **properties):
     return updated(vtkTrimOutwardTriangles(), mesh, alone, BoundaryData=boundary, **properties)
 
 
-def told(made, are_global):
+def without_point_numbers(made, are_global):
     """Without global ids, messages number points as they are gathered: without these numbers."""
     made["messages"] = [(event, text if are_global else re.sub(r"\bpoint \d+", "point", text))
                         for event, text in made["messages"]]
@@ -64,7 +64,7 @@ def compare(case, are_global=False, are_marked=False, boundary_on=None, **proper
         stays = bool(kept.GetNumberOfPolys() + outward.GetNumberOfPolys()) == (part.GetNumberOfCells() > 0)
         if not case.rings:  # or is gathered
             SPREAD.append(all(gather(stays)))
-            check(is_gathered or SPREAD[-1], case.claim + ": it is told where triangles do not stay")
+            check(is_gathered or SPREAD[-1], case.claim + ": it is reported where triangles do not stay")
         else:
             check(stays, case.claim + ": a rank that has triangles keeps its own")
         used = numpy.append(triangles_of(kept), triangles_of(outward))
@@ -81,7 +81,7 @@ def compare(case, are_global=False, are_marked=False, boundary_on=None, **proper
     alone, expected = trim(mesh, boundary, True, **properties)
     check(not any(part["messages"] for part in parts[1:]), case.claim + ": other ranks are silent")
     whole = outcomes.made_by([alone], expected, None, ("numbers",))
-    found, wanted = (told(outcomes.joined(made, digits=9), are_global) for made in (parts, [whole]))
+    found, wanted = (without_point_numbers(outcomes.joined(made, digits=9), are_global) for made in (parts, [whole]))
     if expected:
         found, wanted = ({**made, "ports": []} for made in (found, wanted))
     why = outcomes.difference(found, wanted)
@@ -199,9 +199,9 @@ def torn(random, points):
     if random.random() < 0.3:
         x = low[0] + (high[0] - low[0]) * random.random()
         kept &= abs(points[:, 0] - x) > 0.1 * size
-    if random.random() < 0.3:  # a few points beside
-        beside = points[random.integers(len(points), size=random.integers(1, 9))] + [2.0 * size, 0.0, 0.0]
-        points, kept = numpy.vstack((points, beside)), numpy.append(kept, numpy.ones(len(beside), bool))
+    if random.random() < 0.3:  # a few points outside
+        outside = points[random.integers(len(points), size=random.integers(1, 9))] + [2.0 * size, 0.0, 0.0]
+        points, kept = numpy.vstack((points, outside)), numpy.append(kept, numpy.ones(len(outside), bool))
     return points[kept] if kept.sum() > 3 else points
 
 

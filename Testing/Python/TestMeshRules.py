@@ -10,7 +10,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from meshes import array_of, cells_of, cloud  # noqa: E402
-from mesh_rules import findings, in_circle, number_of_border_edges, orientation  # noqa: E402
+from mesh_rules import findings, in_circle, border_edge_count, orientation  # noqa: E402
 
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
 ALL = {"delaunay": True, "convex_hull": True, "all_points": True}
@@ -32,7 +32,7 @@ class TestMeshRules(unittest.TestCase):
 
     def test_a_square_keeps_all_rules(self):
         self.assertEqual(findings(mesh(SQUARE, [(0, 1, 2), (0, 2, 3)]), **ALL), [])
-        self.assertEqual(number_of_border_edges(mesh(SQUARE, [(0, 1, 2), (0, 2, 3)])), 4)
+        self.assertEqual(border_edge_count(mesh(SQUARE, [(0, 1, 2), (0, 2, 3)])), 4)
         self.assertEqual(findings(vtkPolyData()), [])
         parts = [mesh(SQUARE, [corners]) for corners in ((0, 1, 2), (0, 2, 3))]
         self.assertEqual(findings(*parts, **ALL), [])

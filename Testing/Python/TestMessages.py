@@ -23,9 +23,9 @@ from vtkelevationsurface import (
 )
 from vtkelevationsurface.algorithms import ReconstructElevationSurface
 from vtkelevationsurface.clouds import make_lines, make_points
-from vtkelevationsurface.messages import Message, Messages, Reason, messages_of, of_reason
+from vtkelevationsurface.messages import Message, Messages, Reason, messages_of, counted_reason
 from vtkelevationsurface.names import PANEL, PROGRAM, PYTHON, argument, option, written_for
-from vtkelevationsurface.pieces import MessagesOfSteps
+from vtkelevationsurface.pieces import StepMessages
 from vtkelevationsurface.steps import in_our_names
 from vtkelevationsurface.vtkElevationSurfacePieces import vtkReconstructPieces
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow
@@ -64,7 +64,7 @@ def triangulated(points, lines=None, **properties):
     return delaunay
 
 
-def ring_of_two_sizes():
+def two_size_ring():
     """A square with a hole, in which a grid's spacing is left."""
     points = grid(12)
     x, y = numpy.array([points.GetPoint(i)[:2] for i in range(144)]).T
@@ -135,7 +135,7 @@ class Data(unittest.TestCase):
                         self.assertTrue(error.code.startswith("Invalid"))
                         self.assertEqual((warnings, algorithm.GetOutput().GetNumberOfPoints()), ([], 0))
 
-    def test_a_lattice_with_constraints_is_told(self):
+    def test_a_lattice_with_constraints_is_reported(self):
         lattice, lines = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0), make_lines([numpy.array([[0.5, 0.5, 0], [3.5, 2.5, 0]])])
         self.assertEqual(run(triangulated(grid(5), Lattice=lattice)), ([], []))
         errors, (warning,) = run(triangulated(grid(5), lines, Lattice=lattice))
@@ -151,7 +151,7 @@ class Data(unittest.TestCase):
         self.assertEqual((fill.GetOpenEdgeLength(), fill.GetMaximumEdgeLength()), (2.5, 2.5))
 
     def test_a_hole_has_the_code_of_its_reason(self):
-        delaunay, fill = triangulated(ring_of_two_sizes()), vtkFillElevationHoles()
+        delaunay, fill = triangulated(two_size_ring()), vtkFillElevationHoles()
         fill.SetInputConnection(delaunay.GetOutputPort())
         fill.SetOpenEdgeLength(2.0)
         fill.SetMaximumNumberOfInsertedPoints(1)
@@ -177,7 +177,7 @@ class Data(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             source = vtkReconstructPieces()
             source.SetFolder(folder)
-            with MessagesOfSteps(source, source.GetExecutive()) as messages:
+            with StepMessages(source, source.GetExecutive()) as messages:
                 source.AddPoints(None)
                 source.AddPoints(make_points(numpy.array([[0.0, 0, 0], [1, 0, 0]])))
                 source.GetDelaunay().SetMaximumElevationError(1.0)
@@ -214,9 +214,9 @@ class Data(unittest.TestCase):
 
 
 class Waiting(unittest.TestCase):
-    """A rank that waits for others is no fault of the result."""
+    """A rank that waits for others is not a fault of the result."""
 
-    def test_it_is_shown_and_is_no_warning(self):
+    def test_it_is_shown_and_is_not_a_warning(self):
         waits = Message("Rank {rank} has waited.", {"rank": "1"}, "RankWaits")
         shown, messages = io.StringIO(), Messages()
         with contextlib.redirect_stderr(shown):
@@ -284,7 +284,7 @@ class Names(unittest.TestCase):
             (Reason("row", "without data"), "1 row without data", "2 rows without data"),
             (Reason("text"), "1 text", "2 texts"),
         ):
-            self.assertEqual((of_reason(1, reason), of_reason(2, reason)), (one, many))
+            self.assertEqual((counted_reason(1, reason), counted_reason(2, reason)), (one, many))
 
 
 class Sources(unittest.TestCase):

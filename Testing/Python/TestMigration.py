@@ -20,7 +20,7 @@ from migration_data import (
     CORNERS,
     XYZ,
     area,
-    area_of_ring,
+    ring_area,
     corners,
     data,
     edges,
@@ -157,7 +157,7 @@ def _(test, there, here):
 
 @checks("vtkDelaunay2D", "delaunay.SetSourceData(ring)")
 def _(test, there, here):
-    expected = area_of_ring(XYZ[CORNERS, :2])
+    expected = ring_area(XYZ[CORNERS, :2])
     test.assertAlmostEqual(area(here["result"]), expected, 6)
     test.assertTrue(expected - 1e-6 < area(there["result"]) < 1.3 * expected)
 
@@ -401,7 +401,7 @@ class Migration(unittest.TestCase):
     def run_rows(self, section, run_row):
         """Calls run_row(code there, code here, check) for each row; each has a check, each check a row."""
         rows = rows_of(section)
-        # A row is known by the code of its first cell; that of QGIS is a parameter, and words tell which.
+        # A row is known by the code of its first cell; that of QGIS is a parameter, and words say which.
         named = [cell.replace("`", "") if section == "QGIS" else there for cell, there, _ in rows]
         self.assertEqual(sorted(named), sorted(name for where, name in CHECKS if where == section))
         for name, (_, there, here) in zip(named, rows):

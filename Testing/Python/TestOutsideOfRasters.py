@@ -103,8 +103,8 @@ class TestOutsideOfRasters(unittest.TestCase):
         east = raster(os.path.join(self.folder, "east.tif"), self.z[:, 31:], place)
         cloud = merged([west, east], [read(west), read(east)])
         self.check(reconstruct(cloud))
-        beside = raster(os.path.join(self.folder, "beside.tif"), self.z[:, 31:], (PLACE[0] + 780.0, *PLACE[1:]))
-        self.assertIsNone(merged([west, beside], [read(west), read(beside)]).grid)
+        apart = raster(os.path.join(self.folder, "apart.tif"), self.z[:, 31:], (PLACE[0] + 780.0, *PLACE[1:]))
+        self.assertIsNone(merged([west, apart], [read(west), read(apart)]).grid)
         other = Cloud(make_points(numpy.eye(3)))
         self.assertIsNone(merged([west, "other"], [read(west), other]).grid)
 
@@ -113,7 +113,7 @@ class TestOutsideOfRasters(unittest.TestCase):
         covered, _ = self.pixels(reconstruct(read(path), gap_tolerance=4.5))
         self.assertTrue((covered & ~self.inside).any())
 
-    def test_a_thinned_raster_is_no_grid_with_missing_pixels(self):
+    def test_a_thinned_raster_is_not_a_grid_with_missing_pixels(self):
         random = numpy.random.default_rng(3)
         z = numpy.where(random.random(self.z.shape) < 0.1, terrain(), numpy.nan)
         cloud = read(raster(os.path.join(self.folder, "d.tif"), z))

@@ -16,7 +16,7 @@ from in_folder import InFolder
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 BENCHMARKS = os.path.join(ROOT, "Utilities", "Benchmarks")
-sys.dont_write_bytecode = True  # nothing is to be left beside the scripts
+sys.dont_write_bytecode = True  # nothing is to be left next to the scripts
 sys.path.append(BENCHMARKS)
 
 import PaperClouds  # noqa: E402
@@ -94,7 +94,7 @@ class Script(InFolder):
         self.assertEqual(self.reproduce("--from", stored), prose)
 
     def check_figures(self):
-        """The files beside the document, and whether the whole chain did what it should."""
+        """The files next to the document, and whether the whole chain did what it should."""
         folder = os.path.join(self.folder, "figures")
         with open(os.path.join(folder, "paper_times.csv"), encoding="utf-8") as stream:
             rows = list(csv.DictReader(stream))
@@ -137,9 +137,9 @@ class Script(InFolder):
 class Parts(InFolder):
     def test_clouds_have_so_many_points(self):
         for count in (150, 5000):
-            for points in (PaperClouds.made(count), PaperClouds.cut(PaperClouds.points_of("b9_ground"), count)):
+            for points in (PaperClouds.make_horizon(count), PaperClouds.cut(PaperClouds.points_of("b9_ground"), count)):
                 self.assertEqual(len(numpy.unique(points[:, :2], axis=0)), count)
-        numpy.testing.assert_array_equal(PaperClouds.made(150), PaperClouds.made(150))
+        numpy.testing.assert_array_equal(PaperClouds.make_horizon(150), PaperClouds.make_horizon(150))
 
     def test_a_window_keeps_the_middle_and_the_order(self):
         points = numpy.array([[x, y, 10.0 * x + y] for x in range(5) for y in range(5)], dtype="f8")
@@ -160,14 +160,14 @@ class Parts(InFolder):
         self.assertEqual(PaperTables.cell(codes, "vtk", "seconds"), "more than 7 s")
         self.assertEqual(PaperTables.cell(codes, "cgal", "faces"), "crashed (signal 11)")
 
-    def test_a_time_limit_ends_a_program_and_is_told(self):
+    def test_a_time_limit_ends_a_program_and_is_reported(self):
         limited = os.path.join(BENCHMARKS, "RunLimited.py")
-        told = PaperMeasures.called([limited, "1", sys.executable, "-c", "while True: pass"])
-        self.assertTrue(told["out_of_time"])
-        self.assertGreater(told["processor_seconds"], 0.5)
-        told = PaperMeasures.called([limited, "9", sys.executable, "-c", "b'x' * 200_000_000; exit(3)"])
-        self.assertEqual((told["out_of_time"], told["code"]), (False, 3))
-        self.assertGreater(told["peak_bytes"], 200_000_000)
+        figures = PaperMeasures.called([limited, "1", sys.executable, "-c", "while True: pass"])
+        self.assertTrue(figures["out_of_time"])
+        self.assertGreater(figures["processor_seconds"], 0.5)
+        figures = PaperMeasures.called([limited, "9", sys.executable, "-c", "b'x' * 200_000_000; exit(3)"])
+        self.assertEqual((figures["out_of_time"], figures["code"]), (False, 3))
+        self.assertGreater(figures["peak_bytes"], 200_000_000)
 
     def test_faces_and_used_points_of_a_ply_file(self):
         head = (
@@ -177,10 +177,10 @@ class Parts(InFolder):
         )
         faces = numpy.array([(3, (0, 1, 2)), (3, (2, 1, 4))], dtype=[("n", "u1"), ("ids", "<i4", 3)])
         path = self.file("a.ply", head.encode() + bytes(5 * 13) + faces.tobytes())
-        self.assertEqual(PaperClouds.used_points_of_ply(path), (2, 4))
+        self.assertEqual(PaperClouds.ply_used_points(path), (2, 4))
         path = self.file("b.ply", head.encode() + bytes(5 * 13) + faces.tobytes()[:-4])
         with self.assertRaises(ValueError):
-            PaperClouds.used_points_of_ply(path)
+            PaperClouds.ply_used_points(path)
 
 
 if __name__ == "__main__":

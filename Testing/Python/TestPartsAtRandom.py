@@ -120,8 +120,8 @@ def pass_known_messages(found, expected, case, mode):
     for made in (found, expected):
         for pattern in varying:
             made["messages"] = [(event, re.sub(pattern, "", text)) for event, text in made["messages"]]
-    for i, ((event, told), (_, right)) in enumerate(zip(found["messages"], expected["messages"])):
-        if "piece" in mode and WITHOUT_MORE in told and right.startswith(told):
+    for i, ((event, text), (_, right)) in enumerate(zip(found["messages"], expected["messages"])):
+        if "piece" in mode and WITHOUT_MORE in text and right.startswith(text):
             found["messages"][i] = event, right
 
 
@@ -210,7 +210,7 @@ class InPieces:
         self.begin()
 
     def begin(self):
-        self.steps = [modes.source_of_pieces(self.row, self.case, self.folder)]
+        self.steps = [modes.piece_source(self.row, self.case, self.folder)]
 
     def make(self):
         pieces = range(RANK * self.pieces, (RANK + 1) * self.pieces)
@@ -280,7 +280,7 @@ def draw_to_fail(random):
     return types.SimpleNamespace(filter=name, feature="", properties=properties), case
 
 
-def counts_of_points(part):
+def point_counts(part):
     return [len(block["points"]) for block in sum(part["ports"], [])]
 
 
@@ -300,14 +300,14 @@ def check_failure(number, seed):
     if isinstance(maker, InPieces):
         check(maker.forget(False), claim + "the folder is empty after Reset()")
     parts, _ = make_with_failure(random, maker, kind, at if RANK == culprit else 0)
-    new = [told for told in parts[0]["messages"] if told not in right["messages"]]
-    told = sum(gather(new), [])
-    if told:
+    new = [message for message in parts[0]["messages"] if message not in right["messages"]]
+    reported = sum(gather(new), [])
+    if reported:
         event = "WarningEvent" if kind == "abort" else "ErrorEvent"
-        is_right = len(told) == 1 and told[0][0] == event and is_failure(told)
-        check(is_right, "%s%s is all that is reported" % (claim, told))
+        is_right = len(reported) == 1 and reported[0][0] == event and is_failure(reported)
+        check(is_right, "%s%s is all that is reported" % (claim, reported))
         # A piece that is passed on may be there where another rank fails to pass on its own.
-        points, others = counts_of_points(parts[-1]), counts_of_points(usual[len(parts) - 1])
+        points, others = point_counts(parts[-1]), point_counts(usual[len(parts) - 1])
         is_passed = way != "memory" and RANK != culprit and points == others
         check(is_passed or not any(points), "%sthere are points: %s" % (claim, points))
     else:
@@ -319,7 +319,7 @@ def check_failure(number, seed):
     why = outcomes.difference(again, right)
     check(not why, "%sthe next surface is another: %s" % (claim, why))
     maker.end()
-    return bool(told)
+    return bool(reported)
 
 
 def main(options):

@@ -190,21 +190,21 @@ class InPieces(WithFilter):
                         one, _ = self.assert_as_one(points, count, MaximumEdgeLength=length)
                         self.assertLess(one.GetNumberOfPolys(), 1.9 * len(points))
 
-    def test_a_limit_that_leaves_most_points_out_is_told(self):
+    def test_a_limit_that_leaves_most_points_out_is_reported(self):
         points = clouds()["random"]
         whole = vtkGridDelaunay2D()
         whole.SetInputData(make_points(points))
         for length in (8.0, 0.001):
-            told = []
+            warnings = []
             source = self.source(points, MaximumEdgeLength=length)
             whole.SetMaximumEdgeLength(length)
             for filter_, update in ((source, lambda: source.UpdatePiece(0, 4, 0)), (whole, whole.Update)):
                 with Messages(filter_, filter_.GetExecutive()) as messages:
                     update()
                 self.assertEqual((messages.errors, len(messages.warnings)), ([], 1))
-                told.append(messages.warnings[0])
-            self.assertIn("are left without a triangle", told[0])
-            self.assertTrue(told[1].startswith(told[0]), told)  # with a better length
+                warnings.append(messages.warnings[0])
+            self.assertIn("are left without a triangle", warnings[0])
+            self.assertTrue(warnings[1].startswith(warnings[0]), warnings)  # with a better length
 
     def test_a_point_off_the_lattice_is_found_in_the_end(self):
         node = numpy.stack(numpy.meshgrid(numpy.arange(150.0), numpy.arange(140.0)), -1)
@@ -505,21 +505,21 @@ class Constrained(WithFilter):
             whole.SetInputData(make_points(points))
             whole.SetSourceData(lines)
             source = self.source(points, SourceData=lines)
-            told = []
+            reported = []
             for filter_, update in ((source, lambda: source.UpdatePiece(0, 4, 0)), (whole, whole.Update)):
                 with Messages(filter_, filter_.GetExecutive()) as messages:
                     update()
-                told.append((messages.errors, messages.warnings))
-            self.assertEqual(*told)
-            self.assertIn(words, sum(told[0], [])[0])
+                reported.append((messages.errors, messages.warnings))
+            self.assertEqual(*reported)
+            self.assertIn(words, sum(reported[0], [])[0])
 
     def test_progress_rises_and_a_stop_leaves_empty_output(self):
         points = clouds()["random"]
         lines = self.lines(points)
-        source, told = self.source(points, SourceData=lines), []
-        source.AddObserver("ProgressEvent", lambda *_: told.append(source.GetProgress()))
+        source, fractions = self.source(points, SourceData=lines), []
+        source.AddObserver("ProgressEvent", lambda *_: fractions.append(source.GetProgress()))
         source.UpdatePiece(0, 4, 0)
-        self.assertEqual(told, sorted(told))
+        self.assertEqual(fractions, sorted(fractions))
         for when in numpy.linspace(0.1, 0.89, 12):
             source = self.source(points, SourceData=lines)
             source.AddObserver(
@@ -598,12 +598,12 @@ class Trimmed(WithFilter):
         source = self.source(points)
         source.GetTrim().SetBoundaryData(make_lines(self.rings(points)))
         for i in range(3):
-            told = []
-            tag = source.AddObserver("ProgressEvent", lambda *_: told.append(source.GetProgress()))
+            fractions = []
+            tag = source.AddObserver("ProgressEvent", lambda *_: fractions.append(source.GetProgress()))
             source.UpdatePiece(i, 3, 0)
             source.RemoveObserver(tag)
-            self.assertEqual(told, sorted(told))
-            along = sum(0.83 < one < 0.89 for one in told)  # the work along the boundary
+            self.assertEqual(fractions, sorted(fractions))
+            along = sum(0.83 < one < 0.89 for one in fractions)  # the work along the boundary
             self.assertGreater(along, 5 if i == 0 else -1)
 
     def test_a_test_of_triangles_for_memory_can_be_put_right(self):
@@ -671,9 +671,9 @@ class Filled(WithFilter):
             source.GetTrim().SetBoundaryEdges(edges)
         for name, value in properties.items():
             getattr(source.GetFill(), "Set" + name)(value)
-        with Messages(source, source.GetExecutive()) as told:
+        with Messages(source, source.GetExecutive()) as messages:
             parts = self.parts(source, count)
-        self.assertEqual((told.errors, len(told.warnings)), ([], warnings))
+        self.assertEqual((messages.errors, len(messages.warnings)), ([], warnings))
         return source, parts
 
     def assert_filled_as_one(self, points, rings, count, limit=0.0, edges=0, **properties):
@@ -688,10 +688,10 @@ class Filled(WithFilter):
         one.FillCutOutsOn()
         for name, value in properties.items():
             getattr(one, "Set" + name)(value)
-        with Messages(one, one.GetExecutive()) as told:
+        with Messages(one, one.GetExecutive()) as messages:
             one.Update()
         source, parts = self.source_of(
-            points, rings, count, len(told.warnings), limit, edges, **properties)
+            points, rings, count, len(messages.warnings), limit, edges, **properties)
         found = sorted_rows(numpy.concatenate([by_places(part) for part in parts]))
         numpy.testing.assert_array_equal(found, by_places(one.GetOutput()))
         self.assertEqual(source.GetNumberOfFilledTriangles(), len(found))
@@ -882,13 +882,13 @@ def point_rows(parts):
 
 
 def hole_rows(rims):
-    """What is told of each hole, but its number, which follows the order of triangles."""
+    """The report on each hole, but its number, which follows the order of triangles."""
     cells = rims.GetCellData()
     names = ("Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints", "Interpolation")
     return list(zip(*(vtk_to_numpy(cells.GetArray(name)).tolist() for name in names)))
 
 
-def points_of_slices(path, cloud, **options):
+def slice_points(path, cloud, **options):
     taken = []
     read_files([path], cloud, taken.append, **options)
     return numpy.concatenate(taken)
@@ -899,7 +899,7 @@ class Slices(InFolder):
 
     def assert_as_whole(self, path, **options):
         whole, cloud = reading.read(path, **options), Cloud(None)
-        found = points_of_slices(path, cloud, **options)
+        found = slice_points(path, cloud, **options)
         expected = vtk_to_numpy(whole.points.GetPoints().GetData())
         numpy.testing.assert_array_equal(found, expected)
         self.assertEqual(cloud.left_out, whole.left_out)
@@ -916,14 +916,14 @@ class Slices(InFolder):
             self.assert_as_whole(path, no_data=5.0, depth=True)
             self.assert_as_whole(path, columns=("1", "2", "4"))
             self.assert_as_whole(path, where={"depth": list(range(100, 4000, 7))})
-            with self.assertRaisesRegex(FileError, "no column name beside x, y and z; columns: D"):
-                points_of_slices(path, Cloud(None), where="name=a")
+            with self.assertRaisesRegex(FileError, "no column name besides x, y and z; columns: D"):
+                slice_points(path, Cloud(None), where="name=a")
         rows = [f"{i % 70},{i // 70},{i % 11},{'abc'[i % 3]}" for i in range(5000)]
         path = self.file("words.csv", "\n".join(["X,Y,Z,name", *rows]))
         with mock.patch.object(text, "BLOCK", 3000):
             self.assert_as_whole(path, where="name=b")
             with self.assertRaisesRegex(FileError, r"name = d; values: a \(1,667\), b \(1,667"):
-                points_of_slices(path, Cloud(None), where="name=d")
+                slice_points(path, Cloud(None), where="name=d")
         packed = self.path("b.csv.gz")
         with gzip.open(packed, "wb") as stream:
             stream.write(b"1 2 3\n4 5 6\n7 7 7\n")
@@ -962,15 +962,15 @@ class Slices(InFolder):
             self.assert_as_whole(path, classes=(1, 2))
             self.assert_as_whole(path, where={"Classification": [0, 2]})
             with self.assertRaisesRegex(FileError, "holds no point of class 9"):
-                points_of_slices(path, Cloud(None), classes=(9,))
+                slice_points(path, Cloud(None), classes=(9,))
 
     def test_null_values_are_an_error_that_names_the_options(self):
         rows = "".join(f"{i % 40} {i // 40} {-9999 if i == 700 else i % 7}\n" for i in range(1000))
         path = self.file("a.xyz", rows)
         with self.assertRaisesRegex(FileError, "z = -9999, far from .*--no-data -9999.*--keep"):
-            points_of_slices(path, Cloud(None))
+            slice_points(path, Cloud(None))
         self.assert_as_whole(path, no_data=-9999.0)
-        found = points_of_slices(path, Cloud(None), keep_nulls=True)
+        found = slice_points(path, Cloud(None), keep_nulls=True)
         self.assertEqual(len(found), 1000)
 
     def test_nulls_that_fill_a_slice_are_found(self):
@@ -982,7 +982,7 @@ class Slices(InFolder):
             numpy.save(path, numbers)
             with mock.patch("vtkelevationsurface.clouds.AT_ONCE", 250):
                 with self.assertRaisesRegex(FileError, "z = -9999"):
-                    points_of_slices(path, Cloud(None))
+                    slice_points(path, Cloud(None))
 
 
 class Command(Program):
@@ -1057,17 +1057,17 @@ class Command(Program):
         places = points[:, :2] - (400600.0, 400500.0)
         name = self.npy("a.npy", points[~(numpy.hypot(*places.T) < 150.0)])
         for ways in (("--no-fill",), ("--open-edge-length", "0"), ("--no-fill", "--gap-tolerance", "3")):
-            told = []
+            reported = []
             for way in (("--no-picture",), ("--pieces", "4")):
                 done = self.call(name, *ways, *way, "--report")
                 self.assertEqual((done.returncode, done.stderr), (0, ""))
                 report = self.json("a_surface.json")
-                told.append([line for line in done.stdout.splitlines()
+                reported.append([line for line in done.stdout.splitlines()
                              if not re.match("  (time|distance|written)|  +in 4 pieces", line)])
-                told.append({key: report[key] for key in ("unused_reasons", "unused", "triangles", "trim", "bounds")})
-            self.assertEqual(told[:2], told[2:])
-            self.assertEqual(told[1]["trim"]["boundary"], "found from the points")
-            self.assertGreater(told[1]["trim"]["outward_triangles"], 20)
+                reported.append({key: report[key] for key in ("unused_reasons", "unused", "triangles", "trim", "bounds")})
+            self.assertEqual(reported[:2], reported[2:])
+            self.assertEqual(reported[1]["trim"]["boundary"], "found from the points")
+            self.assertGreater(reported[1]["trim"]["outward_triangles"], 20)
             reader = vtkXMLPolyDataReader()
             reader.SetFileName(self.path("a_surface.vtp"))
             reader.Update()
@@ -1076,7 +1076,7 @@ class Command(Program):
                 by_places(reader.GetOutput()),
             )
 
-    def test_faults_are_edges_and_told_as_by_one_run(self):
+    def test_faults_are_edges_and_reported_as_by_one_run(self):
         points = clouds()["random"]
         points[:, 2] += 100.0
         name = self.npy("a.npy", points)
@@ -1149,13 +1149,13 @@ class Command(Program):
             for way in (("--no-picture",), ("--pieces", "4")):
                 done = self.call(name, *options, *way)
                 self.assertEqual((done.returncode, done.stderr), (0, ""))
-                told = [line.split("  ", 2)[2] for line in done.stdout.splitlines() if "void" in line or "bridge" in line]
+                bridged = [line.split("  ", 2)[2] for line in done.stdout.splitlines() if "void" in line or "bridge" in line]
                 report = self.json("a_surface.json")
                 for hole in report["holes"]["list"]:
                     del hole["hole"]  # in the order of triangles
                 report["holes"]["list"].sort(key=lambda hole: hole["centre"])
                 found.append({key: report[key] for key in ("unused_reasons", "triangles", "bounds", "holes")})
-                found[-1]["told"] = [re.sub("void .*", "", line) for line in told]
+                found[-1]["bridged"] = [re.sub("void .*", "", line) for line in bridged]
             reader = vtkXMLPolyDataReader()
             reader.SetFileName(self.path("a_surface.vtp"))
             reader.Update()
@@ -1191,7 +1191,7 @@ class Command(Program):
             self.assertEqual(*said)
             self.assertRegex("\n".join([done.stderr, *lines]), words)
 
-    def test_holes_that_fail_are_told_as_by_one_run(self):
+    def test_holes_that_fail_are_reported_as_by_one_run(self):
         name = self.cloud_with_lakes(2)
         options = (
             "--boundary", "lakes.txt", "--fill-cut-outs", "--spacing", "0.001",
@@ -1202,24 +1202,24 @@ class Command(Program):
         self.assertEqual(*refused)
         # With as many as may be inserted, holes fail one by one.
         options += ("--maximum-expected-points", "100000000")
-        told = []
+        reported = []
         for way in ("--no-picture", "--pieces=4"):
             done = self.call(name, *options, way, "--report")
             self.assertEqual((done.returncode, done.stderr), (0, ""))
             report = self.json("a_surface.json")
-            told.append(sorted(re.sub("Hole [01]", "Hole", note) for note in report["notes"]))
-            told.append(report["holes"]["open_edge_length_is"])
+            reported.append(sorted(re.sub("Hole [01]", "Hole", note) for note in report["notes"]))
+            reported.append(report["holes"]["open_edge_length_is"])
             strict = self.call(name, *options, way, "--strict")
             self.assertEqual((strict.returncode, len(strict.stderr.splitlines())), (1, 1))
             self.assertIn("a.npy: filling holes: Hole 0 (", strict.stderr)
-        self.assertEqual(told[:2], told[2:])
-        self.assertEqual(len(told[0]), 3)  # two holes that fail, and places with several heights
+        self.assertEqual(reported[:2], reported[2:])
+        self.assertEqual(len(reported[0]), 3)  # two holes that fail, and places with several heights
         said = []
         for way in ("--no-picture", "--pieces=4"):
             done = self.call(name, "--boundary", "lakes.txt", "--fill-cut-outs", "--spacing", "1e-10", way)
             said.append((done.returncode, done.stderr))
         self.assertEqual(*said)
-        self.assertIn("--spacing: 1e-10 is less than x and y of the points can tell apart", said[0][1])
+        self.assertIn("--spacing: 1e-10 is too small: x and y of the points are in steps of", said[0][1])
 
     def test_a_hole_may_not_take_more_than_the_memory(self):
         name = self.cloud_with_lakes(2)
@@ -1233,7 +1233,7 @@ class Command(Program):
         self.assertTrue(found, done.stderr)
         self.assertGreater(float(found.group(1)), 0.2)
 
-    def test_points_in_no_triangle_below_the_limit_are_told(self):
+    def test_points_in_no_triangle_below_the_limit_are_reported(self):
         points = clouds()["random"]
         name = self.npy("a.npy", points)
         ring = star((400500.0, 400500.0), 380.0)
@@ -1274,7 +1274,7 @@ class Command(Program):
             self.file("c/c_note.vtp", "not a piece")
         self.assertEqual(sorted(os.listdir(self.path("c"))), ["c_0.vtp", "c_1.vtp", "c_note.vtp"])
 
-    def test_memory_tells_the_number_of_pieces(self):
+    def test_memory_sets_the_number_of_pieces(self):
         self.assertEqual(pieces.memory_size("1.5g"), 1.5e9)
         self.assertEqual(pieces.memory_size("800MB"), 8e8)
         self.assertEqual(pieces.memory_size("2GiB"), 2e9)
@@ -1289,7 +1289,7 @@ class Command(Program):
             self.assertEqual(done.returncode, 2)
             self.assertIn(words, done.stderr)
 
-    def test_what_does_not_go_with_pieces_is_told_before_any_work(self):
+    def test_what_does_not_go_with_pieces_is_refused_before_any_work(self):
         name = self.npy("a.npy", clouds()["few"])
         self.file("b.stl", "solid a\n facet normal 0 0 1\n")
         self.file("taken", "a file")

@@ -50,14 +50,14 @@ def note(points):
 
 
 class Walls(unittest.TestCase):
-    def test_a_note_tells_of_walls(self):
+    def test_a_note_names_walls(self):
         for degrees in (65, 75, 90):
             self.assertIn(f"{degrees} degrees", note(make_points(tilted(relief(), degrees))))
         upright = tilted(relief(), 90, 0.0)
         upright[:, 1] = 5.0  # which has no triangle
         self.assertIn("90 degrees", note(make_points(upright)))
 
-    def test_none_tells_of_terrain(self):
+    def test_no_note_names_terrain(self):
         lines = numpy.array([(x, y, 3 * numpy.sin(x / 50)) for y in range(0, 900, 300) for x in range(900)])
         along = numpy.arange(1000.0)
         cases = {
@@ -171,10 +171,10 @@ class BestPlane(unittest.TestCase):
                     main([path, "--plane", "best", *more])
             out = os.path.join(folder, "wall.vtp")
             main([path, "--plane", "best", "-o", out, "--no-picture"])
-            self.assertGreater(area_of_file(out), 7000.0)
+            self.assertGreater(file_area(out), 7000.0)
 
 
-def area_of_file(path):
+def file_area(path):
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
     reader = vtkXMLPolyDataReader()

@@ -51,7 +51,7 @@ VARY = ("times", "written", "command", "options")  # what two runs differ in
 
 
 def cloud(count):
-    """Rows of x, y, z and a value, with a hole, duplicates, a comment and what is no point."""
+    """Rows of x, y, z and a value, with a hole, duplicates, a comment and what is not a point."""
     numbers = numpy.random.RandomState(3)
     rows = numbers.rand(count, 4) * (100, 80, 5, 9)
     rows = numpy.vstack((rows, rows[:50] + (0, 0, 1, 1)))
@@ -79,7 +79,7 @@ def arrays(data):
 
 
 def plain(output):
-    """The lines without those of libraries of MPI, which tell of their surroundings in brackets."""
+    """The lines without those of libraries of MPI, which report on their surroundings in brackets."""
     return [line for line in output.splitlines() if not line.startswith("[")]
 
 
@@ -90,7 +90,7 @@ class OnRanks(Program):
             return self.call(*arguments)
         return self.execute(*MPIRUN, str(ranks), *self.PROGRAM, *arguments)
 
-    def told(self, ranks, arguments):
+    def report_of(self, ranks, arguments):
         """(the report's lines, the JSON)"""
         done = self.on(ranks, *arguments, "--report", "s.json")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -107,14 +107,14 @@ class OnRanks(Program):
 
     def results(self, ranks, arguments):
         """(the report's lines, the JSON, the surface)"""
-        told = self.told(ranks, [*arguments, "--no-picture", "-o", "s.vtp"])
+        lines_and_report = self.report_of(ranks, [*arguments, "--no-picture", "-o", "s.vtp"])
         surface = vtk_files.run_vtk_reader(self.path("s.vtp"))
         os.remove(self.path("s.vtp"))
-        return (*told, surface)
+        return (*lines_and_report, surface)
 
     def in_pieces(self, ranks, arguments):
         """(the report's lines, the JSON, the names of pieces, their triangles by places and by ids)"""
-        told = self.told(ranks, [*arguments, "--pieces", "6", "-o", "s.vtpd"])
+        lines_and_report = self.report_of(ranks, [*arguments, "--pieces", "6", "-o", "s.vtpd"])
         with open(self.path("s.vtpd"), encoding="utf-8") as stream:
             names = re.findall('file="(.*?)"', stream.read())
         parts = [vtk_files.run_vtk_reader(self.path(name)) for name in names]
@@ -123,32 +123,32 @@ class OnRanks(Program):
             os.remove(self.path(name))
         by_ids = [vtk_to_numpy(part.GetPointData().GetGlobalIds())[triangles_of(part)] for part in parts]
         by_place = sorted_rows(numpy.concatenate([triangles(part) for part in parts]))
-        return (*told, names, by_place, sorted_triangles(numpy.concatenate(by_ids)))
+        return (*lines_and_report, names, by_place, sorted_triangles(numpy.concatenate(by_ids)))
 
     def check_pieces(self, *arguments):
         """Returns the report."""
         *words, places, ids = self.in_pieces(0, arguments)
-        *words_of_ranks, places_of_ranks, ids_of_ranks = self.in_pieces(3, arguments)
-        self.assertEqual(words_of_ranks, words)
-        numpy.testing.assert_array_equal(places_of_ranks, places)
-        numpy.testing.assert_array_equal(ids_of_ranks, ids)
+        *rank_words, rank_places, rank_ids = self.in_pieces(3, arguments)
+        self.assertEqual(rank_words, words)
+        numpy.testing.assert_array_equal(rank_places, places)
+        numpy.testing.assert_array_equal(rank_ids, ids)
         return words[1]
 
     def check_same(self, ranks, *arguments):
         lines, report, surface = self.results(0, arguments)
-        lines_of_ranks, report_of_ranks, of_ranks = self.results(ranks, arguments)
-        self.assertEqual(lines_of_ranks, lines)
-        self.assertEqual(report_of_ranks, report)
-        numpy.testing.assert_array_equal(triangles(of_ranks), triangles(surface))
-        self.assertEqual(of_ranks.GetPoints().GetDataType(), surface.GetPoints().GetDataType())
+        rank_lines, rank_report, rank_surface = self.results(ranks, arguments)
+        self.assertEqual(rank_lines, lines)
+        self.assertEqual(rank_report, report)
+        numpy.testing.assert_array_equal(triangles(rank_surface), triangles(surface))
+        self.assertEqual(rank_surface.GetPoints().GetDataType(), surface.GetPoints().GetDataType())
         for name in ("GetPointData", "GetCellData", "GetFieldData"):
-            mine, expected = (arrays(getattr(data, name)()) for data in (of_ranks, surface))
+            mine, expected = (arrays(getattr(data, name)()) for data in (rank_surface, surface))
             mine.pop("HoleId", None), expected.pop("HoleId", None)
             self.assertEqual(mine.keys(), expected.keys(), name)
             for array, values in expected.items():
                 numpy.testing.assert_array_equal(mine[array], values, array)
         first = report["points"]  # the input's points come first, in their order
-        mine, expected = (vtk_to_numpy(d.GetPoints().GetData())[:first] for d in (of_ranks, surface))
+        mine, expected = (vtk_to_numpy(d.GetPoints().GetData())[:first] for d in (rank_surface, surface))
         numpy.testing.assert_array_equal(mine, expected)
 
     def test_a_table_with_duplicates_and_nulls(self):
@@ -170,13 +170,13 @@ class OnRanks(Program):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(sorted(os.listdir(self.folder)),
                          ["h.csv", "h_Base_surface.vtp", "h_Top_a_surface.vtp"])
-        for arguments, code, told in (
+        for arguments, code, expected in (
             (("--each-value", "horizon"), 1, "there is no column horizon"),
             (("--each-value", "y", "--report", "a.json"), 2, "--each-value names the results"),
         ):
             done = self.on(3, "h.csv", "--no-picture", *arguments)
             self.assertEqual(done.returncode, code, done.stderr)
-            self.assertIn(told, done.stderr)
+            self.assertIn(expected, done.stderr)
 
     def test_a_grid_with_missing_nodes(self):
         self.file("a.txt", grid())
@@ -288,7 +288,7 @@ class OnRanks(Program):
         made = sorted(set(os.listdir(self.folder)) - {"a.txt", "b.txt"})
         self.assertEqual(made, ["a_surface.png", "a_surface.vtp", "b_surface.png", "b_surface.vtp"])
 
-    def test_errors_are_told_once_and_leave_nothing(self):
+    def test_errors_are_reported_once_and_leave_nothing(self):
         self.file("a.txt", cloud(1200))
         self.file("two.txt", "1 2 3\n4 5 6\n")
         for arguments in (

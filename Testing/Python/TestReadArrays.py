@@ -35,7 +35,7 @@ class Arrays(InFolder):
         ):
             cloud = self.read(content, name)
             self.assert_rows(cloud, numbers)
-            self.assertTrue(any("tells no x and y" in note for note in cloud.notes), cloud.notes)
+            self.assertTrue(any("it has no x and y" in note for note in cloud.notes), cloud.notes)
 
     def test_columns_by_name_are_points(self):
         x, y, z = NODES.T

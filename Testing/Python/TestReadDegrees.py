@@ -51,14 +51,14 @@ class Degrees(Program):
         ("b.grd", "GSAG", None, "look like degrees"), ("c.grd", "GMT", None, "look like degrees"),
     )
 
-    def test_degrees_are_told_of_every_kind_and_become_metres(self):
+    def test_degrees_are_noted_for_every_kind_and_become_metres(self):
         for name, driver, epsg, words in self.FORMATS:
             with self.subTest(name=name):
                 if not gdal.GetDriverByName(driver):
                     continue
                 path = raster(self.path(name), driver, epsg=epsg)
-                told = [note for note in read(path).notes if words in note]
-                self.assertEqual(len(told), 1, read(path).notes)
+                notes = [note for note in read(path).notes if words in note]
+                self.assertEqual(len(notes), 1, read(path).notes)
                 cloud = read(path, project=True)
                 self.assertFalse([note for note in cloud.notes if words in note])
                 self.assertTrue([note for note in cloud.notes if "WGS 84 / UTM zone 32N (EPSG:32632)" in note])
@@ -66,7 +66,7 @@ class Degrees(Program):
                 place = expected(9 + 0.5 * STEP, 47 - 0.5 * STEP)
                 numpy.testing.assert_allclose(coordinates(cloud)[0, :2], place, rtol=0, atol=0.01)
 
-    def test_axes_of_netcdf_in_degrees_are_told_without_a_system(self):
+    def test_netcdf_axes_in_degrees_are_noted_without_a_system(self):
         data = gdal.GetDriverByName("netCDF").CreateMultiDimensional(self.path("a.nc"))
         group, double = data.GetRootGroup(), gdal.ExtendedDataType.Create(gdal.GDT_Float64)
         axes = [group.CreateDimension(name, None, None, count) for name, count in (("lat", 12), ("lon", 15))]
@@ -95,7 +95,7 @@ class Degrees(Program):
         ):
             notes = read(raster(self.path(name), driver, place)).notes
             self.assertFalse([note for note in notes if "degrees" in note], notes)
-        with self.assertRaisesRegex(FileError, "is no longitude and latitude"):
+        with self.assertRaisesRegex(FileError, "is not longitude and latitude"):
             read(self.path("b.asc"), project=True)
         path = raster(self.path("c.tif"), "GTiff", (500000.0, 30.0, 0.0, 5e6, 0.0, -30.0), 25832)
         with self.assertRaisesRegex(FileError, "UTM zone 32N.*leave out --project"):
@@ -110,7 +110,7 @@ class Degrees(Program):
                 stream.write(text)
             self.assertEqual(read(self.path("a.csv"), project=True).crs, code)
 
-    def test_both_sides_of_the_antimeridian_are_beside_each_other(self):
+    def test_both_sides_of_the_antimeridian_are_next_to_each_other(self):
         text = "longitude,latitude,z\n" + "".join(
             f"{(180 + 0.001 * i + 180) % 360 - 180:.7f},{0.001 * j:.7f},{i}\n" for i in range(-3, 4) for j in range(5)
         )

@@ -16,7 +16,7 @@ TABLE = "readings.txt"
 HAS_GDAL = importlib.util.find_spec("osgeo") is not None
 
 
-def rows_of_table():
+def table_rows():
     """[(file, {option: value}, points, first, last, words)]"""
     with open(os.path.join(FOLDER, TABLE), encoding="utf-8") as stream:
         lines = [line.rstrip("\n") for line in stream if not line.startswith("#")]
@@ -42,18 +42,18 @@ def outcome(name, options):
 
 class Files(unittest.TestCase):
     def test_each_is_read_as_the_table_says(self):
-        for name, options, *expected, words in rows_of_table():
+        for name, options, *expected, words in table_rows():
             with self.subTest(name=name, options=options):
-                *found, told = outcome(name, options)
-                if not HAS_GDAL and "install python3-gdal" in told:
+                *found, text = outcome(name, options)
+                if not HAS_GDAL and "install python3-gdal" in text:
                     continue
-                self.assertEqual(found, expected, told)
+                self.assertEqual(found, expected, text)
                 for word in words:
-                    self.assertIn(word, told)
+                    self.assertIn(word, text)
 
     def test_the_table_has_each_file_and_these_are_small(self):
         files = sorted(set(os.listdir(FOLDER)) - {TABLE})
-        self.assertEqual(sorted({name for name, *_ in rows_of_table()}), files)
+        self.assertEqual(sorted({name for name, *_ in table_rows()}), files)
         for name in files:
             self.assertLess(os.path.getsize(os.path.join(FOLDER, name)), 10_000, name)
 

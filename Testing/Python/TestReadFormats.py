@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""IESX, LandXML, PCD, ADCIRC's meshes and binary IRAP grids: points where the files say, damage told."""
+"""IESX, LandXML, PCD, ADCIRC's meshes and binary IRAP grids: points where the files say, damage reported."""
 
 import struct
 import sys
@@ -139,7 +139,7 @@ class Formats(InFolder):
             ("a.pcd", pcd("zipped"), "DATA zipped"),
             ("a.pcd", pcd("ascii").replace(b"SIZE 8 8 8 4\n", b""), "within its header"),
             ("a.pcd", pcd("ascii").replace(b"FIELDS x y z", b"FIELDS x y h"), "not x, y and z"),
-            ("a.14", MESH[:60], "is no row of 4 numbers, or is cut off"), ("a.14", MESH[:71], "2 elements are announced"),
+            ("a.14", MESH[:60], "is not a row of 4 numbers, or is cut off"), ("a.14", MESH[:71], "2 elements are announced"),
             ("a.14", MESH.replace("1 3 1 2 3", "1 3 1 2 9"), "has the node 9"),
             ("a.14", MESH.replace("3 10.0 10.0", "3 ten 10.0"), "line"),
         )

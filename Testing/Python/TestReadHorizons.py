@@ -12,7 +12,7 @@ from in_folder import InFolder, coordinates
 from vtkelevationsurface import reading
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-# Nodes at x = 1000.5, 1010.5, 1020.5 and y = 200.25, 205.25; z tells x and y; one is missing.
+# Nodes at x = 1000.5, 1010.5, 1020.5 and y = 200.25, 205.25; z encodes x and y; one is missing.
 NODES = [(1000.5 + 10 * i, 200.25 + 5 * j, 100.0 * j + i) for j in range(2) for i in range(3)]
 KNOWN = [node for node in NODES if node[2] != 101.0]
 IRAP = "-996 2 10.0 5.0\n1000.5 1020.5 200.25 205.25\n3 0.0 1000.5 200.25\n0 0 0 0 0 0 0\n"
@@ -142,7 +142,7 @@ class Horizons(InFolder):
 
     def test_whole_numbers_of_a_zmap_file_are_as_they_stand(self):
         cloud = self.read(ZMAP, "a.zmap")
-        self.assertTrue(any("tells 7 decimals: they are read as they stand" in note for note in cloud.notes))
+        self.assertTrue(any("says 7 decimals: they are read as they stand" in note for note in cloud.notes))
         self.assertEqual(cloud.points.GetPoint(0), (1000.5, 205.25, 100.0))
         decimals = self.read(ZMAP.replace("      100", "    100.5"), "a.zmap")
         self.assertFalse(any("as they stand" in note for note in decimals.notes))
@@ -162,7 +162,7 @@ class Horizons(InFolder):
         expected = [(1000.5 + c * x - s * y, 200.25 + s * x + c * y, z) for x, y, z in away]
         numpy.testing.assert_allclose(points, expected, rtol=1e-14)
 
-    def test_columns_beside_coordinates_become_point_arrays(self):
+    def test_columns_besides_coordinates_become_point_arrays(self):
         for content, name, values in (
             (EARTHVISION, "column", [1, 2, 3, 1, 3]),
             (PETREL, "Amplitude", [2 * z for _, _, z in KNOWN]),
@@ -215,20 +215,20 @@ class Horizons(InFolder):
             ("6 values are announced, 4 found", IRAP.rsplit("9999900", 1)[0]),
             ("6 values are announced, 1 found", IRAP.replace("0 1 2 100", "0 x 2 100")),
             ("6 values are announced, 7 found", IRAP + "5\n"),
-            ("is no IRAP classic grid: 3 x -2", IRAP.replace("-996 2", "-996 -2")),
+            ("is not a valid IRAP classic grid: 3 x -2", IRAP.replace("-996 2", "-996 -2")),
             ("its FSLIMI, FSNROW or FSXINC", CPS3.replace("FSNROW 2 3\n", "")),
             ("its FSLIMI, FSNROW or FSXINC", CPS3[:60]),
             ("6 values are announced, 5 found", CPS3[:-2]),
             ("6 values are announced, 2 found", CPS3.replace("0.1E+31 1 102", "spoil 1 102")),
             ("6 values are announced, 5 found", ZMAP[:-3]),
-            ("does not tell rows, columns and limits", ZMAP.replace("2, 3, 1000.5", "2, 1000.5")),
+            ("does not give rows, columns and limits", ZMAP.replace("2, 3, 1000.5", "2, 1000.5")),
             ("cut off within its header", ZMAP_POINTS[:80]),
             ("6 values are announced, 5 found", GXF[:-4]),
-            ("tell POINTS, ROWS, XORIGIN", GXF.replace("#ROWS\n2\n", "")),
+            ("give POINTS, ROWS, XORIGIN", GXF.replace("#ROWS\n2\n", "")),
             ("SENSE is 4, which is not read: gdal_translate", GXF.replace("#DUMMY", "#SENSE\n4\n#DUMMY")),
             ("packed, which is not read: gdal_translate", GXF.replace("#DUMMY", "#GTYPE\n3\n#DUMMY")),
             ("does not name x, y and z", EARTHVISION.replace("3 z meters", "3 code")),
-            (", line 11: is no row of x, y, z", EARTHVISION.replace("1010.5", "spoil", 1)),
+            (", line 11: is not a row of x, y, z", EARTHVISION.replace("1010.5", "spoil", 1)),
             ("its END HEADER is missing", PETREL[: PETREL.index("END HEADER")]),
             ("does not name x, y and z, but X, Y", PETREL.replace("\nZ\n", "\n")),
             ("holds no points", PETREL[: PETREL.index("END HEADER") + 11]),
@@ -237,8 +237,8 @@ class Horizons(InFolder):
             ("line 17: 'TRGL 1 2 9' is damaged", SURFACE.replace("TRGL 1 2 3", "TRGL 1 2 9")),
             ("line 16: 'ATOM 4 7' is damaged", SURFACE.replace("ATOM 4 1", "ATOM 4 7")),
             ("holds a Voxet; TSurf, VSet", "GOCAD Voxet 1\nAXIS_O 0 0 0\nEND\n"),
-            (", line 5: is no point of a line", GMT.replace("5 5", "5 five", 1)),
-            ("is no point of a line", CPS3_LINES.replace("8 8 4", "8")),
+            (", line 5: is not a point of a line", GMT.replace("5 5", "5 five", 1)),
+            ("is not a point of a line", CPS3_LINES.replace("8 8 4", "8")),
             ("cannot be read", array[:-8]),
             ("cannot be read", array[:20]),
             ("holds 3 of float64; rows of x, y and z", npy(numpy.zeros(3))),

@@ -70,7 +70,7 @@ OUT = (
     ("99999", terrain(), 99999.0, 40),
     ("9999", terrain(), 9999.0, 40),
     ("9999900", terrain(), 9999900.0, 5),
-    ("-9999 beside a flat sheet", terrain(low=12.0, high=12.0), -9999.0, 5),
+    ("-9999 with a flat sheet", terrain(low=12.0, high=12.0), -9999.0, 5),
 )
 STAY = (
     ("a trench that holds -9999", TRENCH, -9999.0, 5),
@@ -238,7 +238,7 @@ class Blunders(unittest.TestCase):
         self.assertEqual(note.count("point"), 5)
         self.assertTrue(note.endswith(", ..."))
 
-    def test_points_that_are_no_places_are_named_and_measured(self):
+    def test_points_that_are_not_places_are_named_and_measured(self):
         for axis in range(3):
             rows = terrain(500)
             rows[77, axis] = 1e300
@@ -253,7 +253,7 @@ class Blunders(unittest.TestCase):
                 self.assertTrue(numpy.isfinite(value), distance)
             self.assertEqual(distance["maximum"] > 9e299, axis < 2)
 
-    def test_cliffs_slopes_noise_and_rims_are_no_blunders(self):
+    def test_cliffs_slopes_noise_and_rims_are_not_blunders(self):
         generator = numpy.random.default_rng(4)
         smooth = terrain(5000)
         cliff = smooth.copy()

@@ -115,7 +115,7 @@ class Archives(InFolder):
                     files[os.path.relpath(path, self.folder)] = stream.read()
         return files
 
-    def test_a_zipped_file_is_read_with_what_lies_beside_it(self):
+    def test_a_zipped_file_is_read_with_what_lies_next_to_it(self):
         self.assert_rows(self.read(zipped(**{"a/b.xyz": self.TEXT, "readme.txt": "hello"}), "a.zip"), self.ROWS)
         self.assert_rows(self.read(zipped(**{"b.txt": self.TEXT}), "a.zip"), self.ROWS)
         shape = self.vector("points.shp", "ESRI Shapefile")
@@ -138,7 +138,7 @@ class Archives(InFolder):
         with self.assertRaisesRegex(FileError, "is a folder, not a file"):
             reading.read(self.folder)
 
-    def test_what_cannot_be_decided_is_asked_and_damage_is_told(self):
+    def test_what_cannot_be_decided_is_asked_and_damage_is_reported(self):
         self.assert_refused(("holds a.xyz, b.xyz: unzip ", "a.zip -d unpacked, and read unpacked/a.xyz unpacked/b.xyz"),
                             zipped(**{"a.xyz": self.TEXT, "b.xyz": self.TEXT}), "a.zip")
         self.assert_refused("holds nothing", zipped(), "a.zip")
@@ -170,8 +170,8 @@ class Foreign(InFolder):
             ("holds a Collection", "a.pvd", '<VTKFile type="Collection"><Collection/></VTKFile>'),
             ("is not a text file", "a.xyz", bytes(1000)),
             ("GDAL knows no vector format", "a.json", '{"a": [1, 2, 3]}'),
-            ("is its .hdr beside it?", "a.flt", bytes(range(64))),
-            ("its name must tell its place", "a.hgt", b"\1\0" * 1201),
+            ("is its .hdr next to it?", "a.flt", bytes(range(64))),
+            ("its name must give its place", "a.hgt", b"\1\0" * 1201),
             ("cannot be read", "a.png", b"\x89PNG\r\n\x1a\n" + bytes(30)),
         ):
             with self.subTest(name=name, words=words):
@@ -219,15 +219,15 @@ class Foreign(InFolder):
                 notes = [n for n in self.read(content, name).notes if "by its content" in n]
                 self.assertEqual(notes, [f"by its content {note}"] if note else [])
 
-    def test_a_mesh_with_its_height_in_y_is_told(self):
-        for order, told in (("xyz", False), ("xzy", True)):
+    def test_a_mesh_with_its_height_in_y_is_noted(self):
+        for order, is_noted in (("xyz", False), ("xzy", True)):
             lines = [
                 "v {} {} {}".format(*({"x": 3 * i, "y": 2 * j, "z": 0.3 * (i % 3)}[a] for a in order))
                 for i in range(8) for j in range(8)
             ]
             with self.subTest(order=order):
                 cloud = self.read(("\n".join(lines) + "\n").encode(), "a.obj")
-                self.assertEqual("if y is the height" in " ".join(cloud.notes), told)
+                self.assertEqual("if y is the height" in " ".join(cloud.notes), is_noted)
 
 
 if __name__ == "__main__":

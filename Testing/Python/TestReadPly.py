@@ -119,7 +119,7 @@ class Ply(InFolder):
                 content = head + b"end_header\n" + body + coordinates
                 self.assert_rows(self.read(content, "a.ply"), MAP)
 
-    def test_a_cut_in_what_follows_the_vertices_is_told(self):
+    def test_a_cut_in_what_follows_the_vertices_is_noted(self):
         faces = ("face", "list uchar int vertex_indices", [[0, 1, 2], [1, 2, 3]] * 20)
         for coding in CODINGS:
             with self.subTest(coding=coding):
@@ -129,7 +129,7 @@ class Ply(InFolder):
                 self.assert_rows(cloud, MAP)
                 self.assertTrue(any("cut off behind its vertices" in note for note in cloud.notes))
 
-    def test_floats_too_coarse_for_map_coordinates_are_told(self):
+    def test_floats_too_coarse_for_map_coordinates_are_noted(self):
         rows = [(612014.5 + i % 10, 6073983.5 + i // 10, 0.0) for i in range(100)]
         notes = self.read(ply("ascii", ("vertex", xyz("float"), rows)), "a.ply").notes
         self.assertTrue(any("single precision" in note for note in notes))
@@ -154,8 +154,8 @@ class Ply(InFolder):
             ("holds no points", text.replace("vertex 4", "vertex 0")),
             ("4 vertices are announced, 2 found", "\n".join(text.split("\n")[:10]) + "\n"),
             ("999,999,999,999 vertices are", text.replace("vertex 4", "vertex 999999999999")),
-            (", line 10: is no vertex", text.replace("612015.1", "spoil")),
-            (", line 9: is no vertex", text.replace("612014.6747884353 ", "")),
+            (", line 10: is not a vertex", text.replace("612015.1", "spoil")),
+            (", line 9: is not a vertex", text.replace("612014.6747884353 ", "")),
             ("4 vertices are announced, 3 found", binary[:-1]),
             ("is cut off", behind[: behind.index(b"end_header\n") + 20]),
             ("lists among its vertices", text.replace("double z", "list uchar int a")[:-1]),

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every reader tells how far it is, and stops when it is told to."""
+"""Every reader reports its progress, and stops on request."""
 
 import gzip
 import importlib
@@ -74,7 +74,7 @@ class Progress(InFolder):
             self.addCleanup(patch.stop)
 
     def point_files(self):
-        """{name: how many steps its reader tells at least}."""
+        """{name: how many steps its reader reports at least}."""
         xyz = rows("{} {} {}", points())
         self.file("a.xyz", xyz)
         self.file("a.xyz.gz", gzip.compress(xyz.encode()))
@@ -118,13 +118,13 @@ class Progress(InFolder):
     def check(self, name, read, least):
         """Reports are in order and enough; what each of some raises ends the reading."""
         with self.subTest(file=name):
-            told = []
-            read(told.append)
-            told = list(dict.fromkeys(told))  # while another process works, the same comes again
-            self.assertGreaterEqual(len(told), least, told)
-            self.assertEqual(told, sorted(told))
-            self.assertTrue(0.0 <= told[0] and told[-1] <= 1.0, told)
-            for last in {told[0], told[len(told) // 2], told[-1]}:
+            fractions = []
+            read(fractions.append)
+            fractions = list(dict.fromkeys(fractions))  # while another process works, the same comes again
+            self.assertGreaterEqual(len(fractions), least, fractions)
+            self.assertEqual(fractions, sorted(fractions))
+            self.assertTrue(0.0 <= fractions[0] and fractions[-1] <= 1.0, fractions)
+            for last in {fractions[0], fractions[len(fractions) // 2], fractions[-1]}:
                 calls = []
 
                 def stop(fraction, last=last, calls=calls):
@@ -145,7 +145,7 @@ class Progress(InFolder):
             for name, least in self.point_files().items():
                 self.check(
                     name,
-                    lambda told, name=name: reading.read(self.path(name), progress=told),
+                    lambda progress, name=name: reading.read(self.path(name), progress=progress),
                     least,
                 )
 
@@ -154,7 +154,7 @@ class Progress(InFolder):
             for read in (reading.read_boundary, reading.read_faults):
                 self.check(
                     name,
-                    lambda told, name=name, read=read: read(self.path(name), progress=told),
+                    lambda progress, name=name, read=read: read(self.path(name), progress=progress),
                     least,
                 )
 
@@ -165,16 +165,16 @@ class Progress(InFolder):
             reader = algorithms.ElevationPoints()
             reader.SetFileName(self.path(name))
             reader.SetContents(contents)
-            told = []
+            fractions = []
 
-            def stop(caller, _event, told=told):
-                told.append(caller.GetProgress())
+            def stop(caller, _event, fractions=fractions):
+                fractions.append(caller.GetProgress())
                 caller.SetAbortExecute(1)
 
             tag = reader.AddObserver("ProgressEvent", stop)
             reader.Update()
-            self.assertLess(len(told), 4, name)
-            self.assertLess(told[1], 0.9, name)  # the first is of the pipeline itself
+            self.assertLess(len(fractions), 4, name)
+            self.assertLess(fractions[1], 0.9, name)  # the first is of the pipeline itself
             self.assertEqual(reader.GetOutputDataObject(0).GetNumberOfPoints(), 0)
             reader.RemoveObserver(tag)
 

@@ -170,8 +170,8 @@ class Formats(InFolder):
             with self.subTest(name=name):
                 cloud = self.read(BY_HAND["corner.asc"], name)
                 self.assert_rows(cloud, NODES)
-                told = any("by its content this is a raster" in note for note in cloud.notes)
-                self.assertEqual(told, name in ("a.txt", "a.csv", "a.vtp"))
+                is_noted = any("by its content this is a raster" in note for note in cloud.notes)
+                self.assertEqual(is_noted, name in ("a.txt", "a.csv", "a.vtp"))
 
     def test_all_digits_of_text_survive(self):
         text = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n633.5012316703796 0.1\n"
@@ -200,12 +200,12 @@ class Pixels(InFolder):
         self.assertTrue(any("no georeferencing" in note for note in cloud.notes))
         self.assertTrue(any("no no-data value" in note for note in cloud.notes))
 
-    def test_a_world_file_beside_it_is_used(self):
+    def test_a_world_file_next_to_it_is_used(self):
         self.file("a.tfw", "30\n0\n0\n-20\n500015\n4999990\n")
         cloud = reading.read(self.tif(place=None))
         self.assertEqual(coordinates(cloud)[0].tolist(), [500015.0, 4999990.0, 1.0])
 
-    def test_scale_and_offset_are_applied_and_told(self):
+    def test_scale_and_offset_are_applied_and_noted(self):
         z = numpy.array([[-30000, 1], [2, 30000]])
         path = self.tif(z=z, no_data=-30000, kind=gdal.GDT_Int16, scale=0.1, offset=100.0)
         cloud = reading.read(path)
@@ -238,7 +238,7 @@ class Pixels(InFolder):
                 self.assertEqual(coordinates(cloud)[:, 2].tolist(), z.ravel().tolist())
                 self.assertEqual(coordinates(cloud)[-1].tolist(), [502685, 4998610, 6299])
 
-    def test_a_no_data_value_can_be_given_beside_that_of_the_file(self):
+    def test_a_no_data_value_can_be_given_in_addition_to_that_of_the_file(self):
         points = coordinates(reading.read(self.tif(), no_data=5.0))
         self.assertEqual(points[:, 2].tolist(), [1, 2, 4, 6])
         points = coordinates(reading.read(self.tif(no_data=None), no_data=5.0, keep_nulls=True))
@@ -277,7 +277,7 @@ class Pixels(InFolder):
         self.assertEqual(coordinates(cloud)[0].tolist(), [500015, 4999990, 101])
         self.assertFalse(any("bands" in note for note in cloud.notes))
 
-    def test_the_reference_system_is_kept_and_angles_are_told(self):
+    def test_the_reference_system_is_kept_and_angles_are_noted(self):
         cloud = reading.read(self.tif(epsg=25832))
         self.assertIn('"ETRS89 / UTM zone 32N"', cloud.crs)
         self.assertIsNone(reading.read(self.tif()).crs)
@@ -304,7 +304,7 @@ class Pixels(InFolder):
         source = gdal.Open(raster(self.path("a.tif"), place=place))
         gdal.GetDriverByName("SAGA").CreateCopy(self.path("s.sdat"), source)
         source = None
-        # What GDAL would take it for with such a file beside it.
+        # What GDAL would take it for with such a file next to it.
         self.file(
             "s.hdr", "ENVI\nsamples = 3\nlines = 2\nbands = 1\ndata type = 4\ninterleave = bsq\n"
         )
@@ -314,7 +314,7 @@ class Pixels(InFolder):
         with self.assertRaisesRegex(reading.FileError, "header of a SAGA grid; .*s.sdat is missing"):
             reading.read(self.path("s.sgrd"))
 
-    def test_colours_are_told(self):
+    def test_colours_are_noted(self):
         path = self.tif(z=[Z, Z, Z], no_data=None, kind=gdal.GDT_Byte, PHOTOMETRIC="RGB")
         self.assertTrue(any("are colours (red)" in note for note in reading.read(path).notes))
 
@@ -375,7 +375,7 @@ class Dem(InFolder):
         self.assertIn("elevation in m, as the file says", cloud.notes)
         self.assertFalse(any("whole steps" in note for note in cloud.notes))
 
-    def test_profiles_beside_whole_steps_of_y_are_told(self):
+    def test_profiles_off_whole_steps_of_y_are_noted(self):
         path = write_dem(self.path("a.dem"), [(1000, 500, [7, 8]), (1030, 470, [5, 6, 9])])
         notes = reading.read(path).notes
         self.assertIn("GDAL moves y to whole steps of 30, by up to 10", notes)
@@ -434,7 +434,7 @@ class Damage(InFolder):
         with self.assertRaisesRegex(reading.FileError, "all 6 pixels are without data"):
             reading.read(path)
 
-    def test_wrong_options_are_told(self):
+    def test_wrong_options_are_reported(self):
         path = raster(self.path("a.tif"))
         for words, options in (
             ("there is no band 2; it has 1", {"band": 2}),

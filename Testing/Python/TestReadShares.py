@@ -26,18 +26,18 @@ class Rank:
     """What a controller does, for threads that each are a rank."""
 
     def __init__(self, number, everybody):
-        self.number, (self.barrier, self.given) = number, everybody
+        self.number, (self.barrier, self.values) = number, everybody
 
     def GetLocalProcessId(self):
         return self.number
 
     def GetNumberOfProcesses(self):
-        return len(self.given)
+        return len(self.values)
 
     def AllGather(self, own, everywhere):
-        self.given[self.number] = vtk_to_numpy(own)
+        self.values[self.number] = vtk_to_numpy(own)
         self.barrier.wait()
-        vtk_to_numpy(everywhere)[:] = numpy.concatenate(self.given)
+        vtk_to_numpy(everywhere)[:] = numpy.concatenate(self.values)
         self.barrier.wait()
 
 
@@ -75,7 +75,7 @@ def on_ranks(count, work):
 
 
 def read(paths, ranks, **options):
-    """(points, what a Cloud tells) or the words of an error; the words are those of all ranks."""
+    """(points, notes and counts of a Cloud) or the words of an error; the words are those of all ranks."""
 
     def of_rank(rank):
         cloud, taken = Cloud(None), [numpy.empty((0, 3))]
@@ -259,10 +259,10 @@ class Shares(InFolder):
     def test_standard_input_is_of_the_first_rank(self):
         rows = numpy.random.default_rng(2).random((40, 3))
         numpy.save(self.path("a.npy"), rows)
-        text_of_rows = "".join("%r %r %r\n" % tuple(row) for row in rows.tolist()).encode()
+        row_text = "".join("%r %r %r\n" % tuple(row) for row in rows.tolist()).encode()
         for others in ([], [self.path("a.npy")]):
             for ranks in SHARES:
-                with mock.patch("sys.stdin", mock.Mock(buffer=io.BytesIO(text_of_rows))):
+                with mock.patch("sys.stdin", mock.Mock(buffer=io.BytesIO(row_text))):
                     points = read(["-", *others], ranks)[0]
                 numpy.testing.assert_array_equal(points, numpy.tile(rows, (1 + len(others), 1)))
 

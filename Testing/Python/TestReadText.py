@@ -236,12 +236,12 @@ class Exports(Tables):
             with self.subTest(what):
                 self.check(what, *case)
 
-    def test_columns_without_names_are_told_by_their_values(self):
+    def test_columns_without_names_are_recognised_by_their_values(self):
         for what, *case in BARE:
             with self.subTest(what):
                 self.check(what, "", *case)
 
-    def test_names_that_tell_nothing_leave_it_to_the_values(self):
+    def test_names_that_say_nothing_leave_it_to_the_values(self):
         for what, separator, kinds, words in BARE[1:4]:
             with self.subTest(what):
                 width = len(kinds.split())
@@ -303,7 +303,7 @@ class Doubts(Tables):
                 text = "".join(" ".join(map(str, row)) + "\n" for row in rows)
                 self.assertIn(words, self.refusal(text))
 
-    def test_what_stands_before_whole_coordinates_is_told(self):
+    def test_what_stands_before_whole_coordinates_is_noted(self):
         generator = numpy.random.default_rng(3)
         points = generator.integers(0, 90, (50, 3)).tolist()
         for what, first in (("an id", range(50)), ("the same in all rows", [0.5] * 50)):
@@ -364,20 +364,20 @@ class Doubts(Tables):
         self.assert_coordinates(cloud, expected)
         self.assertIn("z = 4 (Top Chalk)", cloud.notes[1])
         error = self.refusal("Hochwert,foo,bar,Hoehe\n" + text)
-        self.assertIn("the names tell y = 1 (Hochwert), z = 4 (Hoehe), but not x", error)
+        self.assertIn("the names give y = 1 (Hochwert), z = 4 (Hoehe), but not x", error)
         self.assertIn("it may be columns 2 (foo) and 3 (bar)", error)
         rows, _ = columns_of("x y amp z")
         text = "".join(",".join(row) + "\n" for row in rows)
         self.assertIn("but not z", self.refusal("X,Y,top,base\n" + text))
 
-    def test_the_better_name_is_taken_and_the_other_told(self):
+    def test_the_better_name_is_taken_and_the_other_noted(self):
         rows, _ = columns_of("x y z amp")
         text = "X,Y,Elevation,Depth\n" + "".join(",".join(row) + "\n" for row in rows)
         cloud = self.read(text)
         self.assert_coordinates(cloud, numpy.column_stack((X, Y, Z)))
         self.assertTrue(any("column 4 (Depth) could be too" in note for note in cloud.notes))
 
-    def test_depths_are_told_unless_they_are_turned_over(self):
+    def test_depths_are_noted_unless_they_are_turned_over(self):
         text = "x,y,depth\n1,2,3\n4,5,7\n"
         self.assertIn("--depth", " ".join(self.read(text).notes))
         self.assertNotIn("--depth", " ".join(self.read(text, depth=True).notes))
@@ -395,10 +395,10 @@ class Doubts(Tables):
             self.assertEqual(tuple(rows[0]), expected)
         with self.assertRaises(FileError) as caught:
             read_table(self.file("X,X,Y\n1,2,3\n"), needed=2)
-        self.assertIn("a header line with x, y tells the columns", str(caught.exception))
+        self.assertIn("a header line with x, y names the columns", str(caught.exception))
         self.assertNotIn("--columns", str(caught.exception))
 
-    def test_northing_before_easting_without_a_header_is_told(self):
+    def test_northing_before_easting_without_a_header_is_noted(self):
         rows, _ = columns_of("y x z")
         text = "".join(" ".join(row) + "\n" for row in rows)
         cloud = self.read(text)
@@ -420,7 +420,7 @@ class Doubts(Tables):
             self.assertEqual(cloud.points.GetPoint(0), (2, 3, 1) if head else (1, 2, 3))
             self.assertEqual(len(cloud.notes), 2)
 
-    def test_what_is_no_plain_number_is_told(self):
+    def test_what_is_not_a_plain_number_is_reported(self):
         for text, words in (
             ("X;Y;Z\n612.014,67;6.073.983,68;633,5\n", "marks between thousands"),
             ('"612,014.67","6,073,983.68","633.5"\n', "marks between thousands"),
@@ -460,7 +460,7 @@ class Doubts(Tables):
             text = f"{head}\n1,2,3{end}\n4,5,7{end}\n"
             self.assert_coordinates(self.read(text), [(1, 2, 3), (4, 5, 7)])
 
-    def test_marks_between_thousands_are_no_decimal_signs_where_the_file_proves_it(self):
+    def test_marks_between_thousands_are_not_decimal_signs_where_the_file_proves_it(self):
         local = [(152 + 7 * i, 900 + 31 * i, 1214 + i) for i in range(40)]
         for separator, text in (
             ("\t", "455017.13\t5623027.04\t1,734\n455047.36\t5623112.03\t1,780\n"),
@@ -472,7 +472,7 @@ class Doubts(Tables):
         cloud = self.read("455017,1;5623027,0;1.25\n455047,4;5623112,0;1.5\n")
         self.assertEqual(cloud.points.GetPoint(1), (455047.4, 5623112.0, 1.5))
 
-    def test_decimal_commas_in_quotes_between_commas_are_told(self):
+    def test_decimal_commas_in_quotes_between_commas_are_recognised(self):
         for text in ('"600000,1","5000000,2","-999,3"\n"600001,1","5000001,2","-99,3"\n',
                      'x,y,z\n"1,5","2,5","3,5"\n"1,25","2,5",7\n'):
             self.assertIn("commas stand for decimals and between columns", self.refusal(text))
@@ -486,16 +486,16 @@ class Doubts(Tables):
         self.assertEqual(list(cloud.lines), [2, 4, 6])
         self.assertIn("header lines that come again are left out: 2", cloud.notes)
 
-    def test_what_no_latitude_can_be_is_told(self):
+    def test_what_no_latitude_can_be_is_recognised(self):
         cloud = self.read("Lat,Lon,Height\n110.25,9.5,121.5\n108.75,8.5,124.5\n")
         self.assertIn("column 1 (Lat) is a latitude by its name, but holds 110.25",
                       " ".join(cloud.notes))
         cloud = self.read("Lat,Lon,Height\n-89.5,359.5,121.5\n88.75,8.5,124.5\n")
         self.assertNotIn("latitude", " ".join(cloud.notes))
 
-    def test_a_unit_of_z_that_is_not_that_of_x_and_y_is_told(self):
+    def test_a_z_unit_that_is_not_that_of_x_and_y_is_noted(self):
         rows = "".join(f"{x},{y},{z}\n" for x, y, z in zip(X, Y, Z))
-        for head, told in (
+        for head, is_noted in (
             ("X (m),Y (m),Z (ft)", True), ("x,y,z\nm,m,ft", True), ("x_m,y_m,elev_ft", True),
             ("# Unit in X and Y direction: m\n# Unit in depth: ft", True),
             ("X (ft),Y (ft),Z (ft)", False), ("x,y,z\n[m],[m],[m]", False),
@@ -503,14 +503,14 @@ class Doubts(Tables):
         ):
             with self.subTest(head=head):
                 notes = " ".join(self.read(head + "\n" + rows).notes)
-                self.assertEqual("in metres and z is in feet" in notes, told, notes)
+                self.assertEqual("in metres and z is in feet" in notes, is_noted, notes)
 
-    def test_the_columns_are_always_told(self):
+    def test_the_columns_are_always_noted(self):
         for head in ("x y z\n", ""):
             cloud = self.read(head + "1.5 2.5 3\n2.5 7 4\n3 1 5\n")
             self.assertEqual("x, y, z are in columns 1, 2, 3", cloud.notes[1])
 
-    def test_names_that_say_nothing_are_told_with_the_axes(self):
+    def test_names_that_say_nothing_are_noted_with_the_axes(self):
         cloud = self.read("foo;bar;baz\n1;2;3\n5;6;7\n")
         self.assertIn(
             "no column is named as x, y or z: x = 1 (foo), y = 2 (bar), z = 3 (baz) (see --columns)",
@@ -530,11 +530,11 @@ class Doubts(Tables):
         ):
             self.assertIn(words, self.refusal(text, columns=columns))
 
-    def test_a_name_before_large_numbers_is_no_mark_between_thousands(self):
+    def test_a_name_before_large_numbers_is_not_a_mark_between_thousands(self):
         with self.assertRaisesRegex(FileError, "no line holds 3 numbers; the most is 2"):
             self.read("Well,Easting,Northing\nW0,100,300\nW1,107,301\nW20,140,400\n")
 
-    def test_two_columns_named_z_are_told_or_refused(self):
+    def test_two_columns_named_z_are_noted_or_refused(self):
         rows = "5.5;7.5;121.5;122.5\n6.5;7.75;123.5;124.5\n"
         self.assertIn("3 (Höhe_alt) and 4 (Höhe_neu) may all be z",
                       self.refusal("X;Y;Höhe_alt;Höhe_neu\n" + rows))
@@ -547,7 +547,7 @@ class Doubts(Tables):
         self.assertEqual(self.read(text, columns="1,2,3").points.GetPoint(0)[0], 124.61)
         self.assertEqual(len(self.read("Z;X;Y\n" + text).notes), 2)
 
-    def test_summary_lines_are_left_out_and_told(self):
+    def test_summary_lines_are_left_out_and_noted(self):
         for names in ("{}", "P{}"):  # numbers or text in the first column
             for end, words in (("Total;1;2;3\n", "line 42 (Total)"), ("MITTEL:;9;9;9\nMax;8;8;8\n",
                                "line 42 (MITTEL), line 43 (Max)"), ('"Std. Dev.";1;1;1\n', "Std")):
@@ -559,17 +559,17 @@ class Doubts(Tables):
                 self.assertIn(words, " ".join(cloud.notes))
         cloud = self.read("ID X Y Z\n1 2 3 4\n2 5 7 8\nMean 3.5 5 6\n")
         self.assert_coordinates(cloud, [(2, 3, 4), (5, 7, 8)])
-        # Other words among numbers are kept and told.
+        # Other words among numbers are kept and noted.
         rows = [f"{i},{i}.5,{i * i % 7},{i}.25\n" for i in range(40)]
         cloud = self.read("ID,X,Y,Z\n" + "".join(rows) + "BM7,1,2,3\n")
         self.assertEqual(cloud.points.GetNumberOfPoints(), 41)
-        self.assertIn("column ID: 1 word is no number (line 42: BM7)", cloud.notes)
+        self.assertIn("column ID: 1 word is not a number (line 42: BM7)", cloud.notes)
         # Points may be named so.
         cloud = self.read("".join(f"{'max' if i % 2 else 'min'} {i} {i * i % 7} 1\n"
                                   for i in range(40)))
         self.assertEqual(cloud.points.GetNumberOfPoints(), 40)
 
-    def test_thousands_and_degrees_that_cannot_be_proved_are_told(self):
+    def test_thousands_and_degrees_that_cannot_be_proved_are_noted(self):
         for mark in ",.":
             text = f"X;Y;Z\n455017;5623027;1{mark}734\n455047;5623112;1{mark}780\n"
             self.assertIn(f"z = 1{mark}734 is read as 1.734", " ".join(self.read(text).notes))
@@ -578,7 +578,7 @@ class Doubts(Tables):
         self.assertIn("degrees, minutes and seconds", self.refusal(text))
         self.assertEqual(self.read(text, columns=("1", "4", "7")).points.GetPoint(0)[2], 121.4)
 
-    def test_grids_of_other_formats_are_no_tables(self):
+    def test_grids_of_other_formats_are_not_tables(self):
         for head, words in (
             ("ncols 4\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9\n", "ESRI"),
             ("NCOLS 4\nNROWS 2\n", "an ESRI ASCII grid"),
@@ -633,7 +633,7 @@ def random_table(generator):
 
 
 class OthersBeside(Tables):
-    """What stands beside x, y and z in tables without their names, and is taken for none of them."""
+    """What stands besides x, y and z in tables without their names, and is taken for none of them."""
 
     def table(self, *columns):
         return "".join(" ".join(map(str, row)) + "\n" for row in zip(*columns))
@@ -658,7 +658,7 @@ class OthersBeside(Tables):
         z = (1900 + x / 100 - y / 900).round(2)
         return [["Top"] * 100, x.round(2), y.round(2), inline, crossline, z]
 
-    def test_the_number_of_a_line_is_no_height(self):
+    def test_the_number_of_a_line_is_not_a_height(self):
         columns = self.picks(lambda inline: 0.0)
         for order in ([0, 1, 2, 3, 4, 5], [0, 1, 2, 4, 3, 5], [0, 3, 4, 1, 2, 5]):
             cloud = self.read(self.table(*(columns[i] for i in order)))
@@ -685,7 +685,7 @@ class OthersBeside(Tables):
         self.assertIn("z = 5", " ".join(self.read(
             "Inline Crossline X Y Z\n1 2 3 4 5\n1 3 3 5 5\n2 2 4 4 5\n").notes))
 
-    def test_dates_and_times_are_no_coordinates(self):
+    def test_dates_and_times_are_not_coordinates(self):
         generator = numpy.random.default_rng(6)
         second = numpy.arange(300) * 7
         lat, lon = (54.3 + second / 9e4).round(6), (10.2 + second / 7e4).round(6)
@@ -736,16 +736,16 @@ class LinesOfOtherKinds(Tables):
             self.assertTrue(error.endswith("; --skip-bad-lines leaves out such lines"), error)
             cloud = self.read(text, skip_bad_lines=True)
             self.assert_coordinates(cloud, points)
-            told = [note for note in cloud.notes if note.startswith("lines of other kinds are left out: ")]
-            self.assertIn(left_out, told[0])
+            notes = [note for note in cloud.notes if note.startswith("lines of other kinds are left out: ")]
+            self.assertIn(left_out, notes[0])
         self.assertIn("no line is a row", self.refusal(
             "a 1 2 3\nb 2 3 4\n", columns="1,2,3", skip_bad_lines=True))
-        # A line with a wrong column is no line of another kind.
+        # A line with a wrong column is not a line of another kind.
         self.assertIn("--columns chooses", self.refusal("1 2 3\n4 5 6\n4 five 6 7\n"))
 
 
 class OneNameMissing(Tables):
-    def test_the_only_column_left_is_taken_and_that_is_told(self):
+    def test_the_only_column_left_is_taken_and_noted(self):
         rows = "".join(f"{100 + i * 1.5},{(i * 37) % 100 + 0.25},{i % 7 + 0.5}\n" for i in range(50))
         cloud = self.read("easting,foo,elev\n" + rows)
         self.assertIn("y = 2 (foo), z = 3 (elev); y is the only column left", " ".join(cloud.notes))
@@ -784,14 +784,14 @@ class OtherColumns(Tables):
                 expected = numpy.column_stack((KINDS["r"], KINDS["g"], KINDS["b"]))
                 self.assertEqual(arrays["RGB"].tolist(), expected.tolist())
 
-    def test_missing_values_and_late_words_are_told_and_not_a_number(self):
+    def test_missing_values_and_late_words_are_noted_and_not_a_number(self):
         text = "x,y,z,q\n" + "".join(f"{i},{i * i % 7},1.5,{i}.5\n" for i in range(20000))
         text += "1,2,3,\n4,5,6,odd\n"
         cloud = self.read(text)
         values = self.arrays(cloud)["q"]
         self.assertTrue(math.isnan(values[-1]) and math.isnan(values[-2]))
         self.assertEqual(values[7], 7.5)
-        self.assertIn("column q: 1 word is no number (line 20,003: odd)", cloud.notes)
+        self.assertIn("column q: 1 word is not a number (line 20,003: odd)", cloud.notes)
 
     def test_rows_without_data_take_their_values_along(self):
         cloud = self.read("x y z q\n1 2 3 10\n4 5 -9 20\n6 7 9 30\n", no_data=-9.0)
@@ -871,13 +871,13 @@ class Parsing(Tables):
         bad = line * (count - 1000) + b"1 two 3\n"
         self.assertIn(f"line {count - 999}: 'two' in column 2 (y)", self.refusal(bad))
 
-    def test_progress_is_told(self):
+    def test_progress_is_reported(self):
         seen = []
         path = self.file("1 2 3\n4 5 6\n")
         read_text(path, ReadOptions(progress=seen.append))
         self.assertEqual(seen, [1.0])
 
-    def test_lines_with_more_words_are_told(self):
+    def test_lines_with_more_words_are_noted(self):
         cloud = self.read("1 2 3\n4 5 6\n7 8 9 10\n5 5 5\n")
         self.assertIn("line 3 has 4 columns where others have 3", " ".join(cloud.notes))
 

@@ -28,7 +28,7 @@ X, Y = (a.ravel() for a in numpy.meshgrid(600000.0 + STEPS, 6e6 + STEPS))
 HORIZON = (1558.0 + 375.0 * numpy.linspace(0.0, 1.0, len(X)) ** 2).round(2)  # no plane
 
 
-def told(notes):
+def depth_notes(notes):
     """What the notes say of up and down."""
     done = "z is turned over, as --depth says"
     return [note for note in notes if "--depth" in note and note != done]
@@ -107,7 +107,7 @@ class Readers(InFolder):
         head = f"# Type: scattered data\n# Field: 1 x\n# Field: 2 y\n# Field: 3 {field}\n"
         return self.file("a.ev", head + self.xyz(z))
 
-    def test_each_reader_tells_once_what_it_knows(self):
+    def test_each_reader_notes_once_what_it_knows(self):
         for what, path, positive, negative in (
             ("text", lambda z: self.file("a.csv", "X Y Depth\n" + self.xyz(z)), UPSIDE_DOWN, None),
             ("unit", lambda z: self.file("a.csv", "X Y Z_(ms)\n" + self.xyz(z)), UPSIDE_DOWN, None),
@@ -130,17 +130,17 @@ class Readers(InFolder):
                     cloud = reading.read(name)
                     found = coordinates(cloud)[:, 2]
                     numpy.testing.assert_array_equal(numpy.sort(found), numpy.sort(z))
-                    notes = told(cloud.notes)
+                    notes = depth_notes(cloud.notes)
                     self.assertEqual(len(notes), words is not None, notes)
                     self.assertIn(words or "", "".join(notes))
-                    notes = told(reading.read(name, depth=True).notes)
+                    notes = depth_notes(reading.read(name, depth=True).notes)
                     self.assertEqual([HILLS in note for note in notes], [True] if z[0] < 0 else [])
 
     def test_columns_that_the_user_names_are_looked_at_too(self):
         path = self.file("a.csv", "X Y Top Depth\n" + "".join(
             f"{x} {y} 5 {z}\n" for x, y, z in zip(X, Y, HORIZON)))
         self.assertIn(UPSIDE_DOWN, "".join(reading.read(path, columns="X,Y,Depth").notes))
-        self.assertEqual(told(reading.read(path, columns="X,Y,Top").notes), [])
+        self.assertEqual(depth_notes(reading.read(path, columns="X,Y,Top").notes), [])
 
     def test_the_name_of_a_file_is_a_hint(self):
         for name, is_hint in (
@@ -148,26 +148,26 @@ class Readers(InFolder):
             ("bathymetry.xyz", True), ("survey.xyz", False), ("prof.xyz", False),
         ):
             with self.subTest(name=name):
-                notes = told(reading.read(self.file(name, self.xyz(HORIZON))).notes)
+                notes = depth_notes(reading.read(self.file(name, self.xyz(HORIZON))).notes)
                 self.assertEqual([DOUBTFUL in note for note in notes], [True] if is_hint else [])
         head = "X Y Elevation\n"
         path = self.file("horizon.xyz", head + self.xyz(HORIZON))
-        self.assertEqual(told(reading.read(path).notes), [])
+        self.assertEqual(depth_notes(reading.read(path).notes), [])
         surface = "GOCAD VSet 1\nZPOSITIVE {}\n" + "".join(
             f"VRTX {i} {x} {y} {z}\n" for i, (x, y, z) in enumerate(zip(X, Y, HORIZON))) + "END\n"
         for sign in ("Elevation", "Depth"):
             path = self.file("horizon.vs", surface.format(sign))
-            self.assertEqual(told(reading.read(path).notes), [])
+            self.assertEqual(depth_notes(reading.read(path).notes), [])
 
-    def test_slices_tell_the_same(self):
+    def test_slices_note_the_same(self):
         for head, z in (("X Y Depth\n", HORIZON), ("X Y Depth\n", -HORIZON), ("X Y Z\n", -HORIZON)):
             for depth in (False, True):
                 with self.subTest(head=head, z=z[0], depth=depth):
                     path, cloud = self.file("a.csv", head + self.xyz(z)), Cloud(None)
                     read_files([path], cloud, lambda points: None, depth=depth)
-                    self.assertEqual(told(cloud.notes), told(reading.read(path, depth=depth).notes))
+                    self.assertEqual(depth_notes(cloud.notes), depth_notes(reading.read(path, depth=depth).notes))
 
-    def test_arrays_of_data_objects_tell_the_same(self):
+    def test_arrays_of_data_objects_note_the_same(self):
         values = numpy_to_vtk(HORIZON, deep=True)
         values.SetName("Depth")
         image, table = vtkImageData(), vtkTable()
@@ -183,8 +183,8 @@ class Readers(InFolder):
         for data, array in ((image, ""), (points, "Depth"), (table, "")):
             with self.subTest(kind=data.GetClassName()):
                 self.assertIn(UPSIDE_DOWN, "".join(cloud_of([data], array).notes))
-                self.assertEqual(told(cloud_of([data], array, ReadOptions(depth=True)).notes), [])
-        self.assertEqual(told(cloud_of([points]).notes), [])
+                self.assertEqual(depth_notes(cloud_of([data], array, ReadOptions(depth=True)).notes), [])
+        self.assertEqual(depth_notes(cloud_of([points]).notes), [])
 
 
 class Report(Program):

@@ -12,7 +12,7 @@ from in_folder import InFolder, Program, coordinates
 from osgeo import gdal, ogr, osr
 from vtkelevationsurface import reading
 from vtkelevationsurface.clouds import (
-    Cloud, bare_lines, crs_of, faults_note, heights_of, make_points, merged, parts_of_lines,
+    Cloud, bare_lines, crs_of, faults_note, heights_of, make_points, merged, line_parts,
 )
 from vtkelevationsurface.gdal_common import check_system, reference_of, same_system
 from vtkelevationsurface.messages import FileError
@@ -113,13 +113,13 @@ class Points(Vectors):
         content = "id;geometry\n" + "".join(f"1;{text}\n" for text in wkt_of(MAP))
         self.assert_rows(self.read(content, "a.csv"), MAP)
 
-    def test_what_is_no_angle_is_in_no_system_of_angles(self):
+    def test_what_is_not_an_angle_is_in_no_system_of_angles(self):
         points = '{"type": "MultiPoint", "coordinates": [[612000, 6073000, 1], [612001, 6073000, 2]]}'
         cloud = self.read(points, "a.geojson")
         self.assertIsNone(cloud.crs)
-        self.assertIn("x,y are no angles, so it is not in WGS 84; see --crs", cloud.notes)
+        self.assertIn("x,y are not angles, so it is not in WGS 84; see --crs", cloud.notes)
 
-    def test_degrees_of_kml_and_gpx_are_told(self):
+    def test_degrees_of_kml_and_gpx_are_noted(self):
         degrees = [(7.5, 50.25, 100.5), (7.75, 50.5, 200.25), (8.0, 50.0, 300.0)]
         self.make("a.kml", "KML", wkt_of(degrees), epsg=4326)
         points = "".join(
@@ -187,7 +187,7 @@ class Points(Vectors):
         with self.assertRaisesRegex(reading.FileError, "attributes height, elevation could be"):
             reading.read(path)
 
-    def test_depth_by_name_is_told(self):
+    def test_depth_by_name_is_noted(self):
         cloud = reading.read(self.gpkg(wkt_of(MAP, True), {"depth": [1.0, 2.0, 3.0]}))
         self.assertTrue(any("--depth turns it over" in note for note in cloud.notes))
         cloud = reading.read(self.gpkg(wkt_of(MAP, True), {"depth": [-1.0, -2.0, -3.0]}))
@@ -250,7 +250,7 @@ class Points(Vectors):
         self.assert_rows(cloud, MAP)
         self.assertIn("by its content this is a vector file, not a raster", cloud.notes)
 
-    def test_nothing_is_written_beside_a_file(self):
+    def test_nothing_is_written_next_to_a_file(self):
         for name, driver in (("a.gml", "GML"), ("a.shp", "ESRI Shapefile"), ("a.gpkg", "GPKG")):
             path = self.make(name, driver, wkt_of(MAP))
             if driver == "GML":
@@ -320,7 +320,7 @@ class Lines(Vectors):
     def test_lines_are_named_by_their_features(self):
         polygons = "MULTIPOLYGON (((0 0, 9 0, 9 9, 0 0)), ((20 0, 29 0, 29 9, 20 0)))"
         path = self.gpkg(["LINESTRING (1 1, 2 1, 2 2)", polygons])
-        names, parts = parts_of_lines(reading.read_boundary(path))
+        names, parts = line_parts(reading.read_boundary(path))
         self.assertEqual(names, ["feature 1", "feature 2", "feature 2, part 2"])
         self.assertEqual([len(part) for part in parts], [3, 4, 4])
 
@@ -369,7 +369,7 @@ class Systems(Vectors, Program):
             with self.subTest(one=one, other=other):
                 self.assertIs(same_system(one, other), same)
 
-    def test_systems_a_few_metres_apart_are_taken_as_one_and_that_is_told(self):
+    def test_systems_a_few_metres_apart_are_taken_as_one_with_a_note(self):
         for one, other, near in (
             ("EPSG:25832", "EPSG:32632", True),
             ("EPSG:4258", "EPSG:4326", True),
@@ -421,7 +421,7 @@ class Systems(Vectors, Program):
                 words = f"{wrong} is in .*33N.*, p.gpkg in .*32N.* away from the"
                 self.assertRegex(done.stderr, words)
 
-    def test_what_reprojecting_does_to_long_edges_is_told(self):
+    def test_what_reprojecting_does_to_long_edges_is_noted(self):
         steps = range(0, 100001, 20000)
         points = [(500000 + x, 5500000 + y, x) for x in steps for y in steps]
         self.make("p.gpkg", "GPKG", wkt_of(points))
@@ -429,17 +429,17 @@ class Systems(Vectors, Program):
         self.make("b.gpkg", "GPKG", [ring], epsg=4326)
         done = self.call("p.gpkg", "--boundary", "b.gpkg", "--no-fill", "--no-picture")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertRegex(done.stdout, r"edges between points stay straight, up to \d+ beside")
+        self.assertRegex(done.stdout, r"edges between points stay straight, up to \d+ away from")
 
-    def test_faults_far_from_the_points_are_told(self):
+    def test_faults_far_from_the_points_are_noted(self):
         points = make_points([(0.0, 0.0, 100.0), (1.0, 0.0, 150.0), (0.0, 1.0, 400.0)])
-        for z, told in (
+        for z, is_noted in (
             ((0, 0), True), ((-500, -400), True), ((900, 800), True),
             ((0, 1), False), ((50, 60), False), ((500, 600), False), ((-900, 900), False),
         ):
             with self.subTest(z=z):
                 note = faults_note(heights_of(points), make_points([(0.0, i, z[i]) for i in range(2)]))
-                self.assertEqual(note is not None, told)
+                self.assertEqual(note is not None, is_noted)
         self.make("p.gpkg", "GPKG", wkt_of([(x, y, 100 + x) for x in range(9) for y in range(9)]))
         self.make("f.gpkg", "GPKG", ["LINESTRING Z (1.5 1 0, 5.5 5 0)"])
         done = self.call("p.gpkg", "--faults", "f.gpkg", "--no-picture", "--faults-z", "given")

@@ -79,7 +79,7 @@ class Report(Program):
         for step in ("read", "triangulate", "trim", "fill", "measure", "write"):
             self.assertIn(step, report["times"])
 
-    def test_the_lattice_is_told(self):
+    def test_the_lattice_is_reported(self):
         name = self.file("sheet.xyz", text_of((4 * x, 2 * y, z) for x, y, z in SHEET))
         report = self.report(name)
         self.assertEqual(report["lattice"]["steps"], [[4.0, 0.0], [0.0, 2.0]])
@@ -111,15 +111,15 @@ class Report(Program):
         self.assertEqual(done.returncode, 2)
         self.assertIn("--search-strategy takes one of voxel-traversal, compactness", done.stderr)
 
-    def test_what_the_boundary_leaves_out_is_told_and_strictly_an_error(self):
+    def test_what_the_boundary_leaves_out_is_noted_and_strictly_an_error(self):
         lone = [(SIZE + 60.0 + 60.0 * line, float(i), 0.0) for line in range(2) for i in range(40)]
         name = self.file("lone.xyz", text_of(SHEET + lone))
         report = self.report(name, "--no-fill")
         self.assertEqual(report["trim"]["points_left_out"], len(lone))
-        told = [note for note in report["notes"] if "leaves out" in note]
-        self.assertEqual(len(told), 1, report["notes"])
-        self.assertIn(f"leaves out {len(lone)} points", told[0])
-        wanted = re.search(r"A --gap-tolerance of ([0-9.]+) would keep all points", told[0]).group(1)
+        notes = [note for note in report["notes"] if "leaves out" in note]
+        self.assertEqual(len(notes), 1, report["notes"])
+        self.assertIn(f"leaves out {len(lone)} points", notes[0])
+        wanted = re.search(r"A --gap-tolerance of ([0-9.]+) would keep all points", notes[0]).group(1)
         done = self.call(name, "--no-fill", "--strict")
         self.assertEqual(done.returncode, 1)
         self.assertIn("leaves out", done.stderr)
@@ -140,7 +140,7 @@ class Report(Program):
     def test_a_hole_over_a_limit_stays_open_and_the_reason_is_given(self):
         name = self.file("holed.xyz", text_of(HOLED))
         common = (name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6")
-        for option, value, reason, told in (
+        for option, value, reason, size in (
             ("--maximum-hole-size", "2", "too large", "size 5.657"),
             ("--maximum-hole-edges", "11", "too many edges", "12 edges"),
         ):
@@ -149,7 +149,7 @@ class Report(Program):
                 self.assertEqual(report["holes"]["by_status"], {reason: 1})
                 self.assertEqual((report["holes"]["found"], report["holes"]["bridged_left"]), (1, 0))
                 self.assertEqual(report["holes"]["inserted_points"], 0)
-                self.assertIn(f"1 not filled, {reason}: hole 0 ({told})", self.output)
+                self.assertIn(f"1 not filled, {reason}: hole 0 ({size})", self.output)
                 self.assertAlmostEqual(
                     report["holes"]["list"][0]["size"], math.sqrt(32), msg="a box of 4 x 4"
                 )
@@ -165,7 +165,7 @@ class Report(Program):
         self.assertEqual((holes["filled"], holes["inserted_points"]), (1, 4))
         for words in ("1 found, 1 filled", "1 of them were bridged", "--open-edge-length"):
             self.assertIn(words, self.output)
-        # Over a limit, the void is bridged still, so that it is no hole.
+        # Over a limit, the void is still bridged, so it is not a hole.
         holes = self.report(name, "--maximum-hole-size", "1")["holes"]
         self.assertEqual((holes["found"], holes["filled"], holes["bridged_left"]), (0, 0, 1))
         self.assertEqual(holes["list"][0]["bridged"], True)
@@ -218,7 +218,7 @@ class Report(Program):
         rows = [(4000000.0 + x, 5000000.0 + y, z) for x, y, z in HOLED]
         name = self.file("far.xyz", text_of(rows))
         self.assert_refused(
-            "far.xyz: --spacing: 1e-09 is less than x and y of the points can tell apart, which are in "
+            "far.xyz: --spacing: 1e-09 is too small: x and y of the points are in "
             "steps of 9.31e-10",
             name, "--spacing", "1e-9", code=2,
         )
@@ -284,7 +284,7 @@ class Report(Program):
                 }
                 self.assertEqual([p[2] for p in used if p[:2] == (3.0, 3.0)], [z])
 
-    def test_faults_become_edges_and_are_told(self):
+    def test_faults_become_edges_and_are_reported(self):
         name = self.file("sheet.xyz", text_of(SHEET))
         lines = self.file("faults.txt", "x y z\n2 2.5 9\n8 2.5 9\n\n4.5 1 7\n4.5 6 7\n")
         report = self.report(name, "--faults", lines, "--no-trim", "--no-fill", "-o", "s.vtp")
@@ -428,7 +428,7 @@ class Results(Program):
                 while chunk := os.read(master, 4096):
                     shown += chunk
             except OSError:
-                pass  # how Linux tells that the other side has closed
+                pass  # how Linux reports that the other side has closed
             self.assertEqual(process.wait(timeout=300), 0)
         os.close(master)
         self.assertIn(b"triangulating", shown)
@@ -450,7 +450,7 @@ class Results(Program):
                 if action.nargs is None:
                     self.assertIn(option, [*options.TAKES, "-o"])
 
-    def test_a_reader_that_goes_away_is_no_error(self):
+    def test_a_reader_that_goes_away_is_not_an_error(self):
         name = self.file("sheet.xyz", text_of(SHEET))
         reading, writing = os.pipe()
         os.close(reading)
@@ -520,7 +520,7 @@ class Examples(Program):
         surface = vtk_files.run_vtk_reader(self.path("fault.vtp"))
         self.assertGreater(surface.GetNumberOfPolys(), 4000)
 
-    def test_the_lake_is_cut_along_lines_that_are_no_points(self):
+    def test_the_lake_is_cut_along_lines_that_are_not_points(self):
         lines = self.lines_of("lake.py", "lake.png")
         # All corners of the shores, one of the lease; where the lease leaves the survey; and where
         # they cross edges.
@@ -610,7 +610,7 @@ class Pictures(Program):
     @unittest.skipUnless(
         sys.platform.startswith("linux"), "only X has displays that may be missing"
     )
-    def test_without_a_display_the_surface_is_written_and_the_lack_is_told(self):
+    def test_without_a_display_the_surface_is_written_with_a_note(self):
         name = self.file("sheet.xyz", text_of(SHEET))
         for display in (None, ":12345"):
             # Without programs on the PATH there is no Xvfb.
@@ -634,7 +634,7 @@ class Pictures(Program):
 class VirtualDisplay(Program):
     """Where there is no display, the program starts one of its own, and leaves nothing of it."""
 
-    # Tells that it serves a display, but does not, the first so many times.
+    # Says that it serves a display, but does not, the first so many times.
     DEAF = """#!/bin/bash
         echo x >>"{folder}/starts"
         [ $(wc -l <"{folder}/starts") -gt {times} ] && exec {program} "$@"
@@ -671,7 +671,7 @@ class VirtualDisplay(Program):
         name = self.file("sheet.xyz", text_of(SHEET))
         done, count, made = self.call_with_deaf_server(1, name, "--picture")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertIn(count, (2, 3))  # the real one may not come at once beside other servers
+        self.assertIn(count, (2, 3))  # the real one may not come at once among other servers
         self.assertEqual(made, ["sheet_surface.png", "sheet_surface.vtp"])
 
     def test_a_picture_that_fails_does_not_lose_the_surface(self):
@@ -683,7 +683,7 @@ class VirtualDisplay(Program):
         done, _, made = self.call_with_deaf_server(99, name, "--picture", "--report", "r.json")
         self.assertEqual((done.returncode, len(done.stderr.splitlines())), (3, 1), done.stderr)
         self.assertIn("sheet_surface.png: cannot be drawn: Xvfb does not answer", done.stderr)
-        self.assertIn("all else is written", done.stderr)
+        self.assertIn("everything else is written", done.stderr)
         self.assertIn("no picture: Xvfb does not answer", done.stdout)
         self.assertEqual(made, ["r.json", "sheet_surface.vtp"])
 
@@ -756,7 +756,7 @@ class BadInput(Program):
         self.assert_refused("broken.vtp: cannot be read", self.file("broken.vtp", "<VTKFile"))
         self.assert_refused("line 2: 'b' in column 2", self.file("b.csv", "1,2,3\n4,b,6\n"))
 
-    def test_points_that_make_no_surface_are_told_apart(self):
+    def test_each_reason_for_no_surface_has_its_own_message(self):
         for name, rows, words in (
             ("one", "1 2 3\n", "there is only one point"),
             ("two", "1 2 3\n4 5 6\n1 2 9\n", "only two points differ in x,y"),
@@ -769,7 +769,7 @@ class BadInput(Program):
                     [name + ".xyz: no surface: ", words], self.file(name + ".xyz", rows)
                 )
 
-    def test_an_edge_limit_that_leaves_nothing_is_told(self):
+    def test_an_edge_limit_that_leaves_nothing_is_reported(self):
         name = self.file("sheet.xyz", text_of(SHEET))
         self.assert_refused(
             "use a larger --maximum-edge-length", name, "--maximum-edge-length", "0.5"
@@ -789,7 +789,7 @@ class BadInput(Program):
         self.assert_refused("open.vtp", name, "--boundary", "open.vtp")
         self.assert_refused("no.vtp: no such file", name, "--boundary", "no.vtp")
 
-    def test_a_boundary_elsewhere_leaves_nothing_and_that_is_told(self):
+    def test_a_boundary_elsewhere_leaves_nothing_and_is_an_error(self):
         name = self.file("sheet.xyz", text_of(SHEET))
         ring = self.file("far.txt", "102 2\n108 2\n108 8\n102 2\n")
         self.assert_refused("far.txt", name, "--boundary", ring)
@@ -814,7 +814,7 @@ class BadInput(Program):
     def test_wrong_options_are_errors_of_usage(self):
         name = self.file("sheet.xyz", text_of(SHEET))
         for words, arguments in (
-            ("no file is given", ()),
+            ("no file given", ()),
             ("--spacing takes a number of 0 or more, not '-1'", (name, "--spacing=-1")),
             ("--spacing takes a number of 0 or more, not 'wide'", (name, "--spacing", "wide")),
             ("--spacing takes a number of 0 or more", (name, "--spacing")),
@@ -826,14 +826,14 @@ class BadInput(Program):
             ("--view takes top, or", (name, "--view", "up")),
             ("--view takes top, or", (name, "--view", "10,0")),
             ("unknown option", (name, "--fast")),
-            ("--no-trim leaves nothing", (name, "--no-trim", "--boundary", name)),
+            ("trimming options have no effect with --no-trim", (name, "--no-trim", "--boundary", name)),
             ("--open-edge-length takes a number of 0 or", (name, "--open-edge-length", "nan")),
-            ("--no-fill leaves nothing", (name, "--no-fill", "--open-edge-length", "0")),
-            ("--no-fill leaves nothing", (name, "--no-fill", "--spacing", "3")),
-            ("--no-fill leaves nothing", (name, "--no-fill", "--interpolation", "membrane")),
-            ("--no-picture leaves nothing", (name, "--no-picture", "--view", "top")),
-            ("--no-picture leaves nothing", (name, "--no-picture", "--colours", "error")),
-            ("--no-fill leaves no errors", (name, "--no-fill", "--colours", "error")),
+            ("filling options have no effect with --no-fill", (name, "--no-fill", "--open-edge-length", "0")),
+            ("filling options have no effect with --no-fill", (name, "--no-fill", "--spacing", "3")),
+            ("filling options have no effect with --no-fill", (name, "--no-fill", "--interpolation", "membrane")),
+            ("picture options have no effect with --no-picture", (name, "--no-picture", "--view", "top")),
+            ("picture options have no effect with --no-picture", (name, "--no-picture", "--colours", "error")),
+            ("--colours error is for filled holes", (name, "--no-fill", "--colours", "error")),
             ("--colours takes one of elevation, error", (name, "--colours", "slope")),
         ):
             with self.subTest(arguments=arguments):
@@ -853,7 +853,7 @@ class BadInput(Program):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("no picture: ", done.stdout)
 
-    def test_without_the_module_one_line_tells_what_to_do(self):
+    def test_without_the_module_one_line_says_what_to_do(self):
         environment = dict(os.environ, PYTHONPATH="")
         done = self.execute(*self.PROGRAM, self.file("sheet.xyz", text_of(SHEET)), env=environment)
         self.assertEqual(done.returncode, 1)

@@ -12,7 +12,7 @@ import numpy
 from in_folder import InFolder, coordinates
 from vtkelevationsurface import paths, reading, writing
 from vtkelevationsurface.reading import vtk_checks, vtk_files
-from vtkelevationsurface.clouds import make_points, parts_of_lines
+from vtkelevationsurface.clouds import make_points, line_parts
 from vtkelevationsurface.messages import FileError, Messages, plain_message
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkObject
@@ -80,7 +80,7 @@ class Text(InFolder):
             ", line 3: 'two' in column 2 (y) is not a number", "1,2,3\n4,5,6\n7,two,9\n"
         )
 
-    def test_a_first_row_with_one_bad_word_is_no_header(self):
+    def test_a_first_row_with_one_bad_word_is_not_a_header(self):
         self.assert_refused(", line 1: 'l' in column 1 (x)", "l,2,3\n4,5,6\n7,8,9\n")
 
     def test_words_in_other_columns_do_no_harm(self):
@@ -103,7 +103,7 @@ class Text(InFolder):
         self.assert_refused("is empty", "")
         self.assert_refused("only blank or comment lines", "# x y z\n\n")
 
-    def test_a_binary_file_is_no_text(self):
+    def test_a_binary_file_is_not_text(self):
         self.assert_refused("not a text file", b"\x00\x01\x02" * 50)
 
     def test_rows_without_a_value_stay_as_points_that_are_not_finite(self):
@@ -260,7 +260,7 @@ class VtkFormats(InFolder):
 
     def test_a_file_that_is_cut_off_is_refused_or_has_all_its_points(self):
         # Where nothing but what follows the points is missing, the points are all there. A cut
-        # within the last number of a text cannot be told from its end, so this number is not
+        # within the last number of a text cannot be distinguished from its end, so this number is not
         # compared, but there is a note.
         for what, suffix, content in self.whole_files():
             path = self.file("cut." + suffix, content)
@@ -319,8 +319,8 @@ class VtkFormats(InFolder):
                     (b"5 7 5 6 0 0", "a piece of extent 0 2 0 1 0 0 is not within"),
                     (b"0 1 0 1 0 0", "is not within the whole extent 0 1 0 1 0 0"),
                     (b"0 2000000000 0 1 0 0", "cannot hold 4,000,000,002 nodes"),
-                    (b"2 0 0 1 0 0", "'2 0 0 1 0 0' is no extent"),
-                    (b"0 2 0 1 0", "'0 2 0 1 0' is no extent"),
+                    (b"2 0 0 1 0 0", "'2 0 0 1 0 0' is not an extent"),
+                    (b"0 2 0 1 0", "'0 2 0 1 0' is not an extent"),
                 ):
                     with self.subTest(suffix=suffix, mode=mode.__name__, extent=extent):
                         lie = content.replace(whole, b'WholeExtent="' + extent + b'"')
@@ -369,8 +369,8 @@ class VtkFormats(InFolder):
         stl = "solid a\n" + 2 * facet + "endsolid a\n"
         self.assert_rows(self.read(stl, "a.stl"), rows)
         for words, name, content in (
-            ("line 4: is no vertex", "b.obj", obj.replace("1e-09", "")[:-20]),
-            ("line 4: is no vertex", "b.obj", obj.replace("612015.1", "spoil")),
+            ("line 4: is not a vertex", "b.obj", obj.replace("1e-09", "")[:-20]),
+            ("line 4: is not a vertex", "b.obj", obj.replace("612015.1", "spoil")),
             ("cannot be read", "b.stl", stl.replace("612015.1", "spoil")),
             ("damaged after 1 whole facets", "b.stl", stl[:-40]),
             ("holds no points", "b.obj", "# nothing\n"),
@@ -451,7 +451,7 @@ class Boundary(InFolder):
 
     def test_rings_are_named_by_their_lines(self):
         data = reading.read_boundary(self.file("b.txt", self.RING + "\n2 2\n4 2\n4 4\n"))
-        names, parts = parts_of_lines(data)
+        names, parts = line_parts(data)
         self.assertEqual(names, ["the part from line 1 to 5", "the part from line 7 to 9"])
         self.assertEqual([len(part) for part in parts], [5, 3])
 

@@ -93,7 +93,7 @@ class Input(unittest.TestCase):
             result = reconstruct(read(path))
         self.assertEqual(result.surface.GetNumberOfPolys(), 2 * (SIZE - 1) ** 2)
 
-    def test_what_is_no_cloud_of_points_is_refused_in_words(self):
+    def test_what_is_not_a_cloud_of_points_is_refused_in_words(self):
         for points, error, words in (
             (SHEET[:, :2], ValueError, "rows of 3 numbers are needed, or x= and y= of a grid; the shape is 144 x 2"),
             (SHEET[0], ValueError, "the shape is 3"),
@@ -148,7 +148,7 @@ class Input(unittest.TestCase):
         report = reconstruct(masked).report
         self.assertEqual(list(report["unused_reasons"]), ["not finite"])
 
-    def test_points_left_out_are_measured_beside_those_that_are_not_finite(self):
+    def test_points_left_out_are_measured_but_not_those_that_are_not_finite(self):
         points = numpy.vstack((SHEET, SHEET[:3] + (0, 0, 1), [(numpy.nan, 1.0, 1.0)]))
         with warnings.catch_warnings():
             warnings.simplefilter("error", RuntimeWarning)
@@ -240,12 +240,12 @@ class Properties(unittest.TestCase):
             reconstruct(SHEET, boundary=RING + 100)
         self.assertEqual(caught.exception.about, "boundary")
         lone = [(SIZE + 60.0 + 60.0 * line, float(i), 0.0) for line in range(2) for i in range(40)]
-        with warnings.catch_warnings(record=True) as told:
+        with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             result = reconstruct(numpy.vstack((SHEET, lone)), fill=False)
-        self.assertEqual([w.category for w in told], [ElevationSurfaceWarning])
-        self.assertIn("leaves out 80 points", str(told[0].message))
-        self.assertEqual(told[0].filename, __file__)
+        self.assertEqual([w.category for w in caught], [ElevationSurfaceWarning])
+        self.assertIn("leaves out 80 points", str(caught[0].message))
+        self.assertEqual(caught[0].filename, __file__)
         self.assertEqual(len(result.notes), 1)
 
     def test_more_effort_than_is_expected_is_refused_with_a_way_out(self):
@@ -261,7 +261,7 @@ class Properties(unittest.TestCase):
                 self.assertLessEqual(inserted, limit)
                 self.assertGreater(inserted, 0)
 
-    def test_progress_is_told_and_can_stop_the_run(self):
+    def test_progress_is_reported_and_can_stop_the_run(self):
         steps = []
         reconstruct(SHEET, progress=lambda text, fraction: steps.append((text, fraction)))
         self.assertEqual(
@@ -277,7 +277,7 @@ class Properties(unittest.TestCase):
 
 
 class Result(unittest.TestCase):
-    def test_the_report_tells_of_every_point(self):
+    def test_the_report_covers_every_point(self):
         report = reconstruct(numpy.vstack((SHEET, SHEET[:2], [(1, 1, numpy.nan)]))).report
         self.assertEqual(report["points"], len(SHEET) + 3)
         reasons = {"same x,y as another point": 2, "not finite": 1}
@@ -315,7 +315,7 @@ class Result(unittest.TestCase):
 
 
 class Package(unittest.TestCase):
-    def test_names_are_there_and_others_are_told(self):
+    def test_names_are_there_and_others_are_errors(self):
         self.assertIn("reconstruct", dir(vtkelevationsurface))
         with self.assertRaisesRegex(AttributeError, "no attribute 'reconstrct'"):
             vtkelevationsurface.reconstrct  # pylint: disable=pointless-statement

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Places with several heights, and meshes that fold: what is told, refused, and the ways out."""
+"""Places with several heights, and meshes that fold: what is noted, refused, and the ways out."""
 
 import json
 import math
@@ -75,7 +75,7 @@ class Heights(unittest.TestCase):
         self.assertEqual(check_heights(cloud_of(points, **columns), 3)[1]["of"] > 0, True)
         return str(caught.exception)
 
-    def told(self, points, **columns):
+    def note_and_facts(self, points, **columns):
         return check_heights(cloud_of(points, **columns))
 
     def test_counts_and_largest_difference_are_those_of_a_plain_search(self):
@@ -99,12 +99,12 @@ class Heights(unittest.TestCase):
 
     def test_equal_points_are_plain_duplicates(self):
         points = with_z(NODES, waves(NODES))
-        self.assertEqual(self.told(numpy.concatenate((points, points))), (None, None))
+        self.assertEqual(self.note_and_facts(numpy.concatenate((points, points))), (None, None))
 
     def test_a_few_are_a_note_with_numbers(self):
         points = with_z(NODES, 0.0)
         more = [(25.0, 50.0, 98.25), (25.0, 50.0, -1.5), (75.0, 0.0, 3.0)]
-        note, facts = self.told(numpy.concatenate((points, more)))
+        note, facts = self.note_and_facts(numpy.concatenate((points, more)))
         self.assertEqual(
             note,
             "2 places have several heights, up to 99.75 apart: the first is taken "
@@ -117,7 +117,7 @@ class Heights(unittest.TestCase):
         for some in (points, self.random.permutation(points)):
             words = self.refused(some)
             self.assertIn("576 of 576 places have several heights, up to 1720 apart", words)
-            self.assertIn("no column tells them apart", words)
+            self.assertIn("no column separates them", words)
 
     def test_a_reverse_fault_is_refused(self):
         self.assertIn("96 of 576 places have several heights, up to 73.6 apart",
@@ -130,7 +130,7 @@ class Heights(unittest.TestCase):
         for scale in ((1, 1, 1000), (1, 1, 0.001), (1e-5, 1e-5, 1), (1000, 1000, 1)):
             self.refused(reverse_fault() * scale)
             noisy = self.noise(5000, 40) * scale
-            self.assertIsNotNone(self.told(noisy)[0])
+            self.assertIsNotNone(self.note_and_facts(noisy)[0])
 
     def noise(self, count, side):
         xy = self.random.integers(0, side, (count, 2)).astype(float)
@@ -138,13 +138,13 @@ class Heights(unittest.TestCase):
 
     def test_noise_at_rounded_places_is_a_note(self):
         for count, side in ((2000, 200), (5000, 100), (5000, 40), (5000, 20)):
-            self.assertIsNotNone(self.told(self.noise(count, side))[0])
+            self.assertIsNotNone(self.note_and_facts(self.noise(count, side))[0])
 
     def test_steep_ground_at_rounded_places_is_a_note(self):
         xy = self.random.random((20000, 2)) * 1000
         z = 300 * numpy.sin(xy[:, 0] / 90) + 200 * numpy.cos(xy[:, 1] / 70)
         for step in (2.0, 7.0, 14.0):
-            note, facts = self.told(with_z(numpy.round(xy / step) * step, z))
+            note, facts = self.note_and_facts(with_z(numpy.round(xy / step) * step, z))
             self.assertIsNotNone(note)
         self.assertGreater(facts["places"], 0.9 * facts["of"])
 
@@ -156,10 +156,10 @@ class Heights(unittest.TestCase):
             points = numpy.concatenate((ground, trees))
             first = numpy.repeat([1, 2], (len(ground), len(trees)))
             if is_refused:
-                self.assertIn("column ReturnNumber tells them apart: 1 (9,000), 2 (270)",
+                self.assertIn("column ReturnNumber separates them: 1 (9,000), 2 (270)",
                               self.refused(points, ReturnNumber=first))
             else:
-                self.assertIsNotNone(self.told(points, ReturnNumber=first)[0])
+                self.assertIsNotNone(self.note_and_facts(points, ReturnNumber=first)[0])
 
     def test_lines_that_cross_are_a_note_whatever_column_names_them(self):
         along = numpy.arange(0.0, 1000.0, 10.0)
@@ -170,21 +170,21 @@ class Heights(unittest.TestCase):
                 z = waves(numpy.column_stack(xy)) + self.random.normal(0, 3.0, len(along))
                 lines.append(numpy.column_stack((*xy, z)))
                 names += [name] * len(along)
-        note, facts = self.told(numpy.concatenate(lines), line=names)
+        note, facts = self.note_and_facts(numpy.concatenate(lines), line=names)
         self.assertGreater(facts["places"], 50)
         self.assertIn("have several heights", note)
 
-    def test_a_column_that_tells_heights_apart_is_shown_with_its_values(self):
+    def test_a_column_that_separates_heights_is_shown_with_its_values(self):
         points, number = horizons(0, 410, 900, 1720)
         order = self.random.permutation(len(points))
         names = numpy.array(["Top", "Chalk", "Base, lower", "Salt"])
         words = self.refused(points[order], Name=names[number[order]].tolist(),
                              measured=self.random.random(len(points)))
-        self.assertIn("column Name tells them apart: Base, lower (576), Chalk (576), Salt", words)
+        self.assertIn("column Name separates them: Base, lower (576), Chalk (576), Salt", words)
         self.assertIn("--each-value Name makes a surface of each value", words)
         self.assertIn("--where 'Name=Base, lower' one of this", words)
         words = self.refused(points[order], **{"Horizon no": number[order] + 1})
-        self.assertIn("column Horizon no tells them apart: 1 (576), 2 (576), 3 (576)", words)
+        self.assertIn("column Horizon no separates them: 1 (576), 2 (576), 3 (576)", words)
         self.assertIn("--each-value 'Horizon no' makes", words)
 
     def test_columns_that_name_no_surfaces_are_not_shown(self):
@@ -198,10 +198,10 @@ class Heights(unittest.TestCase):
             {"empty": numpy.full(count, numpy.nan)},
             {"same": numpy.ones(count)},
         ):
-            self.assertIn("no column tells them apart", self.refused(points, **columns), columns)
+            self.assertIn("no column separates them", self.refused(points, **columns), columns)
         marker = numpy.tile(numpy.arange(20), 15)
         words = self.refused(points, well=of_well, marker=marker, id=numpy.arange(count))
-        self.assertIn("column marker tells them apart: 0 (15), 1 (15)", words)
+        self.assertIn("column marker separates them: 0 (15), 1 (15)", words)
         self.assertIn(", and 10 more", words)
 
     def test_text_that_names_surfaces_is_enough_at_few_places(self):
@@ -210,16 +210,16 @@ class Heights(unittest.TestCase):
         points = numpy.concatenate((top[number == 0], far, top[number == 1][:4]))
         names = ["Top"] * len(NODES) + ["Base"] * (len(NODES) + 4)
         self.assertIn("4 of 1,152 places", self.refused(points, name=names))
-        self.assertIsNotNone(self.told(points)[0])
-        self.assertIsNotNone(self.told(points, number=[1.0 * (name == "Top") for name in names])[0])
+        self.assertIsNotNone(self.note_and_facts(points)[0])
+        self.assertIsNotNone(self.note_and_facts(points, number=[1.0 * (name == "Top") for name in names])[0])
 
     def test_values_that_lack_at_some_places_do_not_hide_the_column(self):
         points, number = horizons(0, 500)
         number = number.astype(float)
         number[::100] = numpy.nan
-        self.assertIn("column n tells them apart: 0 (", self.refused(points, n=number))
+        self.assertIn("column n separates them: 0 (", self.refused(points, n=number))
         number[: len(NODES) : 3] = numpy.nan
-        self.assertIn("no column tells", self.refused(points, n=number))
+        self.assertIn("no column separates", self.refused(points, n=number))
 
 
 class InPython(unittest.TestCase):
@@ -295,20 +295,20 @@ class Where(InFolder):
             ("line=7", "no point has line = 7; values: 1 (30), 2 (30), 3 (30)"),
             ("line=one", "column line holds numbers, and 'one' is none; values: 1 (30)"),
             ("line=", "no point has line = nothing; values"),
-            ("horizon=Top", "there is no column horizon beside x, y and z; did you mean "
+            ("horizon=Top", "there is no column horizon besides x, y and z; did you mean "
                             "Horizon name?; columns: Horizon name, line, amp"),
-            ("X=3", "there is no column X beside x, y and z"),
+            ("X=3", "there is no column X besides x, y and z"),
             (["line=1", "Horizon name=Base"], "no point is left by --where 'Horizon name=Base' and "
                                               "--where line=1 together"),
         ):
             self.assert_refused(words, TABLE, "a.csv", where=where)
         rows = "1 2 3\n4 5 6\n7 8 1\n"
-        self.assert_refused("beside x, y and z; columns: none", rows, where="a=1")
+        self.assert_refused("besides x, y and z; columns: none", rows, where="a=1")
         for wrong in ("line", "=3", ["line=1", "two"]):
             with self.assertRaisesRegex(ValueError, "where takes COLUMN=VALUE, as horizon=Top, n"):
                 self.read(TABLE, "a.csv", where=wrong)
 
-    def test_a_value_that_lacks_beside_others_is_a_note(self):
+    def test_a_missing_value_among_others_is_a_note(self):
         cloud = self.read(TABLE, "a.csv", where={"line": [1, 9]})
         self.assertEqual(cloud.points.GetNumberOfPoints(), 30)
         self.assertIn("no point has line = 9; values: 1 (30), 2 (30), 3 (30)", cloud.notes)
@@ -369,7 +369,7 @@ class Where(InFolder):
         self.assertEqual(set(coordinates(cloud)[:, 2]), {-10.0})
 
 
-class OfProgram(Program):
+class HeightsInProgram(Program):
     """Runs the program."""
 
     def run_of(self, *arguments, code=0):
@@ -417,7 +417,7 @@ class OfProgram(Program):
         self.assertEqual(sorted(os.listdir(self.folder))[1:],
                          [f"points_{code}_surface.vtp" for code in range(4)])
 
-    def test_points_without_a_value_are_told_and_of_no_surface(self):
+    def test_points_without_a_value_are_noted_and_in_no_surface(self):
         rows = "".join(f"{x},{y},{n},{n if x < 5 else ''}\n" for n in (1, 2) for x in range(6)
                        for y in range(6))
         shown = self.run_of(self.file("a.csv", "x,y,z,n\n" + rows), "--each-value", "n")
@@ -429,10 +429,10 @@ class OfProgram(Program):
         many = self.file("many.csv", many)
         words = "".join(f"{i % 9},{i // 9},1,{('a_b', 'a b')[i % 2]}\n" for i in range(81))
         words = self.file("words.csv", "x,y,z,w\n" + words)
-        for code, told, arguments in (
+        for code, expected, arguments in (
             (1, "many.csv: column d has 1,600 values, and --each-value makes a surface of each, at "
                 "most 1,000", (many, "--each-value", "d")),
-            (1, "many.csv: there is no column depth beside x, y and z; columns: d",
+            (1, "many.csv: there is no column depth besides x, y and z; columns: d",
              (many, "--each-value", "depth")),
             (2, "--each-value would write words_a_b_surface.vtp twice; 'a b' is one of the values",
              (words, "--each-value", "w")),
@@ -446,7 +446,7 @@ class OfProgram(Program):
         ):
             with self.subTest(arguments=arguments):
                 error = self.run_of(*arguments, code=code)
-                self.assertIn(told, error)
+                self.assertIn(expected, error)
                 self.assertEqual(len(error.splitlines()), 1)
         self.assertEqual(sorted(os.listdir(self.folder)), [many, words])
 
@@ -457,17 +457,17 @@ class OfProgram(Program):
         self.assertIn("a.csv, n = 2: no surface: there is only one point", error)
         self.assertIn("a_1_surface.vtp", os.listdir(self.folder))
 
-    def test_files_that_are_each_a_surface_are_told(self):
+    def test_files_that_are_each_a_surface_are_reported(self):
         names = [
             self.file(f"{name}.xyz", "".join(f"{x} {y} {-depth}\n" for x, y in NODES))
             for name, depth in (("top", 0), ("base", 500))
         ]
         error = self.run_of(*names, code=1)
         self.assertIn("top.xyz + base.xyz: 576 of 576 places", error)
-        self.assertIn("the files tell them apart: --each makes a surface of each", error)
+        self.assertIn("the files separate them: --each makes a surface of each", error)
         self.run_of(*names, "--each")
 
-    def test_files_without_the_value_are_told(self):
+    def test_files_without_the_value_are_noted(self):
         for name, value in (("a.csv", "Top"), ("b.csv", "Base")):
             rows = "".join(f"{x},{y},1,{value}\n" for x in range(5) for y in range(5))
             self.file(name, "x,y,z,name\n" + rows)
@@ -562,15 +562,15 @@ class Meshes(InFolder):
         # As x = 100 (u + 0.4 sin 9u): a column of faces faces down where x falls.
         x = points[:30, 0]
         down = 2 * 29 * int(numpy.count_nonzero(numpy.diff(x) < 0))
-        told = self.shares(points, triangles)
-        self.assertIn(f"is no elevation surface: of 1,682 faces, {down:,} face down where others "
-                      f"face up ({100 * down / 1682:.0f} %)", told)
+        words = self.shares(points, triangles)
+        self.assertIn(f"is not an elevation surface: of 1,682 faces, {down:,} face down where others "
+                      f"face up ({100 * down / 1682:.0f} %)", words)
         flipped = triangles.copy()
         some = numpy.random.default_rng(3).random(len(triangles)) < 0.5
         flipped[some] = flipped[some][:, ::-1]
         soup = points[flipped].reshape(-1, 3), numpy.arange(flipped.size).reshape(-1, 3)
         for other in ((points, triangles[:, ::-1]), (points, flipped), soup):
-            self.assertEqual(self.shares(*other), told)
+            self.assertEqual(self.shares(*other), words)
 
     def test_the_order_of_corners_does_not_matter(self):
         points, triangles = FLAT
@@ -609,7 +609,7 @@ class Meshes(InFolder):
                 bad = self.written("ball" + suffix, FOLD)
                 with self.assertRaises(FileError) as caught:
                     reading.read(bad)
-                words = r"^\S+: is no elevation surface: of 1,682 faces, .* or --points-only takes its "
+                words = r"^\S+: is not an elevation surface: of 1,682 faces, .* or --points-only takes its "
                 self.assertRegex(str(caught.exception), words + "points as they are$")
                 cloud = reading.read(bad, points_only=True)
                 self.assertEqual(cloud.points.GetNumberOfPoints(), len(FOLD[0]))
@@ -619,7 +619,7 @@ class Meshes(InFolder):
         for name, case in (("Fold", FOLD), ("Flat", FLAT)):
             with open(self.written(name + ".ts", case), encoding="utf-8") as stream:
                 texts.append(stream.read())
-        words = "a.ts, Fold: is no elevation surface: of 1,682 faces"
+        words = "a.ts, Fold: is not an elevation surface: of 1,682 faces"
         self.assert_refused(words, "".join(texts), "a.ts")
         for options in ({"where": "name=Flat"}, {"layer": "Flat"}):
             cloud = self.read("".join(texts), "a.ts", **options)
@@ -647,18 +647,18 @@ class Meshes(InFolder):
             self.assertEqual(reading.read_faults(path).GetNumberOfPolys(), 1682)
 
     def test_reconstruct_looks_at_the_faces_of_a_mesh(self):
-        words = "points: the mesh is no elevation surface: of 1,682 faces.* or give its points alone"
+        words = "points: the mesh is not an elevation surface: of 1,682 faces.* or give its points alone"
         with self.assertRaisesRegex(ElevationSurfaceError, words):
             reconstruct(mesh_of(*FOLD))
         self.assertEqual(reconstruct(mesh_of(*FLAT)).surface.GetNumberOfPolys(), 1682)
 
 
-class MeshesOfProgram(Program):
+class MeshesInProgram(Program):
     def test_a_folded_mesh_is_refused_and_its_points_can_be_taken(self):
         writing.write_surface(mesh_of(*FOLD), self.path("a.ts"))
         done = self.call("a.ts", "--no-picture")
         self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1))
-        self.assertIn("a.ts: is no elevation surface", done.stderr)
+        self.assertIn("a.ts: is not an elevation surface", done.stderr)
         done = self.call("a.ts", "--no-picture", "--points-only")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("only the points are used", done.stdout)

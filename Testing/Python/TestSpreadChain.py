@@ -208,10 +208,10 @@ def check_same(name):
               "%s, alone: %s" % (name, words))
     are_full = gather(mine.GetNumberOfElements(6 if isinstance(mine, vtkTable) else 0) > 0)
     further = further if sum(are_full) > 1 else []  # what is on one rank stays there
-    told = [text for text in found if ON_ONE_RANK in text]
-    check_equal([text for text in found if text not in told], words if RANK == 0 else [], "messages, " + name)
-    check(len(told) == (len(further) if RANK == 0 else 0) and all(a in b for a, b in zip(further, told)),
-          "%s: %s of what is made on one rank" % (name, told))
+    gathering = [text for text in found if ON_ONE_RANK in text]
+    check_equal([text for text in found if text not in gathering], words if RANK == 0 else [], "messages, " + name)
+    check(len(gathering) == (len(further) if RANK == 0 else 0) and all(a in b for a, b in zip(further, gathering)),
+          "%s: %s of what is made on one rank" % (name, gathering))
     check_equal(report_of(chain), report_of(expected), "the report, " + name)
     check_equal(chain.GetOutputDataObject(3).GetNumberOfRows(),
                 expected.GetOutputDataObject(3).GetNumberOfRows() if RANK == 0 else 0, "rows of the report, " + name)
@@ -273,7 +273,7 @@ def main():
     wrong = table(SLICES[RANK])
     if RANK == LAST:
         wrong.GetColumn(3).SetValue(1, "sea")
-    check_refused("a word in a table", "row %d of column z is no number: sea" % (SLICES[LAST][0] + 1), wrong)
+    check_refused("a word in a table", "row %d of column z is not a number: sea" % (SLICES[LAST][0] + 1), wrong)
     return "%d inputs of the whole chain" % len(INPUTS)
 
 

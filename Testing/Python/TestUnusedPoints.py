@@ -180,7 +180,7 @@ class Products(unittest.TestCase):
             entry.Update()
             self.assertEqual(entry.GetOutputDataObject(0).GetBounds()[1] == 400.0, keep)
 
-    def test_the_program_writes_none_unless_it_is_told_to(self):
+    def test_the_program_writes_none_unless_asked_to(self):
         with tempfile.TemporaryDirectory() as folder:
             points, surface = (os.path.join(folder, name) for name in ("points.xyz", "surface.vtp"))
             numpy.savetxt(points, XYZ[numpy.isfinite(XYZ).all(axis=1)])

@@ -90,7 +90,7 @@ class Interpolation(unittest.TestCase):
         numpy.testing.assert_array_equal(grid.x / 7 - 0.5, numpy.round(grid.x / 7 - 0.5))
         self.assertTrue((numpy.diff(grid.y) == -7).all())
 
-    def test_errors_are_told_where_holes_were_filled(self):
+    def test_errors_are_given_where_holes_were_filled(self):
         grid = reconstruct(wavy(), maximum_edge_length=10, interpolation="thin-plate").to_grid(1)
         middle = numpy.hypot(grid.x - WEST - 50, grid.y[:, None] - SOUTH - 50)
         self.assertTrue((grid.error[middle < 8] > 0).all())
@@ -181,10 +181,10 @@ class OnPixels(Program):
         self.file("far.asc", "ncols 2\nnrows 2\nxllcorner 9\nyllcorner 47\ncellsize 0.1\n1 2\n3 4\n")
         with self.assertRaisesRegex(ElevationSurfaceError, "far.asc has its centre in the surface: it is from x,y 9.05, 47.05 to"):
             filled.to_grid(like=self.path("far.asc"))
-        with self.assertRaisesRegex(ElevationSurfaceError, "is no raster"):
+        with self.assertRaisesRegex(ElevationSurfaceError, "is not a raster"):
             filled.to_grid(like=self.path(self.file("a.xyz", "0 0 1\n1 0 1\n0 1 2\n3 5 2\n")))
 
-    def test_a_turned_grid_is_no_text_grid(self):
+    def test_a_turned_grid_is_not_a_text_grid(self):
         _, z = with_voids()
         grid = reconstruct(read(dem(self.path("dem.tif"), z, 17.0))).to_grid()
         for name in ("a.asc", "a.dat"):
@@ -289,7 +289,7 @@ class Files(InFolder):
                 self.assertEqual(layer.GetFeatureCount(), len(lines))
                 for feature, (points, values) in zip(layer, lines):
                     found = numpy.array(feature.GetGeometryRef().GetPoints())
-                    if found.shape[1] == 2:  # DXF tells the elevation of a flat line once
+                    if found.shape[1] == 2:  # DXF has the elevation of a flat line once
                         found = numpy.column_stack((found, points[:, 2]))
                     digits = 1e-8 if suffix == ".dxf" else 0
                     numpy.testing.assert_allclose(found, points, rtol=0, atol=digits)
@@ -301,7 +301,7 @@ class Files(InFolder):
                 layer = data = None
         self.assertEqual(sorted(os.listdir(self.folder)), ["c.dxf", "c.geojson", "c.gpkg"])
 
-    def test_outlines_tell_what_became_of_holes(self):
+    def test_outlines_have_the_status_of_holes(self):
         lines = line_files.outlines(self.result)
         path = self.path("o.gpkg")
         line_files.write_lines(lines, path, "outlines", None)
@@ -372,9 +372,9 @@ class CommandLine(Program):
             ("--grid-output is for the result of --grid", ("--grid-output", "g.tif")),
             ("g.png: .png cannot be written; use one of .tif", ("--grid", "5", "--grid-output", "g.png")),
             ("c.shp: .shp cannot be", ("--contours", "5", "--contours-output", "c.shp")),
-            ("--crs: EPSG:1 is no coordinate reference system", ("--crs", "EPSG:1")),
+            ("--crs: EPSG:1 is not a coordinate reference system", ("--crs", "EPSG:1")),
             ("two results", ("--contours", "5", "--contours-output", "o.dxf", "--outlines", "o.dxf")),
-            ("leave no outlines", ("--no-trim", "--no-fill", "--outlines")),
+            ("there are no outlines with", ("--no-trim", "--no-fill", "--outlines")),
         ):
             with self.subTest(arguments=arguments):
                 done = self.call(self.name, *arguments)

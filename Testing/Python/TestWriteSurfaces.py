@@ -240,7 +240,7 @@ class LargeSurfaces(unittest.TestCase):
         expected = [abs(search.EvaluateFunction(point)) for point in away.tolist()]
         numpy.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
 
-    def test_a_sample_of_many_points_is_measured_and_told(self):
+    def test_a_sample_of_many_points_is_measured_and_reported(self):
         xyz = numpy.array([(x, y, 0.0) for x in range(40) for y in range(40)])
         twice = numpy.concatenate((xyz, xyz + (0, 0, 3)))
         surface = reconstruct(twice, duplicates="keep-first").complete
@@ -248,11 +248,11 @@ class LargeSurfaces(unittest.TestCase):
         most = distance.MOST_MEASURED
         self.addCleanup(setattr, distance, "MOST_MEASURED", most)
         for distance.MOST_MEASURED, measured in ((most, 1600), (1000, 800)):
-            told = distance.distance_to(surface, twice, chosen)
-            self.assertEqual((told["points"], told["points_not_corners"]), (3200, 1600))
-            self.assertEqual((told["measured"], told["maximum"]), (measured, 3.0))
-            self.assertAlmostEqual(told["mean"], 1.5)
-            self.assertAlmostEqual(told["rms"], 4.5**0.5)
+            measured_values = distance.distance_to(surface, twice, chosen)
+            self.assertEqual((measured_values["points"], measured_values["points_not_corners"]), (3200, 1600))
+            self.assertEqual((measured_values["measured"], measured_values["maximum"]), (measured, 3.0))
+            self.assertAlmostEqual(measured_values["mean"], 1.5)
+            self.assertAlmostEqual(measured_values["rms"], 4.5**0.5)
 
     @draws
     def test_the_picture_of_fewer_triangles_looks_the_same(self):

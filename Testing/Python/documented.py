@@ -28,7 +28,7 @@ def blocks_of(text):
 
 
 def examples_of(text):
-    """[(language, code, [lines that are told to be printed])] of blocks to run, and the text after each."""
+    """[(language, code, [lines that it should print])] of blocks to run, and the text after each."""
     examples = []
     for language, code in blocks_of(text):
         if language == "text":

@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 
 def _sign(value, bound, exact):
-    """Signs of values with an error of up to bound; exact(i) is the value where that is no answer."""
+    """Signs of values with an error of up to bound; exact(i) is the value where that is not an answer."""
     sign = numpy.sign(value).astype(int)
     # Without a bound the value is zero, as all its terms are.
     for i in numpy.flatnonzero((abs(value) <= bound) & (bound > 0.0)):
@@ -90,7 +90,7 @@ class _Mesh:
         return f"edge {self.origin[h]}-{self.destination[h]}"
 
 
-def _faults_of_triangles(mesh):
+def _triangle_faults(mesh):
     if not mesh.are_triangles:
         yield "there is a polygon that is not a triangle"
         return
@@ -107,7 +107,7 @@ def _faults_of_triangles(mesh):
                 yield f"two triangles run along {mesh.edge(h)} in the same way"
 
 
-def _faults_of_circles(mesh):
+def _circle_faults(mesh):
     h = numpy.flatnonzero(mesh.twin > numpy.arange(len(mesh.twin)))
     a, b, c, d = (mesh.places[ids] for ids in (
         mesh.origin[h], mesh.destination[h], mesh.apex[h], mesh.apex[mesh.twin[h]]))
@@ -120,7 +120,7 @@ def _faults_of_circles(mesh):
         yield f"{mesh.edge(h[i])} cuts a co-circular polygon, but not from its lowest vertex"
 
 
-def _faults_of_hull(mesh):
+def _hull_faults(mesh):
     border = numpy.flatnonzero(mesh.twin == -1)
     if not len(border):
         return
@@ -139,7 +139,7 @@ def _faults_of_hull(mesh):
         yield "the border winds around more than once"
 
 
-def _faults_of_vertices(mesh, surface):
+def _vertex_faults(mesh, surface):
     listed = surface.GetFieldData().GetArray("UnusedPointIds")
     unused = vtk_to_numpy(listed) if listed is not None and listed.GetNumberOfTuples() else []
     is_vertex = numpy.zeros(len(mesh.places), dtype=bool)
@@ -150,7 +150,7 @@ def _faults_of_vertices(mesh, surface):
         yield f"point {i} " + ("is listed as unused but is a vertex" if is_listed[i] else "is not a vertex")
 
 
-def _faults_of_overlap(mesh):
+def _overlap_faults(mesh):
     """Where a place is covered twice, a triangle at the border covers such a place."""
     corners = mesh.places[mesh.triangles]
     low, high = corners.min(axis=1), corners.max(axis=1)
@@ -179,16 +179,16 @@ def findings(*parts, delaunay=False, convex_hull=False, all_points=False):
     hull. all_points: all points are vertices, but those in UnusedPointIds of the field data.
     """
     mesh = _Mesh(*parts)
-    found = list(_faults_of_triangles(mesh))
+    found = list(_triangle_faults(mesh))
     if found:
         return found  # what follows presumes a mesh
-    found += _faults_of_circles(mesh) if delaunay else []
-    found += _faults_of_hull(mesh) if convex_hull else []
-    found += _faults_of_vertices(mesh, parts[0]) if all_points else []
-    return found + list(_faults_of_overlap(mesh))
+    found += _circle_faults(mesh) if delaunay else []
+    found += _hull_faults(mesh) if convex_hull else []
+    found += _vertex_faults(mesh, parts[0]) if all_points else []
+    return found + list(_overlap_faults(mesh))
 
 
-def number_of_border_edges(surface):
+def border_edge_count(surface):
     """How many edges have one triangle, in a surface without findings."""
     mesh = _Mesh(surface)
     mesh.connect()

@@ -62,7 +62,7 @@ def edges(surface):
     return {tuple(sorted(t[[i, i - 1]])) for t in triangles(surface) for i in range(3)}
 
 
-def area_of_ring(xy):
+def ring_area(xy):
     x, y = xy.T
     return 0.5 * abs(float(x @ numpy.roll(y, 1) - y @ numpy.roll(x, 1)))
 
@@ -71,7 +71,7 @@ def area_of_ring(xy):
 
 
 def pixels(path, band=1):
-    """(rows, columns), NaN where there are no data, and the transform of a raster."""
+    """(rows, columns), NaN where there are not data, and the transform of a raster."""
     raster = gdal.Open(path)
     one = raster.GetRasterBand(band)
     values = one.ReadAsArray().astype("f8")
@@ -88,7 +88,7 @@ def features_of(path):
 
 
 def faces_of(path):
-    """The number of triangles that the head of a PLY file tells."""
+    """The number of triangles in the head of a PLY file."""
     with open(path, "rb") as file:
         return int(re.search(rb"element face (\d+)", file.read(2000)).group(1))
 

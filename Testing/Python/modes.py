@@ -36,7 +36,7 @@ FILTERS = {
 
 
 def case_of(xyz, **more):
-    """Points; each has its number as a value, so that points at one place can be told apart."""
+    """Points; each has its number as a value, so that points at one place can be distinguished."""
     case = types.SimpleNamespace(
         xyz=xyz, arrays={"Number": numpy.arange(float(len(xyz)))}, roles={}, dealt={}, lines=None, rings=None,
         triangles=None, cells={}, on_one=False, copies=False, composite=None, kind=vtkPolyData)
@@ -184,10 +184,10 @@ def lattice_and_lakes(random, count):
 
 
 def gaps(random, count):
-    """A cloud with a lake and a bay, and a few points beside."""
+    """A cloud with a lake and a bay, and a few points outside."""
     xyz = away(scattered(random, count), (0.1, 0.0, 0.15), (-0.5, -0.1, 0.2))
-    beside = scattered(random, 5) + (3.0 * numpy.sqrt(count), 0.0, 0.0)
-    return case_of(numpy.vstack((xyz, beside)))
+    outside = scattered(random, 5) + (3.0 * numpy.sqrt(count), 0.0, 0.0)
+    return case_of(numpy.vstack((xyz, outside)))
 
 
 def tracks(random, count):
@@ -433,7 +433,7 @@ def has_pieces(case):
     return case.triangles is None and not case.composite
 
 
-def source_of_pieces(row, case, folder, is_alone=False):
+def piece_source(row, case, folder, is_alone=False):
     """A source without points, whose files go to a folder; of all ranks together, or of this one alone."""
     source = vtkReconstructPieces()
     if is_alone:
@@ -479,7 +479,7 @@ def has_error(messages):
 def in_pieces(row, case, parts, pieces, count, is_alone=False):
     """The same, of a source in a folder of its own."""
     with tempfile.TemporaryDirectory() as folder:
-        source = source_of_pieces(row, case, folder, is_alone)
+        source = piece_source(row, case, folder, is_alone)
         made = pieces_made(source, row, case, parts, pieces, count, has_error)
         source.Reset()
     return made

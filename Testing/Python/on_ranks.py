@@ -130,7 +130,7 @@ def check_refused(algorithm, data, part, claim, **properties):
 
 
 def check_stops(random, count, share, make):
-    """Progress rises; an abort on one rank, at any moment, ends all of them, and one rank tells of it. The
+    """Progress rises; an abort on one rank, at any moment, ends all of them, and one rank reports it. The
     rank reports nothing more.
 
     share  the part of the progress in which it comes
@@ -141,7 +141,7 @@ def check_stops(random, count, share, make):
         at, culprit = share * random.random(), random.integers(COUNT)
         algorithm = make(i)
         algorithm.SetNumberOfThreads(1)
-        progress, stopped, told_of = [], [], []
+        progress, stopped, reported = [], [], []
 
         def stop(caller, _event):
             progress.append(caller.GetProgress())
@@ -150,13 +150,13 @@ def check_stops(random, count, share, make):
                 caller.SetAbortExecute(1)
 
         algorithm.AddObserver("ProgressEvent", stop)
-        algorithm.AddObserver("WarningEvent", lambda *_: told_of.append("warning"))
-        algorithm.AddObserver("ErrorEvent", lambda *_: told_of.append("error"))
+        algorithm.AddObserver("WarningEvent", lambda *_: reported.append("warning"))
+        algorithm.AddObserver("ErrorEvent", lambda *_: reported.append("error"))
         algorithm.UpdatePiece(RANK, COUNT, 0)
         check(progress == sorted(progress), "progress rises")
         if any(gather(stopped)):
             reached += 1
             check(not stopped or len(progress) == stopped[0], "no report follows abort %d" % i)
             check(algorithm.GetOutput().GetNumberOfPoints() == 0, "empty after abort %d" % i)
-            check(told_of == ["warning"] * (RANK == 0), "%s of abort %d" % (told_of, i))
+            check(reported == ["warning"] * (RANK == 0), "%s of abort %d" % (reported, i))
     check(reached > count // 2, "%d of %d aborts have come to pass" % (reached, count))

@@ -97,15 +97,15 @@ REPORTED = ("Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoi
 
 
 def report_of(data):
-    """[(number of the hole, what is told of it, its rim's points in one order)], or of rings the last."""
+    """[(number of the hole, what is reported about it, its rim's points in one order)], or of rings the last."""
     cells, found = data.GetCellData(), []
     rows = numbers_of(data.GetPoints().GetData()) if data.GetNumberOfPoints() else None
     ids = cells.GetArray("HoleId")
     for i in range(data.GetNumberOfLines()):
-        told = [cells.GetArray(name).GetValue(i) for name in REPORTED] if ids else []
+        values = [cells.GetArray(name).GetValue(i) for name in REPORTED] if ids else []
         corners = data.GetCell(data.GetNumberOfVerts() + i).GetPointIds()
         rim = [tuple(rows[corners.GetId(k)]) for k in range(corners.GetNumberOfIds() - 1)]
-        found.append((ids.GetValue(i) if ids else i, (*told, *sorted(rim))))
+        found.append((ids.GetValue(i) if ids else i, (*values, *sorted(rim))))
     return found
 
 
@@ -148,20 +148,20 @@ def made_by(algorithms, messages, ids=None, without=()):
 def take_gathering(messages):
     """Takes the lines away that report a surface on one rank, and returns them."""
     lines = [(event, line) for event, text in messages for line in text.splitlines()]
-    told = [line for line in lines if "is made on one rank" in line[1]]
-    if told:
-        messages[:] = [line for line in lines if line not in told]
-    return told
+    gathering = [line for line in lines if "is made on one rank" in line[1]]
+    if gathering:
+        messages[:] = [line for line in lines if line not in gathering]
+    return gathering
 
 
 def joined(parts, are_in_order=False, have_holes_numbers=False, digits=None):
-    """What parts of one surface have together. All tell the same counts.
+    """The parts of one surface together. All report the same counts.
 
     are_in_order        whether the order of points and triangles counts, too
     have_holes_numbers  whether the numbers of holes do, which follow the order of triangles
     digits              so many of z and values count behind the point
     """
-    whole = {"counts": parts[0]["counts"], "messages": [told for part in parts for told in part["messages"]],
+    whole = {"counts": parts[0]["counts"], "messages": [message for part in parts for message in part["messages"]],
              "alike": all(part["counts"] == parts[0]["counts"] for part in parts), "ports": []}
     whole["shares"] = [sum(block["count"] for block in part["ports"][0]) for part in parts]
     for port in range(min(len(part["ports"]) for part in parts)):
@@ -174,25 +174,25 @@ def joined(parts, are_in_order=False, have_holes_numbers=False, digits=None):
                 widths = {one.shape[1] for one in rows}
                 block[name] = numpy.vstack(rows) if len(widths) == 1 else numpy.zeros((len(rows), 0))
             block["holes"] = numpy.concatenate([one["holes"] for one in each])
-            block["report"] = [told for one in each for told in one["report"]]
-            block["lattice"] = sorted({told for one in each for told in one["lattice"] if port == 0})
+            block["report"] = [row for one in each for row in one["report"]]
+            block["lattice"] = sorted({found for one in each for found in one["lattice"] if port == 0})
             block["kinds"] = {}
             for one in each:
                 for name, kind in one["kinds"].items():
                     block["kinds"].setdefault(name, set()).add(kind)
             blocks.append(block)
         whole["ports"].append(blocks)
-    # Holes have numbers by the order of triangles; here, by what is told of them.
-    for block, told in zip(whole["ports"][0], whole["ports"][1] if len(whole["ports"]) == 2 else []):
-        order = sorted(told["report"], key=lambda one: one[0] if have_holes_numbers else one[1])
+    # Holes have numbers by the order of triangles; here, by what is reported about them.
+    for block, outlines in zip(whole["ports"][0], whole["ports"][1] if len(whole["ports"]) == 2 else []):
+        order = sorted(outlines["report"], key=lambda one: one[0] if have_holes_numbers else one[1])
         place = {number: i for i, (number, _) in enumerate(order)}
-        told["report"] = order
+        outlines["report"] = order
         block["holes"] = numpy.array([place.get(number, -1) for number in block["holes"].tolist()], float)
         if len(block["triangles"]):
             block["triangles"] = numpy.column_stack((block["triangles"], block["holes"]))
     for blocks in whole["ports"]:
         for block in blocks:
-            block["report"] = [told for _, told in block["report"]]
+            block["report"] = [row for _, row in block["report"]]
             del block["holes"]
             if digits is not None:
                 round_heights(block, digits)
@@ -201,13 +201,13 @@ def joined(parts, are_in_order=False, have_holes_numbers=False, digits=None):
     return whole
 
 
-def rounded(told, digits):
-    return tuple(rounded(one, digits) if isinstance(one, tuple) else round(one, digits) for one in told)
+def rounded(row, digits):
+    return tuple(rounded(one, digits) if isinstance(one, tuple) else round(one, digits) for one in row)
 
 
 def round_heights(block, digits):
-    """Rounds all of points and triangles but x and y, and what is told of holes and rings."""
-    block["report"] = [rounded(told, digits) for told in block["report"]]
+    """Rounds all of points and triangles but x and y, and the reports on holes and rings."""
+    block["report"] = [rounded(row, digits) for row in block["report"]]
     width = block["points"].shape[1] if len(block["points"]) else 0
     for name in ("points", "triangles"):
         rows = block[name]

@@ -29,7 +29,7 @@ def row_of(one):
     names = ["`%s`" % option for option in one.options if "program" in one.places]
     setter = SECOND_INPUTS.get(one.name, one.setter)
     panels = [one.label_in(place) for place in ("chain", "reader") if place in one.places]
-    takes = "on or off" if one.kind.of == "bool" else one.takes.replace("|", "/")
+    takes = "on or off" if one.kind.value_type == "bool" else one.takes.replace("|", "/")
     takes += ", in %s" % one.kind.unit if one.kind.unit else ""
     remarks = [] if one.in_pieces else ["not in pieces"]
     for needs, other, _ in one.rules():

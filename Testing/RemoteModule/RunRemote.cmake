@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Copies the module into Remote/ElevationSurface of the small VTK tree beside this file, builds it there
+# Copies the module into Remote/ElevationSurface of the small VTK tree next to this file, builds it there
 # and runs a program that links it. See CMakeLists.txt for the variables.
 
 function (step what)

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Times vtkGridDelaunay2D beside other Delaunay codes on the same points, and checks the results
+// Times vtkGridDelaunay2D against other Delaunay codes on the same points, and checks the results
 // against each other. See README.md for how to run it and how to read what it prints.
 //
 // For each data set:
@@ -47,7 +47,7 @@ constexpr Index MostPointsOfVTK = 20000;
 const char* const Usage =
   R"(Usage: BenchmarkDelaunay [options]
 
-Times vtkGridDelaunay2D beside CGAL and delaunay32 (where built with them) and vtkDelaunay2D on the
+Times vtkGridDelaunay2D against CGAL and delaunay32 (where built with them) and vtkDelaunay2D on the
 same points, in one process and in turn, measures peak memory, and checks the results against each
 other.
 
@@ -61,7 +61,7 @@ other.
   --extra           all such files of the folder ELEVATION_SURFACE_EXTRA_DATA
   --repeats N       timed runs of each code; default 5
   --time-limit S    seconds a code may take for its trial, and for all its timed runs together (it
-                    is then left out of further rounds); default 60, 0 is no limit
+                    is then left out of further rounds); default 60, 0 means no limit
   --searches        also times vtkGridDelaunay2D without lattices by each of its two searches
   --instructions LIST
                     also times the kernel alone, without lattices, with no wider instructions of the

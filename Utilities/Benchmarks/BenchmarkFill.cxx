@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Times vtkFillElevationHoles on a large surface with many holes, beside CGAL and
+// Times vtkFillElevationHoles on a large surface with many holes, against CGAL and
 // vtkFillHolesFilter. See README.md.
 #include "Arguments.h"
 #include "ChildProcess.h"
@@ -97,7 +97,7 @@ struct Disc
   double Radius;
 };
 
-/** Discs beside each other in rows, the largest first. @return the height they take */
+/** Discs next to each other in rows, the largest first. @return the height they take */
 double Arrange(const Options& options, double width, std::vector<Disc>& discs)
 {
   constexpr double margin = 3.0;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Times vtkGridDelaunay2D with a MaximumElevationError, and counts its vertices, beside greedy
+// Times vtkGridDelaunay2D with a MaximumElevationError, and counts its vertices, against greedy
 // insertion one point at a time, vtkDecimatePro and vtkQuadricDecimation. See README.md.
 #include "Arguments.h"
 #include "ChildProcess.h"
@@ -25,8 +25,8 @@ using namespace benchmark;
 
 const char* const Usage = R"(Usage: BenchmarkSimplify [options]
 
-Times vtkGridDelaunay2D with a MaximumElevationError beside triangulating all points, in turns, and
-counts its vertices beside greedy insertion one point at a time (by coordinates, also on a
+Times vtkGridDelaunay2D with a MaximumElevationError against triangulating all points, in turns, and
+counts its vertices against greedy insertion one point at a time (by coordinates, also on a
 lattice). Prints the largest vertical distance of all points from what vtkDecimatePro and
 vtkQuadricDecimation make of the full triangulation with as many vertices. Tables are Markdown.
 
@@ -260,15 +260,15 @@ bool PrintTimes(const std::vector<Variant>& variants, const Options& options)
 void Print(const Decimated& decimated, double error, std::size_t coordinates)
 {
   std::printf(" %d | %.2f | %.2f | %.0f |", decimated.Vertices, decimated.Largest / error,
-    300.0 * decimated.Beside / static_cast<double>(coordinates), 1e3 * decimated.Seconds);
+    300.0 * decimated.Outside / static_cast<double>(coordinates), 1e3 * decimated.Seconds);
 }
 
 void PrintPeers(
   const std::vector<Variant>& variants, const Coordinates& points, const Options& options)
 {
   std::printf("| error %% | vertices | greedy | ratio | greedy ms |%s\n|---|---|---|---|---|%s\n",
-    options.Decimation ? " vtkDecimatePro | error | beside % | ms | vtkQuadricDecimation | error "
-                         "| beside % | ms |"
+    options.Decimation ? " vtkDecimatePro | error | outside % | ms | vtkQuadricDecimation | error "
+                         "| outside % | ms |"
                        : "",
     options.Decimation ? "---|---|---|---|---|---|---|---|" : "");
   std::vector<double> errors;

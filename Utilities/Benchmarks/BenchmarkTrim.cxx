@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Times vtkTrimOutwardTriangles, with a boundary that is given and with one that it extracts, beside
+// Times vtkTrimOutwardTriangles, with a boundary that is given and with one that it extracts, against
 // vtkGridDelaunay2D, which made the mesh. See README.md.
 #include "Arguments.h"
 #include "ChildProcess.h"

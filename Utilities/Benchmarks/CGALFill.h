@@ -19,7 +19,7 @@ namespace benchmark
  * Fills the hole along one of the borders of a mesh.
  * @param[in,out] points     of the mesh; new ones are appended
  * @param[in]     triangles  of the mesh, counter-clockwise
- * @param[in]     from, to   an edge of the hole, as the triangle beside it runs
+ * @param[in]     from, to   an edge of the hole, as the triangle next to it runs
  * @return the new triangles; empty when CGAL failed
  */
 std::vector<Index> FillWithCGAL(

@@ -79,7 +79,7 @@ void Measure(vtkPolyData* mesh, const Coordinates& points, Decimated& decimated)
       const double distance = std::fabs(points[i + 2] - z);
       least = least < 0.0 ? distance : std::min(least, distance);
     });
-    decimated.Beside += least < 0.0;
+    decimated.Outside += least < 0.0;
     decimated.Largest = std::max(decimated.Largest, least);
   }
 }

@@ -19,7 +19,7 @@ struct Decimated
   Index Vertices = 0;
   double Seconds = 0.0;
   double Largest = 0.0; ///< vertical distance of a point above or below the surface
-  Index Beside = 0;     ///< points that are not above or below it
+  Index Outside = 0;    ///< points that are not above or below it
 };
 
 /** By vtkDecimatePro and vtkQuadricDecimation, to a number of vertices, as far as they go. */

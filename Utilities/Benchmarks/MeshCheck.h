@@ -39,12 +39,12 @@ public:
 struct MeshFacts
 {
   std::size_t Triangles = 0;
-  Index MissingPoints = 0; ///< distinct points that are no vertex
+  Index MissingPoints = 0; ///< distinct points that are not a vertex
   double Coverage = 0.0;   ///< sum of the triangles' areas in parts of the hull's area
   std::size_t FlatTriangles = 0;
   std::size_t Ties = 0; ///< inner edges whose two triangles lie on one circle
   /**
-   * All edges that are no ties, sorted. Where more than three points lie on an empty circle, a
+   * All edges that are not ties, sorted. Where more than three points lie on an empty circle, a
    * code may cut their polygon as it likes; all other edges are the same in every Delaunay
    * triangulation, and with no tie they say the triangles.
    */

@@ -19,7 +19,7 @@ from vtkelevationsurface.distance import distance_to
 from vtkelevationsurface.report import reasons_unused
 from vtkelevationsurface.spreading import OUT_OF_OUTLINE
 
-from PaperClouds import made, points_of
+from PaperClouds import make_horizon, points_of
 from ProcessMemory import forget_most, memory_of
 
 ERRORS = (0.5, 1.0, 3.0)  # percent of the relief
@@ -31,7 +31,7 @@ MOST_TRIALS = 20
 
 def chain(path, repeats):
     points = numpy.fromfile(path, "<f8").reshape(-1, 3)
-    reconstruct(made(1000), threads=1)  # so that its program code is in memory
+    reconstruct(make_horizon(1000), threads=1)  # so that its program code is in memory
     clock, processor, most = [], [], 0
     for _ in range(int(repeats)):
         result = None  # the last one's memory goes first
@@ -75,7 +75,7 @@ class Surface:
         """What is reported of one surface. asked: words"""
         result = reconstruct(self.points, maximum_elevation_error=error)
         report = result.report
-        # Points outside the outline that was found are no points of the surface.
+        # Points outside the outline that was found are not points of the surface.
         inside = reasons_unused(result) != OUT_OF_OUTLINE
         distance = distance_to(result.complete, self.points, inside)
         return {

@@ -50,7 +50,7 @@ def cut(points, count):
     return points[numpy.sort(kept)]
 
 
-def made(count):
+def make_horizon(count):
     """A horizon that is made: nodes of a turned lattice within a wavy outline, with five holes."""
     steps = numpy.array([12.5, 18.75])
     area = numpy.pi * (1.025 - sum(radius**2 for _, _, radius in VOIDS))
@@ -78,7 +78,7 @@ def cloud_of(count):
         points = points_of(name) if name else None
         if points is not None and len(points) >= count:
             return cut(points, count), f"{name}, cut from {len(points):,}"
-    return made(count), "made: a turned lattice with five holes"
+    return make_horizon(count), "made: a turned lattice with five holes"
 
 
 def write_doubles(path, points):
@@ -96,7 +96,7 @@ def write_ply(path, points):
         (points - (low + high) / 2).astype("<f4").tofile(stream)
 
 
-def used_points_of_ply(path):
+def ply_used_points(path):
     """(faces, points that are corners of any) of a surface as MeshLab writes it: binary triangles."""
     with open(path, "rb") as stream:
         head = b""

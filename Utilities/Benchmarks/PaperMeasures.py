@@ -150,7 +150,7 @@ class MeshLab:
                 return {"not_run": f"ended with code {runs[-1]['code']}"}
             if sum(run["seconds"] for run in runs) > MOST_SECONDS:
                 break
-        faces, used = PaperClouds.used_points_of_ply(self.paths["out.ply"])
+        faces, used = PaperClouds.ply_used_points(self.paths["out.ply"])
         result = {"faces": faces, "unused": len(points) - used, "runs": len(runs)}
         for name, key in (("seconds",) * 2, ("processor_seconds",) * 2, ("peak_bytes", "bytes")):
             middle = [statistics.median(run[name] for run in some) for some in (runs, nothing)]

@@ -132,7 +132,7 @@ def cloud_table(measured):
 
 
 def beside_paper(measured):
-    """Milliseconds beside those of the paper, with slopes."""
+    """Milliseconds next to those of the paper, with slopes."""
     keys = ("compactness", "voxel_traversal", "meshlab")
     head = ["points"]
     for key in keys:
@@ -179,11 +179,11 @@ def check_table(measured):
     rows = []
     for cloud in measured["clouds"]:
         codes = cloud["codes"]
-        rows.append([f"{cloud['points']:,}", *(cell_of_words(codes, key) for key in keys)])
+        rows.append([f"{cloud['points']:,}", *(words_cell(codes, key) for key in keys)])
     return markdown(["points", *(NAMES[key] for key in keys)], rows, 1 + len(keys))
 
 
-def cell_of_words(codes, key):
+def words_cell(codes, key):
     one = codes.get(key, {"not_run": "not measured"})
     return one.get("not_run") or one.get("remark", "")
 
@@ -258,7 +258,7 @@ TABLES = {
 
 
 def with_tables(text, measured):
-    """A document with what is between the marks of each table made anew; all else stays.
+    """A document with what is between the marks of each table made anew; everything else stays.
 
     Marks are lines: <!-- table: NAME --> and <!-- end of table -->.
     """

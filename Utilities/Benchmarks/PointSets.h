@@ -43,7 +43,7 @@ struct PointSource
  */
 PointSource FileSource(const std::string& path);
 
-/** The .f64 and .vtp files of a folder by name. @throws elevation::Error when it is no folder */
+/** The .f64 and .vtp files of a folder by name. @throws elevation::Error when it is not a folder */
 std::vector<std::string> FilesOf(const std::string& folder);
 
 } // namespace benchmark

@@ -53,7 +53,7 @@ def with_absolute_paths(environment):
 
 
 def run(points, options, program=("-m", "vtkelevationsurface")):
-    """Runs the program beside the file of points. Where it fails, so does this process."""
+    """Runs the program in the folder of the file of points. Where it fails, so does this process."""
     folder, name = os.path.split(points)
     before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     done = subprocess.run(
