@@ -268,7 +268,7 @@ class LargeSurfaces(unittest.TestCase):
         images, drawn = [], []
         with tempfile.TemporaryDirectory() as folder:
             for most, pixels in ((10**9, 2.0), (1000, 6.0)):
-                with mock.patch.multiple(picture, MOST_TRIANGLES=most, PIXELS_OF_CELL=pixels):
+                with mock.patch.multiple(picture, MOST_TRIANGLES=most, CELL_PIXELS=pixels):
                     path = os.path.join(folder, f"{most}.png")
                     drawn.append(result.plot(path, "waves"))
                     image = run(vtkPNGReader(), path).GetPointData().GetScalars()
