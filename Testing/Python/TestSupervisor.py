@@ -23,7 +23,7 @@ os.replace = interrupted
 
 
 class Supervised(Program):
-    """What happens in the child is told by the parent."""
+    """The parent reports what happens in the child."""
 
     def supervise(self, body):
         script = f"import os, signal, sys, time\nfrom vtkelevationsurface import supervisor\n{body}\n"
@@ -49,7 +49,7 @@ class Supervised(Program):
             with self.subTest(signal=name):
                 done = self.supervise(body.format(name))
                 self.assertEqual(done.returncode, 1)
-                # Before it, libraries may tell of the crash in their way.
+                # Before it, libraries may report the crash in their way.
                 line = done.stderr.splitlines()[-1]
                 self.assertTrue(line.startswith("reconstruct: error: the run "), done.stderr)
                 self.assertIn(words, line)
@@ -99,7 +99,7 @@ class Supervised(Program):
                 self.assertEqual(made, ["a_surface.json", "a_surface.vtp"])
                 self.assertIn("written", done.stdout)
 
-    def test_each_is_stopped_between_files_and_tells_what_is_written(self):
+    def test_each_is_stopped_between_files_and_prints_what_is_written(self):
         for name in "abc":
             self.file(f"{name}.xyz", SHEET)
         body = (
