@@ -106,10 +106,10 @@ def follow_points(ranks, earlier, reasons, later, points):
 
 
 def original_ids(data):
-    """The array OriginalPointIds of points, (n,) of any kind of integers, or None."""
+    """The array OriginalPointIds of points, (n,) of any kind of signed integers, or None."""
     array = data.GetPointData().GetArray(ORIGINAL_IDS)
     numbers = None if array is None else vtk_to_numpy(array)
-    return numbers if numbers is not None and numbers.ndim == 1 and numbers.dtype.kind in "iu" else None
+    return numbers if numbers is not None and numbers.ndim == 1 and numbers.dtype.kind == "i" else None
 
 
 def without_unused(ranks, surface, last):
