@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How the program behaves: options, several files, interrupts."""
 
-import json
 import os
 import random
 import signal
@@ -26,13 +25,7 @@ def sheet(size, x=0.0):
     return "".join(f"{a:g} {b:g} {c:g}\n" for a, b, c in rows)
 
 
-class InFolder(Program):
-    def json(self, name):
-        with open(self.path(name), encoding="utf-8") as stream:
-            return json.load(stream)
-
-
-class Options(InFolder):
+class Options(Program):
     def test_the_version_is_printed(self):
         done = self.call("--version")
         self.assertEqual(done.returncode, 0)
@@ -87,7 +80,7 @@ class Options(InFolder):
         self.assertNotIn("add 360", self.call("greenwich.xyz", "--no-picture").stdout)
 
 
-class SeveralFiles(InFolder):
+class SeveralFiles(Program):
     def test_points_are_merged(self):
         self.file("a.xyz", sheet(5))
         self.file("b.xyz", sheet(5, 5.0))
@@ -143,7 +136,7 @@ class SeveralFiles(InFolder):
 
 
 @draws
-class Interrupts(InFolder):
+class Interrupts(Program):
     def start(self, *arguments):
         return subprocess.Popen(
             [*self.PROGRAM, *arguments], cwd=self.folder, stdout=subprocess.PIPE,

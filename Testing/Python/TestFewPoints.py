@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Surfaces of as few points as an elevation error allows: outline, faults, bound and report."""
 
-import json
 import os
 import sys
 import unittest
@@ -272,8 +271,7 @@ class FewPointsInProgram(Program):
             "a.xyz", "--maximum-elevation-error", "0.2", "--no-picture", "--report", "a.json"
         )
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        with open(self.path("a.json"), encoding="utf-8") as stream:
-            report = json.load(stream)
+        report = self.json("a.json")
         few = report["simplified"]
         self.assertEqual(few["maximum_elevation_error"], 0.2)
         self.assertEqual(few["points_redundant"], report["unused_reasons"][WITHIN])

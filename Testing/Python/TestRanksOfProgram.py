@@ -95,8 +95,7 @@ class OnRanks(Program):
         done = self.on(ranks, *arguments, "--report", "s.json")
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = [line for line in plain(done.stdout) if not line.startswith("  time")]
-        with open(self.path("s.json"), encoding="utf-8") as stream:
-            report = json.load(stream)
+        report = self.json("s.json")
         report = {name: value for name, value in report.items() if name not in VARY}
         for hole in report.get("holes", {}).get("list", ()):
             del hole["hole"]  # numbers depend on the order of triangles

@@ -405,8 +405,7 @@ class HeightsInProgram(Program):
         for value, stem in files.items():
             self.run_of(name, "--where", f"Horizon name={value}", "-o", "one.vtp")
             self.assertEqual(self.surface("one.vtp"), self.surface(f"{stem}_surface.vtp"))
-            with open(self.path(f"{stem}_surface.json"), encoding="utf-8") as stream:
-                report = json.load(stream)
+            report = self.json(f"{stem}_surface.json")
             self.assertEqual(report["options"]["where"], [["Horizon name", value]])
             self.assertNotIn("several_heights", report)
 
@@ -481,8 +480,7 @@ class HeightsInProgram(Program):
         shown = self.run_of(self.table(), "--duplicates", "keep-highest", "--report", "r.json")
         self.assertIn("note       576 places have several heights, up to 1720 apart: the highest is "
                       "taken (see --duplicates)", shown)
-        with open(self.path("r.json"), encoding="utf-8") as stream:
-            report = json.load(stream)
+        report = self.json("r.json")
         self.assertEqual(report["several_heights"]["places"], 576)
         self.assertLess(abs(report["several_heights"]["largest"] - 1720), 1e-5)
 
@@ -497,8 +495,7 @@ class HeightsInProgram(Program):
         ways, found = ("--no-trim", "--no-fill", "--report", "r.json"), []
         for way in ((), ("--pieces", "1"), ("--pieces", "7")):
             shown = self.run_of("a.npy", *ways, *way)
-            with open(self.path("r.json"), encoding="utf-8") as stream:
-                found.append(json.load(stream)["several_heights"])
+            found.append(self.json("r.json")["several_heights"])
             self.assertIn("places have several heights, up to 13 apart: the first is taken", shown)
         self.assertEqual(found, 3 * found[:1])
         self.assertEqual(found[0]["of"], 4000)

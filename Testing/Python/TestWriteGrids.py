@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Grids, contour lines and outlines, read back by GDAL and OGR."""
 
-import json
 import os
 import sys
 import unittest
@@ -340,8 +339,7 @@ class CommandLine(Program):
         self.assertTrue(data.GetSpatialRef().IsProjected())
         with open(self.path("a.prj"), encoding="utf-8") as stream:
             self.assertIn('PROJCS["ETRS_1989_UTM_Zone_32N"', stream.read())
-        with open(self.path("a_surface.json"), encoding="utf-8") as stream:
-            report = json.load(stream)
+        report = self.json("a_surface.json")
         self.assertEqual(report["crs"], "EPSG:25832")
         self.assertEqual(report["options"]["grid"], 5.0)
         self.assertEqual(report["command"][:3], ["reconstruct", "a.xyz", "--grid"])

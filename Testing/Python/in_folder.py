@@ -3,6 +3,7 @@
 """What tests share: files made in a folder that goes away, how errors must look, and runs of the
 program."""
 
+import json
 import multiprocessing
 import os
 import resource
@@ -90,6 +91,11 @@ class Program(InFolder):
     def file(self, name, content):
         super().file(name, content)
         return name
+
+    def json(self, name):
+        """What a report holds."""
+        with open(self.path(name), encoding="utf-8") as stream:
+            return json.load(stream)
 
     def execute(self, *command, **options):
         """Any command, in the folder."""
