@@ -8,14 +8,12 @@ lines a second. What numpy does not take is parsed line by line, so that an erro
 
 import collections
 import contextlib
-import io
 import math
-import os
 import re
 
 import numpy
 
-from ..clouds import WHOLE, Cloud, Part, add_array, make_points
+from ..clouds import WHOLE, Cloud, add_array, make_points
 from .columns import advice_on_columns, choose_columns
 from .known import COMMENT_MARKS, SUMMARY
 from .layouts import (
@@ -31,18 +29,17 @@ from .layouts import (
     known_axes,
     touching_in,
 )
+from .text_blocks import Blocks, lines_of
 from ..messages import FileError, Reason, counted
 from ..progress import no_progress, items_with_progress
 from ..projecting import note_on_degrees
 from ..selecting import MOST_VALUES, WordReader
 from ..names import option
 
-END_MARKS = b"\0\x1a\r\n "  # what DOS and full disks write behind the last line
-BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
 TAIL = 50  # lines at the end of a block among which summaries are looked for
 CHUNK = 1000  # lines that are tried at once where a block is not all numbers
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
-NAMED = 3  # that many lines of other kinds are named
+NAMED, MOST_SUMMARIES = 3, 5  # that many lines of other kinds, and of summaries, are named
 # Over parts of a file.
 SUMMED = ("count", "comments", "repeated", "ragged", "summaries", "skipped", "skipped_lines", "uneven")
 MOST_UNEVEN = 0.2  # lines of numbers that are left out, as a share of rows
@@ -50,96 +47,6 @@ MOST_UNEVEN = 0.2  # lines of numbers that are left out, as a share of rows
 
 class BadLine(FileError):
     """A line that is not a row of the table."""
-
-
-# ---- blocks -----------------------------------------------------------------------------------
-
-
-class Blocks:
-    """The whole lines of a text file as bytes, some 8 MB at once: iterate to get (block, fraction).
-
-    UTF-16 with its mark becomes UTF-8; the mark of UTF-8 is taken away. A part of a file has some of
-    the blocks of the whole file: a line is in the block in which it ends.
-
-    begin  where the first line begins
-    """
-
-    def __init__(self, path, stream, part=WHOLE):
-        self.path, self.file, self.stream = path, stream, stream
-        self.size = os.fstat(stream.fileno()).st_size
-        head = self.read(0, 4096)
-        if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
-            text = self.read(0, self.size).decode("utf-16", "replace")
-            self.stream = io.BytesIO(text.encode())
-            self.size = len(self.stream.getbuffer())
-        elif b"\0" in (head.rstrip(END_MARKS) or head):
-            raise FileError(f"{path}: is not a text file")
-        self.count = max(1, -(-self.size // BLOCK))
-        self.blocks = part.rows(self.count)
-        self.begin = self.begin_of_line(self.blocks.start * BLOCK)
-
-    def __iter__(self):
-        first, last = self.blocks.start, self.blocks.stop
-        rest = self.read(self.begin, first * BLOCK - self.begin)
-        for block in range(first, last):
-            data = rest + self.read(block * BLOCK, BLOCK)
-            if block == first and self.begin == 0 and data.startswith(b"\xef\xbb\xbf"):
-                data = data[3:]
-            cut = end_of_lines(data)
-            data, rest = data[:cut], data[cut:]
-            if data:
-                yield plain(data), (block + 1 - first) / (last - first)
-        if last == self.count and rest.strip(END_MARKS):
-            yield plain(rest), 1.0
-
-    def read(self, at, count):
-        try:
-            self.stream.seek(at)
-            return self.stream.read(count)
-        except OSError as error:
-            raise FileError(f"{self.path}: cannot be read: {error.strerror}") from None
-
-    def begin_of_line(self, end):
-        """Where a line begins that is not at its end at a place."""
-        begin, data = end, b""
-        while begin > 0:
-            step = min(begin, 4096)
-            begin -= step
-            data = self.read(begin, step) + data
-            cut = end_of_lines(data)
-            if cut:
-                return begin + cut
-        return 0
-
-    def lines_before(self):
-        """How many lines there are before this part."""
-        before = Blocks(self.path, self.file, Part(0, self.blocks.start, self.count))
-        return sum(block.count(b"\n") for block, _ in before)
-
-
-def end_of_lines(data):
-    """The end of the last whole line; what follows \\r may belong to it."""
-    return 1 + max(data.rfind(b"\n"), data.rfind(b"\r", 0, len(data) - 1))
-
-
-def plain(data):
-    """Bytes with \\n at the end of lines, the usual sign for minus, and no marks of the end."""
-    end = data.rstrip(END_MARKS)
-    if b"\x1a" in data[len(end) :] or b"\0" in data[len(end) :]:
-        data = end + b"\n"
-    return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").replace(b"\xe2\x88\x92", b"-")
-
-
-def lines_of(block):
-    """The lines of a block: UTF-8, or Latin-1 where it is not."""
-    try:
-        text = block.decode("utf-8")
-    except UnicodeDecodeError:
-        text = block.decode("latin-1")
-    lines = text.split("\n")
-    if not lines[-1]:
-        lines.pop()
-    return lines
 
 
 # ---- what kind of table -----------------------------------------------------------------------
@@ -151,18 +58,13 @@ class Table:
     layout, words    how lines become words, and how many a line has
     width            how many of these are columns: a separator may stand behind the last
     names            of the columns, or None
-    indices          of the columns that are x, y and z
-    extras           {index: name} of the other columns of numbers
-    texts            {index: name} of the columns of text
-    of_numbers       indices of the columns that hold more numbers than text
     first            index of the first line of data
-    z_name, is_horizon, angles  see Choice
     advice           what a user can do where columns are wrong; None: choose others
     has_summaries    whether lines that begin with "Total" or such are not data
     sees_summaries   whether there are such at the start or at the end of the first block
     head_lines       lines before the data that are not comments, without blanks around
     headers, comments  how many lines before the data are such
-    notes            for the user
+    indices, extras, texts, of_numbers, notes, z_name, is_horizon, angles  see Choice
     skips            whether lines of other kinds are left out; bad_lines are [number, text] of those
                      before the data
     """
@@ -189,10 +91,7 @@ class Table:
             path, rows, consecutive, self.layout, self.names, self.width, columns, needed,
             advice,
         )
-        self.indices, self.extras = chosen.indices, chosen.extras
-        self.notes, self.z_name = chosen.notes, chosen.z_name
-        self.is_horizon, self.angles = chosen.is_horizon, chosen.angles
-        self.of_numbers, self.texts = chosen.of_numbers, chosen.texts
+        vars(self).update(vars(chosen))
         check_marks(path, rows, self.of_numbers)
         if needed == 3:
             self.notes += doubtful_marks(rows, *self.indices)
@@ -243,6 +142,12 @@ class Table:
             advice = f"{option('skip_bad_lines')} leaves out such lines"
         return BadLine(f"{self.path}, line {number}: {why}" + (advice and "; " + advice))
 
+    def no_number(self, number, line, words, axis):
+        """The error for a line in which x, y or z is a word."""
+        index = self.indices[axis]
+        why = f"'{words[index][:40]}' in column {index + 1} ({'xyz'[axis]}) is not a number"
+        return self.bad_line(number, line, why, self.advice)
+
     def is_row(self, line):
         """Whether a line behind the header is data: not blank, no comment, header or summary."""
         return is_data(line) and line.strip() not in self.head_lines and not self.summary(line)
@@ -292,10 +197,7 @@ class Table:
         values = [values[i] for i in self.indices]
         good = sum(v is not None and not math.isnan(v) for v in values)
         if None in values and good >= len(values) - 1:
-            axis = values.index(None)
-            column = self.indices[axis]
-            why = f"'{words[column][:40]}' in column {column + 1} ({'xyz'[axis]}) is not a number"
-            raise self.bad_line(number, line, why, self.advice)
+            raise self.no_number(number, line, words, values.index(None))
         return None not in values and good > 0
 
 
@@ -469,14 +371,13 @@ class Parser:
         """A row that is not plain numbers: missing values, words in other columns, or an error."""
         table = self.table
         words, row = table.layout.words(line), []
-        for axis, index in zip("xyz", table.indices):
+        for axis, index in enumerate(table.indices):
             if index >= len(words):
-                why = f"{counted(len(words), 'column')} found, but {axis} is column {index + 1}"
+                why = f"{counted(len(words), 'column')} found, but {'xyz'[axis]} is column {index + 1}"
                 raise table.bad_line(self.number(i), line, why)
             value = table.layout.number(words[index])
             if value is None:
-                why = f"'{words[index][:40]}' in column {index + 1} ({axis}) is not a number"
-                raise table.bad_line(self.number(i), line, why, table.advice)
+                raise table.no_number(self.number(i), line, words, axis)
             row.append(value)
         for index in table.extras:
             value = table.layout.number(words[index]) if index < len(words) else math.nan
@@ -591,14 +492,13 @@ class Parser:
                 f"line {self.ragged[0]:,} has {self.ragged[1]} columns where others have "
                 f"{table.words}: they are counted from the left"
             )
-        if self.summaries:
-            words = ", ".join(f"line {line:,} ({word})" for line, word in self.summaries[:5])
-            more = f" and {len(self.summaries) - 5:,} more" if len(self.summaries) > 5 else ""
-            notes.append(f"summary lines are left out: {words}{more}")
-        if self.skipped:
-            words = [f"line {line:,} ({text[:20]})" for line, text in self.skipped_lines[:NAMED]]
-            more = f" and {self.skipped - NAMED:,} more" if self.skipped > NAMED else ""
-            notes.append(f"lines of other kinds are left out: {', '.join(words)}{more}")
+        for what, lines, count, most in (
+            ("summary lines", self.summaries, len(self.summaries), MOST_SUMMARIES),
+            ("lines of other kinds", self.skipped_lines, self.skipped, NAMED),
+        ):
+            words = ", ".join(f"line {line:,} ({text[:20]})" for line, text in lines[:most])
+            more = f" and {count - most:,} more" if count > most else ""
+            notes += [f"{what} are left out: {words}{more}"] * bool(count)
         for index, (count, line, word) in self.no_numbers.items():
             words = counted(count, "word is not a number", "words are not numbers")
             where = f"line {line:,}" if count == 1 else f"first in line {line:,}"

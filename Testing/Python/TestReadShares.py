@@ -15,7 +15,7 @@ import numpy
 from in_folder import InFolder
 from vtkelevationsurface.clouds import Cloud
 from vtkelevationsurface.messages import ElevationSurfaceError
-from vtkelevationsurface.reading import text
+from vtkelevationsurface.reading import text_blocks
 from vtkelevationsurface.reading.slicing import read_files
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
@@ -181,7 +181,7 @@ class Shares(InFolder):
                     self.file(paths[-1], text_of(chance) if kind == "txt" else las_of(chance))
             options = options_of(chance, kind)
             with self.subTest(seed=seed, options=options), \
-                    mock.patch.object(text, "BLOCK", chance.choice((40, 300, 2000))), \
+                    mock.patch.object(text_blocks, "BLOCK", chance.choice((40, 300, 2000))), \
                     mock.patch("vtkelevationsurface.clouds.AT_ONCE", chance.choice((7, 50, 1000))):
                 read_well += not isinstance(self.assert_alike(paths, **options), str)
         self.assertGreater(read_well, 30)
@@ -190,7 +190,7 @@ class Shares(InFolder):
         numpy.save(self.path("a.npy"), numpy.arange(15.0).reshape(5, 3))
         paths = [self.file("a.txt", "1 2 3\n4 5 6\n7 7 7"), self.path("a.npy"),
                  self.file("a.las", las_of(random.Random(1)))]
-        with mock.patch.object(text, "BLOCK", 6):
+        with mock.patch.object(text_blocks, "BLOCK", 6):
             self.assertGreater(len(self.assert_alike(paths, (5, 40))[0]), 8)
             self.assertIn("no point of class 9", self.assert_alike([paths[2]], (40,), classes=(9,)))
 
@@ -206,7 +206,7 @@ class Shares(InFolder):
                        taken.append, rank)
             return sum(map(len, taken))
 
-        with mock.patch.object(text, "BLOCK", 500):
+        with mock.patch.object(text_blocks, "BLOCK", 500):
             counts = on_ranks(4, of_rank)
         self.assertEqual(sum(counts), 3000)
         self.assertLess(max(counts), 900)
@@ -218,7 +218,7 @@ class Shares(InFolder):
         rows[1400] = "5,6,7,8,9"
         rows[1990] = "Total,,5,"
         path = self.file("a.csv", "\r\n".join(rows))
-        with mock.patch.object(text, "BLOCK", 1000):
+        with mock.patch.object(text_blocks, "BLOCK", 1000):
             notes = self.assert_alike([path])[1][0]
             self.assertTrue(any("line 1,201: much" in note for note in notes))
             self.assertTrue(any("line 1,401 has 5 columns" in note for note in notes))
@@ -247,7 +247,7 @@ class Shares(InFolder):
         content = "".join(f"{i} {i * i % 97} {i % 7}\n" for i in range(900)).encode()
         paths = [self.file("a.xyz", content), self.file("b.xyz.gz", gzip.compress(content)),
                  self.file("c.xyz", content)]
-        with mock.patch.object(text, "BLOCK", 1000):
+        with mock.patch.object(text_blocks, "BLOCK", 1000):
             points, (notes, *_) = self.assert_alike(paths)
             self.assertEqual(len(points), 2700)
             self.assertTrue(all("/tmp" not in note.split(":", 1)[1] for note in notes))

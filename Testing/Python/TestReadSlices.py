@@ -13,7 +13,7 @@ from in_folder import InFolder
 from vtkelevationsurface import reading
 from vtkelevationsurface.clouds import Cloud
 from vtkelevationsurface.messages import FileError
-from vtkelevationsurface.reading import text
+from vtkelevationsurface.reading import text_blocks
 from vtkelevationsurface.reading.slicing import read_files
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
@@ -40,7 +40,7 @@ class Slices(InFolder):
     def test_text(self):
         rows = [f"{i % 70},{i // 70},{i % 11 or 'nan'},{i}" for i in range(5000)]
         path = self.file("a.csv", "\n".join(["# made", "X,Y,Z,Depth", *rows, "", "Total,,5,"]))
-        with mock.patch.object(text, "BLOCK", 3000):
+        with mock.patch.object(text_blocks, "BLOCK", 3000):
             cloud = self.assert_as_whole(path)
             self.assertIn("left out: Depth", cloud.notes)
             self.assert_as_whole(path, no_data=5.0, depth=True)
@@ -50,7 +50,7 @@ class Slices(InFolder):
                 slice_points(path, Cloud(None), where="name=a")
         rows = [f"{i % 70},{i // 70},{i % 11},{'abc'[i % 3]}" for i in range(5000)]
         path = self.file("words.csv", "\n".join(["X,Y,Z,name", *rows]))
-        with mock.patch.object(text, "BLOCK", 3000):
+        with mock.patch.object(text_blocks, "BLOCK", 3000):
             self.assert_as_whole(path, where="name=b")
             with self.assertRaisesRegex(FileError, r"name = d; values: a \(1,667\), b \(1,667"):
                 slice_points(path, Cloud(None), where="name=d")

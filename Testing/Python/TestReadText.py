@@ -13,7 +13,8 @@ from text_tables import KINDS, Tables, columns_of
 from vtkelevationsurface.clouds import ReadOptions
 from vtkelevationsurface.messages import FileError
 from vtkelevationsurface.reading.nulls import take_out
-from vtkelevationsurface.reading.text import BLOCK, read_table, read_text
+from vtkelevationsurface.reading.text import read_table, read_text
+from vtkelevationsurface.reading.text_blocks import BLOCK
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 
