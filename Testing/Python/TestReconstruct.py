@@ -1,68 +1,23 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The program as its users run it: files in, files and a report out."""
+"""The program as its users run it: its report, its results, and the script that starts it."""
 
-import json
 import math
 import os
-import re
 import random
+import re
 import shutil
-import signal
 import subprocess
 import sys
-import time
 import unittest
-from unittest import mock
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.normpath(os.path.join(HERE, os.pardir, os.pardir))
-DATA = os.path.join(ROOT, "Data")
-EXAMPLES = os.path.join(ROOT, "Examples", "Python")
-
-import in_folder
-from vtkelevationsurface import reading, writing
-from vtkelevationsurface.picture import display
-from vtkelevationsurface.reading import vtk_files
+import numpy
+from on_sheet import DATA, HOLED, ROOT, SHEET, SIZE, Program, text_of
+from vtkelevationsurface import options, reading, writing
 from vtkelevationsurface.clouds import make_points
-from vtkmodules.util.numpy_support import vtk_to_numpy
-
-SIZE = 12
-# A sheet of SIZE x SIZE points, one apart; z is a plane, so that nothing depends on the triangles.
-SHEET = [(x, y, 0.5 * x - 0.25 * y) for y in range(SIZE) for x in range(SIZE)]
-# The same with 3 x 3 points taken out of the middle. With edges of at most 1.5 that leaves a hole of
-# 4 x 4 with its corners cut: 12 edges, an area of 14.
-HOLED = [p for p in SHEET if not (4 <= p[0] <= 6 and 4 <= p[1] <= 6)]
-
-
-def text_of(rows):
-    return "".join(f"{x:.12g} {y:.12g} {z:.12g}\n" for x, y, z in rows)
-
-
-class Program(in_folder.Program):
-    """Runs the program, and reads its report."""
-
-    def report(self, *arguments):
-        """The report of a run that must succeed."""
-        done = self.call(*arguments, "--no-picture", "--report", "report.json")
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
-        with open(self.path("report.json"), encoding="utf-8") as stream:
-            report = json.load(stream)
-        self.output = done.stdout
-        return report
-
-    def assert_refused(self, words, *arguments, code=1, **options):
-        """One clear line on stderr, the exit code, and no file that was not there before."""
-        before = sorted(os.listdir(self.folder))
-        done = self.call(*arguments, "--no-picture", **options)
-        self.assertEqual(done.returncode, code, done.stderr)
-        lines = done.stderr.splitlines()
-        self.assertEqual(len(lines), 1, done.stderr)
-        self.assertTrue(lines[0].startswith("reconstruct: error: "), lines[0])
-        for word in [words] if isinstance(words, str) else words:
-            self.assertIn(word, lines[0])
-        self.assertEqual(done.stdout, "")
-        self.assertEqual(sorted(os.listdir(self.folder)), before)
+from vtkelevationsurface.reading import vtk_files
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 
 class Report(Program):
@@ -304,8 +259,6 @@ class Report(Program):
         self.assert_refused("no.vtp: no such file", name, "--faults", "no.vtp")
         bad = self.file("bad.txt", "1 1 0\n2 inf 0\n")
         self.assert_refused("bad.txt, line 2: a point of a fault", name, "--faults", bad)
-        from vtkmodules.vtkCommonDataModel import vtkCellArray
-
         data = make_points([(2, 2, 0), (8, 2, float("nan"))])
         lines = vtkCellArray()
         lines.InsertNextCell(2, [0, 1])
@@ -351,9 +304,6 @@ class Report(Program):
         self.assertEqual(report["left_out"], {"rows without data": 1})
 
     def test_point_arrays_reach_the_surface(self):
-        from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-        import numpy
-
         data = make_points(HOLED)
         array = numpy_to_vtk(numpy.arange(float(len(HOLED))), deep=True)
         array.SetName("Amplitude")
@@ -443,8 +393,6 @@ class Results(Program):
         self.assertIn("survey_surface.vtp", done.stdout)
 
     def test_help_names_every_option(self):
-        from vtkelevationsurface import options
-
         shown = self.call("--help").stdout
         for action in options.make_parser()._actions:
             for option in action.option_strings:
@@ -493,390 +441,6 @@ class Script(Program):
         done = self.execute(os.path.join("bin", "rec"), "--help")
         self.assertEqual(done.returncode, 0)
         self.assertIn("examples:", done.stdout)
-
-
-class ShortExample(Program):
-    def test_it_makes_the_same_surface_as_the_program(self):
-        data = os.path.join(DATA, "b9_ground.vtp")
-        script = os.path.join(EXAMPLES, "three_filters.py")
-        done = self.execute(sys.executable, script, data, "short.vtp", "2")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("holes filled", done.stdout)
-        report = self.report(data, "--maximum-edge-length", "2")
-        surface = vtk_files.run_vtk_reader(self.path("short.vtp"))
-        self.assertEqual(surface.GetNumberOfPolys(), report["triangles"]["filled"])
-
-
-@in_folder.draws
-class Examples(Program):
-    def lines_of(self, name, *arguments):
-        script = os.path.join(EXAMPLES, name)
-        done = self.execute(sys.executable, script, *arguments)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done.stdout.splitlines()
-
-    def test_the_example_adds_the_fault_and_draws_it(self):
-        lines = self.lines_of("faulted_horizon.py", "fault.png", "fault.vtp")
-        self.assertEqual(lines, ["290 points added, 0 crossings"])
-        self.assertGreater(os.path.getsize(self.path("fault.png")), 100000)
-        surface = vtk_files.run_vtk_reader(self.path("fault.vtp"))
-        self.assertGreater(surface.GetNumberOfPolys(), 4000)
-
-    def test_the_lake_is_cut_along_lines_that_are_not_points(self):
-        lines = self.lines_of("lake.py", "lake.png")
-        # All corners of the shores, one of the lease; where the lease leaves the survey; and where
-        # they cross edges.
-        self.assertEqual(lines[1], "1098 points inserted along the boundary")
-        self.assertGreater(os.path.getsize(self.path("lake.png")), 50000)
-
-    def test_the_swath_has_an_outline_and_the_inside_of_its_loop(self):
-        lines = self.lines_of("survey_swath.py", "swath.png")
-        self.assertTrue(lines[1].startswith("2 rings at a gap tolerance of "), lines[1])
-        self.assertGreater(os.path.getsize(self.path("swath.png")), 50000)
-
-    def test_maps_show_the_boundary_and_the_holes_before_and_after(self):
-        buildings = os.path.join(DATA, "b9_ground.vtp")
-        lines = self.lines_of("from_above.py", "outline", buildings, "outline.png")
-        self.assertRegex(lines[0], r"^\d+ rings? at a gap tolerance of \d\.\d spacings, \d+ points outside$")
-        self.assertGreater(os.path.getsize(self.path("outline.png")), 100000)
-        surface = vtk_files.run_vtk_reader(buildings)
-        vtk_to_numpy(surface.GetPoints().GetData()).astype("<f8").tofile(self.path("plain.f64"))
-        lines = self.lines_of(
-            "from_above.py", "voids", "plain.f64", "voids.png", "--maximum-edge-length", "2",
-            "--interpolation", "membrane", "--window", "596650,596730,243620,243730",
-            "--title", "Buildings")
-        self.assertEqual(lines, ["after: 21 of 21 holes filled"])
-        self.assertGreater(os.path.getsize(self.path("voids.png")), 100000)
-
-
-class Pictures(Program):
-    def picture(self, *arguments):
-        from vtkmodules.util.numpy_support import vtk_to_numpy
-        from vtkmodules.vtkIOImage import vtkPNGReader
-
-        name = self.file("holed.xyz", text_of(HOLED))
-        done = self.call(name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6", *arguments)
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
-        reader = vtkPNGReader()
-        reader.SetFileName(self.path("holed_surface.png"))
-        reader.Update()
-        image = reader.GetOutput()
-        columns, rows, _ = image.GetDimensions()
-        return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(rows, columns, -1)
-
-    @in_folder.draws
-    def test_the_picture_shows_the_surface_in_colours_on_white(self):
-        pixels = self.picture().astype(int)
-        self.assertEqual(pixels[0, 0].tolist(), [255, 255, 255])
-        coloured = (pixels.max(axis=2) - pixels.min(axis=2)) > 25
-        self.assertGreater(coloured.mean(), 0.2)
-        # The outline of the filled hole is the one thing that is redder than anything in the map.
-        red = (pixels[:, :, 0] > 150) & (pixels[:, :, 1] < 60) & (pixels[:, :, 2] < 120)
-        self.assertGreater(red.sum(), 200)
-
-    @in_folder.draws
-    def test_the_view_and_colours_can_be_chosen(self):
-        usual, aside = (self.picture("--view", view).astype(int) for view in ("top", "200,30"))
-        self.assertTrue(aside.shape != usual.shape or (aside != usual).any())
-        # Points of the file have no errors, and are the palest colour; the filled hole is not.
-        errors = self.picture("--view", "top", "--colours", "error").astype(int)
-        self.assertEqual(usual.shape, errors.shape)
-        pale = errors.max(axis=2) - errors.min(axis=2) < 25
-        self.assertGreater(pale.mean(), 0.6)
-        self.assertGreater((errors != usual).any(axis=2).mean(), 0.1)
-
-    @in_folder.draws
-    def test_outliers_strips_and_odd_names_leave_something_to_see(self):
-        import numpy
-        from vtkmodules.util.numpy_support import vtk_to_numpy
-        from vtkmodules.vtkIOImage import vtkPNGReader
-
-        tilted = [(x, y, x + y) for y in range(40) for x in range(40)]
-        for name, rows in (
-            ("outlier.xyz", tilted + [(20.5, 20.5, 1e6)]),
-            ("flat.xyz", [(x, y, 0) for x, y, _ in tilted] + [(20.5, 20.5, 1e6)]),
-            ("strip.xyz", [(x, y, x / 10) for y in range(3) for x in range(1000)]),
-            ("slanted.xyz", [(x - y, x + y, x / 10) for y in range(3) for x in range(1000)]),
-            ("\u5730\u5f62" + "a" * 200 + ".xyz", tilted),
-        ):
-            with self.subTest(name=name):
-                done = self.call(self.file(name, text_of(rows)), "--picture", "p.png")
-                self.assertEqual((done.returncode, done.stderr), (0, ""))
-                reader = vtkPNGReader()
-                reader.SetFileName(self.path("p.png"))
-                reader.Update()
-                pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(int)
-                coloured = numpy.ptp(pixels, axis=1) > 25
-                self.assertGreater(coloured.mean(), 0.04)
-
-    @unittest.skipUnless(
-        sys.platform.startswith("linux"), "only X has displays that may be missing"
-    )
-    def test_without_a_display_the_surface_is_written_with_a_note(self):
-        name = self.file("sheet.xyz", text_of(SHEET))
-        for display in (None, ":12345"):
-            # Without programs on the PATH there is no Xvfb.
-            environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}
-            environment["PATH"] = self.folder
-            if display:
-                environment["DISPLAY"] = display
-            with self.subTest(display=display):
-                done = self.call(name, env=environment)
-                self.assertEqual((done.returncode, done.stderr), (0, ""))
-                self.assertIn("no picture: ", done.stdout)
-                self.assertEqual(
-                    sorted(os.listdir(self.folder)), ["sheet.xyz", "sheet_surface.vtp"]
-                )
-                done = self.call(name, "--picture", env=environment)
-                self.assertEqual(done.returncode, 1)
-                self.assertIn("sheet_surface.png: cannot be drawn", done.stderr)
-
-
-@unittest.skipUnless(shutil.which("Xvfb"), "Xvfb is not installed")
-class VirtualDisplay(Program):
-    """Where there is no display, the program starts one of its own, and leaves nothing of it."""
-
-    # Says that it serves a display, but does not, the first so many times.
-    DEAF = """#!/bin/bash
-        echo x >>"{folder}/starts"
-        [ $(wc -l <"{folder}/starts") -gt {times} ] && exec {program} "$@"
-        eval "echo 4242 >&$2"
-        exec sleep 300
-        """
-
-    def environment(self):
-        environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "XAUTHORITY")}
-        environment["TMPDIR"] = self.folder
-        return environment
-
-    def with_deaf_server(self, times):
-        """The environment in which Xvfb is deaf the first so many times; see take_starts()."""
-        tools = self.path("tools")
-        os.makedirs(tools, exist_ok=True)
-        words = {"folder": tools, "times": times, "program": shutil.which("Xvfb")}
-        with open(os.path.join(tools, "Xvfb"), "w", encoding="utf-8") as stream:
-            stream.write(self.DEAF.format(**words))
-        os.chmod(stream.name, 0o755)
-        environment = self.environment()
-        environment["PATH"] = tools + os.pathsep + environment["PATH"]
-        return environment
-
-    def take_starts(self):
-        """How often that server was started; counting begins anew."""
-        starts = os.path.join(self.path("tools"), "starts")
-        with open(starts, encoding="utf-8") as stream:
-            count = len(stream.readlines())
-        os.remove(starts)
-        return count
-
-    def call_with_deaf_server(self, times, *arguments):
-        """(the run, how often the server was started, the files that are left)"""
-        done = self.call(*arguments, env=self.with_deaf_server(times))
-        made = sorted(set(os.listdir(self.folder)) - {"tools", "sheet.xyz"})
-        for name in made:
-            os.remove(self.path(name))
-        return done, self.take_starts(), made
-
-    def test_a_server_that_does_not_answer_is_started_again(self):
-        # However long a busy machine takes to start it.
-        with mock.patch.dict(os.environ, self.with_deaf_server(1), clear=True), \
-                mock.patch.object(display, "WAIT", None):
-            with display.screen() as reason:
-                self.assertIsNone(reason)
-        self.assertEqual(self.take_starts(), 2)
-
-    def test_a_picture_is_drawn_on_the_server_that_answers(self):
-        name = self.file("sheet.xyz", text_of(SHEET))
-        done, count, made = self.call_with_deaf_server(1, name, "--picture")
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertGreater(count, 1)
-        self.assertEqual(made, ["sheet_surface.png", "sheet_surface.vtp"])
-
-    def test_a_picture_that_fails_does_not_lose_the_surface(self):
-        name = self.file("sheet.xyz", text_of(SHEET))
-        done, count, made = self.call_with_deaf_server(99, name, "--report", "r.json")
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertIn("no picture: Xvfb does not answer, asked 3 times", done.stdout)
-        self.assertEqual((count, made), (3, ["r.json", "sheet_surface.vtp"]))
-        done, _, made = self.call_with_deaf_server(99, name, "--picture", "--report", "r.json")
-        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (3, 1), done.stderr)
-        self.assertIn("sheet_surface.png: cannot be drawn: Xvfb does not answer", done.stderr)
-        self.assertIn("everything else is written", done.stderr)
-        self.assertIn("no picture: Xvfb does not answer", done.stdout)
-        self.assertEqual(made, ["r.json", "sheet_surface.vtp"])
-
-    def start(self, side=300):
-        environment = self.environment()
-        rows = "".join(f"{i % side} {i // side} {i % 7}\n" for i in range(side * side))
-        name = self.file("sheet.xyz", rows)
-        return subprocess.Popen(
-            [*self.PROGRAM, name, "--picture"],
-            cwd=self.folder,
-            env=environment,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
-
-    def servers(self):
-        """Ids of the Xvfb that use a key in this test's folder."""
-        found = []
-        for entry in os.listdir("/proc"):
-            try:
-                with open(f"/proc/{entry}/cmdline", "rb") as stream:
-                    if self.folder.encode() in stream.read() and entry.isdigit():
-                        with open(f"/proc/{entry}/comm", encoding="utf-8") as stream:
-                            if "Xvfb" in stream.read():
-                                found.append(int(entry))
-            except OSError:
-                pass
-        return found
-
-    def wait_until(self, condition):
-        end = time.monotonic() + 300
-        while not condition():
-            self.assertLess(time.monotonic(), end)
-            time.sleep(0.01)
-
-    def displays(self):
-        return [n for n in os.listdir(self.folder) if n.startswith("reconstruct-display-")]
-
-    def test_a_picture_is_drawn_and_the_server_ends(self):
-        process = self.start(50)
-        self.wait_until(self.servers)
-        self.assertEqual(process.wait(300), 0)
-        self.assertIn("sheet_surface.png", os.listdir(self.folder))
-        self.assertEqual((self.servers(), self.displays()), ([], []))
-
-    def test_a_stopped_program_leaves_no_server(self):
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL):
-            with self.subTest(number=number):
-                process = self.start()
-                self.wait_until(self.servers)
-                if number == signal.SIGKILL:
-                    time.sleep(0.5)  # until the program is the server's client
-                process.send_signal(number)
-                process.wait(300)
-                self.wait_until(lambda: not self.servers())
-                if number != signal.SIGKILL:
-                    self.assertEqual(self.displays(), [])
-                    self.assertEqual(process.returncode, 130)
-
-
-class BadInput(Program):
-    def test_files_that_cannot_be_read_are_named(self):
-        self.assert_refused("no.csv: no such file", "no.csv")
-        os.mkdir(self.path("folder.csv"))
-        self.assert_refused("folder.csv: is a folder", "folder.csv")
-        self.assert_refused("a.doc: is of no kind that can be read", self.file("a.doc", "words\n"))
-        self.assert_refused("empty.xyz: is empty", self.file("empty.xyz", ""))
-        self.assert_refused("words.txt: holds text, but no numbers", self.file("words.txt", "no\n"))
-        self.assert_refused("two.txt: no line holds 3 numbers", self.file("two.txt", "1 2\n3 4\n"))
-        self.assert_refused("broken.vtp: cannot be read", self.file("broken.vtp", "<VTKFile"))
-        self.assert_refused("line 2: 'b' in column 2", self.file("b.csv", "1,2,3\n4,b,6\n"))
-
-    def test_each_reason_for_no_surface_has_its_own_message(self):
-        for name, rows, words in (
-            ("one", "1 2 3\n", "there is only one point"),
-            ("two", "1 2 3\n4 5 6\n1 2 9\n", "only two points differ in x,y"),
-            ("equal", "1 2 3\n" * 5, "all 5 finite points have the same x,y (1, 2)"),
-            ("line", "0 0 1\n1 2 1\n2 4 5\n5 10 1\n", "all 4 finite points lie on one line in x,y"),
-            ("nan", "1 2 nan\nnan 2 3\n", "all 2 points are not finite"),
-        ):
-            with self.subTest(name=name):
-                self.assert_refused(
-                    [name + ".xyz: no surface: ", words], self.file(name + ".xyz", rows)
-                )
-
-    def test_an_edge_limit_that_leaves_nothing_is_reported(self):
-        name = self.file("sheet.xyz", text_of(SHEET))
-        self.assert_refused(
-            "use a larger --maximum-edge-length", name, "--maximum-edge-length", "0.5"
-        )
-
-    def test_a_boundary_that_is_not_closed_is_named(self):
-        name = self.file("sheet.xyz", text_of(SHEET))
-        ring = self.file("open.txt", "2 2\n8 2\n8 8\n2 8\n")
-        self.assert_refused(["open.txt: ", "not closed"], name, "--boundary", ring)
-        from vtkmodules.vtkCommonDataModel import vtkCellArray
-
-        data = make_points([(2, 2, 0), (8, 2, 0), (8, 8, 0), (2, 8, 0)])
-        lines = vtkCellArray()
-        lines.InsertNextCell(4, [0, 1, 2, 3])
-        data.SetLines(lines)
-        writing.write_surface(data, self.path("open.vtp"))
-        self.assert_refused("open.vtp", name, "--boundary", "open.vtp")
-        self.assert_refused("no.vtp: no such file", name, "--boundary", "no.vtp")
-
-    def test_a_boundary_elsewhere_leaves_nothing_and_is_an_error(self):
-        name = self.file("sheet.xyz", text_of(SHEET))
-        ring = self.file("far.txt", "102 2\n108 2\n108 8\n102 2\n")
-        self.assert_refused("far.txt", name, "--boundary", ring)
-
-    def test_results_that_cannot_be_written_are_named(self):
-        name = self.file("sheet.xyz", text_of(SHEET))
-        os.mkdir(self.path("folder.vtp"))
-        self.assert_refused("no/s.vtp: cannot be written", name, "-o", "no/s.vtp")
-        self.assert_refused("folder.vtp: is a folder", name, "-o", "folder.vtp")
-        self.assert_refused("s.doc: .doc cannot be written", name, "-o", "s.doc", code=2)
-        self.assert_refused("no/r.json: cannot be written", name, "--report", "no/r.json")
-        self.file("p.vtp", "")
-        self.assert_refused("p.vtp: would overwrite p.vtp", "p.vtp", "-o", "p.vtp", code=2)
-        self.assert_refused("--columns is for text files", "p.vtp", "--columns", "1,2,3", code=2)
-
-    def test_a_full_disk_leaves_nothing_behind(self):
-        name = self.file("sheet.xyz", text_of(SHEET))
-        for suffix in writing.WRITE_SUFFIXES:
-            with self.subTest(suffix=suffix):
-                self.assert_refused("s" + suffix, name, "-o", "s" + suffix, largest_file=2000)
-
-    def test_wrong_options_are_errors_of_usage(self):
-        name = self.file("sheet.xyz", text_of(SHEET))
-        for words, arguments in (
-            ("no file given", ()),
-            ("--spacing takes a number of 0 or more, not '-1'", (name, "--spacing=-1")),
-            ("--spacing takes a number of 0 or more, not 'wide'", (name, "--spacing", "wide")),
-            ("--spacing takes a number of 0 or more", (name, "--spacing")),
-            ("a whole number of 0 or more", (name, "--maximum-hole-edges", "1.5")),
-            ("--output takes a file", (name, "-o")),
-            ("--interpolation takes one of neighbor-mean,", (name, "--interpolation", "flat")),
-            ("one of keep-first,", (name, "--duplicates", "keep-some")),
-            ("as x,y,z or 1,2,3, not 'x,y'", (name, "--columns", "x,y")),
-            ("--view takes top, or", (name, "--view", "up")),
-            ("--view takes top, or", (name, "--view", "10,0")),
-            ("unknown option", (name, "--fast")),
-            ("trimming options have no effect with --no-trim", (name, "--no-trim", "--boundary", name)),
-            ("--open-edge-length takes a number of 0 or", (name, "--open-edge-length", "nan")),
-            ("filling options have no effect with --no-fill", (name, "--no-fill", "--open-edge-length", "0")),
-            ("filling options have no effect with --no-fill", (name, "--no-fill", "--spacing", "3")),
-            ("filling options have no effect with --no-fill", (name, "--no-fill", "--interpolation", "membrane")),
-            ("picture options have no effect with --no-picture", (name, "--no-picture", "--view", "top")),
-            ("picture options have no effect with --no-picture", (name, "--no-picture", "--colours", "error")),
-            ("--colours error is for filled holes", (name, "--no-fill", "--colours", "error")),
-            ("--colours takes one of elevation, error", (name, "--colours", "slope")),
-        ):
-            with self.subTest(arguments=arguments):
-                done = self.call(*arguments)
-                self.assertEqual(done.returncode, 2)
-                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
-                self.assertIn(words, done.stderr)
-                self.assertTrue(done.stderr.endswith("; see --help\n"), done.stderr)
-                self.assertEqual(os.listdir(self.folder), [name])
-
-    def test_coordinates_near_the_end_of_their_range_give_no_noise(self):
-        rows = "".join(f"{x}e306 {y}e306 {x * y}\n" for x in range(9) for y in range(9))
-        name = self.file("huge.xyz", rows + "1e306 1e306 1e306\n")
-        report = self.report(name)
-        self.assertAlmostEqual(report["distance"]["maximum"] / 1e306, 1, delta=1e-6)
-        done = self.call(name)
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertIn("no picture: ", done.stdout)
-
-    def test_without_the_module_one_line_says_what_to_do(self):
-        environment = dict(os.environ, PYTHONPATH="")
-        done = self.execute(*self.PROGRAM, self.file("sheet.xyz", text_of(SHEET)), env=environment)
-        self.assertEqual(done.returncode, 1)
-        self.assertEqual(len(done.stderr.splitlines()), 1)
-        self.assertIn("vtkelevationsurface", done.stderr)
 
 
 if __name__ == "__main__":
