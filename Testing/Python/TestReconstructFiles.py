@@ -93,12 +93,6 @@ class Text(InFolder):
             ", line 1: 2 columns found where other lines have 3", "1 2\n3 4 5\n6 7 8\n"
         )
 
-    def test_text_without_numbers_is_refused(self):
-        self.assert_refused("no numbers", "Lorem ipsum\ndolor sit amet\n")
-
-    def test_too_few_columns_are_refused(self):
-        self.assert_refused("no line holds 3 numbers; the most is 2", "1 2\n3 4\n")
-
     def test_empty_and_comment_only_files_are_refused(self):
         self.assert_refused("is empty", "")
         self.assert_refused("only blank or comment lines", "# x y z\n\n")
