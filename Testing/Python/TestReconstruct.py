@@ -21,8 +21,7 @@ DATA = os.path.join(ROOT, "Data")
 EXAMPLES = os.path.join(ROOT, "Examples", "Python")
 
 import in_folder
-from vtkelevationsurface import reading, writing
-from vtkelevationsurface.picture import display
+from vtkelevationsurface import picture, reading, writing
 from vtkelevationsurface.reading import vtk_files
 from vtkelevationsurface.clouds import make_points
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -680,8 +679,8 @@ class VirtualDisplay(Program):
     def test_a_server_that_does_not_answer_is_started_again(self):
         # However long a busy machine takes to start it.
         with mock.patch.dict(os.environ, self.with_deaf_server(1), clear=True), \
-                mock.patch.object(display, "WAIT", None):
-            with display.screen() as reason:
+                mock.patch.object(picture.display, "WAIT", None):
+            with picture.display.screen() as reason:
                 self.assertIsNone(reason)
         self.assertEqual(self.take_starts(), 2)
 
