@@ -11,7 +11,7 @@
  * @par Input:
  * A vtkPolyData of triangles: an elevation surface from any source, of one or more components. x,y
  * is the plane of projection, z the elevation. Cells that are hidden (vtkGhostType), or have a
- * hidden point, are left out, and no message counts them.
+ * hidden point, do not count as cells, not even in messages.
  *
  * @par Outputs:
  * - 0, the surface: the points and cells of the input, with their ids, then the new points and

@@ -19,7 +19,7 @@
  *
  * @par Outputs:
  * - 0: the triangles inside, after the vertices and lines of the input. Cells that are hidden
- *   (vtkGhostType), or have a hidden point, are left out, and no message counts them.
+ *   (vtkGhostType), or have a hidden point, do not count as cells, not even in messages.
  * - 1: the triangles outside. With a given boundary, outputs 0 and 1 have a point array OnBoundary
  *   (vtkUnsignedCharArray): 1 for points on its edges, otherwise 0. vtkFillElevationHoles uses it
  *   to leave open what the boundary has cut out.
