@@ -262,7 +262,6 @@ def coordinates_of(data):
 def make_points(coordinates, copy=True):
     """(n, 3) float64 coordinates -> vtkPolyData with points only. Without copy it uses the array."""
     points = vtkPoints()
-    points.SetDataTypeToDouble()
     points.SetData(numpy_to_vtk(numpy.ascontiguousarray(coordinates, dtype="f8"), deep=copy))
     data = vtkPolyData()
     data.SetPoints(points)

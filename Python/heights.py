@@ -6,7 +6,7 @@ An elevation surface has one height at a place. Of several, vtkGridDelaunay2D ta
 the others. That is right for a few, and wrong for two horizons in one table. The second is refused,
 unless the user says which height to take.
 
-Heights are clearly apart where they differ by more than CLEAR_OF_RANGE of the range that holds 98 %
+Heights are clearly apart where they differ by more than CLEAR_RANGE_SHARE of the range that holds 98 %
 of all z, and by more than CLEAR_STEPS times the step that is usual from one place to the next, for
 each height that the place has, up to MOST_STEPS times: noise and slopes make both about the same,
 and the more heights, the farther apart noise makes the outer ones. They are many at more than MANY
@@ -38,7 +38,7 @@ from .spreading import NOT_FINITE, SAME_PLACE
 MANY = 0.01  # of all places
 MANY_BY_NAME = 0.001
 LEAST = 3  # places; fewer are never many
-CLEAR_OF_RANGE = 0.02
+CLEAR_RANGE_SHARE = 0.02
 CLEAR_STEPS, MOST_STEPS = 1.5, 6.0
 USUAL = 90  # per cent of steps are no larger than the usual one: a plain may have steep banks
 ALMOST = 0.95  # of the places
@@ -237,7 +237,7 @@ def refuse_surfaces(cloud, xyz, several):
     most = max(LEAST, MANY_BY_NAME * several.places)
     if several.count() < most:
         return
-    clear = several.spans > CLEAR_OF_RANGE * body(xyz[:, 2].astype("f8"))
+    clear = several.spans > CLEAR_RANGE_SHARE * body(xyz[:, 2].astype("f8"))
     numbers = in_numbers(several.count(), several.places, several.largest())
     separating = separating_column(cloud, several, xyz[several.ids, 2].astype("f8"))
     if separating and separating[2].in_order:
@@ -328,7 +328,7 @@ class PieceHeights:
             return
         self.count += several.count()
         self.largest = max(self.largest, several.largest())
-        clear = several.spans > CLEAR_OF_RANGE * self.body
+        clear = several.spans > CLEAR_RANGE_SHARE * self.body
         if clear.any():
             clear &= several.spans > least_span(xyz, several)
         self.clear += int(numpy.count_nonzero(clear))

@@ -169,7 +169,7 @@ def nodes_of(extents, number):
 
 def point_set_cloud(data, array, ranks):
     if data.GetNumberOfPoints() == 0:
-        raise ElevationSurfaceError("there are not points")
+        raise ElevationSurfaceError("there are no points")
     if array:
         check_array(data.GetPointData(), array)
     points = vtkPolyData()

@@ -17,9 +17,9 @@ SPACINGS_ALONG = 2.0
 # Triangles of lines: the longest edge is this multiple of the shortest. They cover more than half of
 # a survey of lines at least 10 spacings apart, also with jitter of half a spacing, and at most a
 # tenth of anything else.
-LEAST_RATIO_OF_LINES = 3.0
+LEAST_LINE_RATIO = 3.0
 # A full grid has triangles of half a cell; a thinned one, whose nodes are not missing, larger ones.
-MOST_CELLS_OF_FULL_GRID = 0.75
+MOST_FULL_GRID_CELLS = 0.75
 MOST_SAMPLES = 1_000_000  # triangles: of more, about every k-th stands for k
 
 
@@ -93,10 +93,10 @@ def length_of(area, shortest, longest, lattice):
     if lattice:
         u, v = (numpy.array(step) for step in lattice["steps"])
         cell = abs(u[0] * v[1] - u[1] * v[0])
-        if numpy.median(area) <= MOST_CELLS_OF_FULL_GRID * cell:
+        if numpy.median(area) <= MOST_FULL_GRID_CELLS * cell:
             diagonal = float(max(numpy.hypot(*(u + v)), numpy.hypot(*(u - v))))
             return CELL_DIAGONALS * diagonal, f"{CELL_DIAGONALS:g} diagonals of the grid's cells"
-    is_between = longest > LEAST_RATIO_OF_LINES * shortest
+    is_between = longest > LEAST_LINE_RATIO * shortest
     if area[is_between].sum() > 0.5 * area.sum():
         along = float(numpy.median(shortest))
         why = f"survey lines found: {SPACINGS_ALONG:g} spacings of {along:.4g} along lines"

@@ -16,7 +16,7 @@ from .gdal_common import reference_of
 from .help import help_text
 from .messages import FileError, did_you_mean
 from .paths import check_suffix, check_writable
-from .pieces import MEMORY, SUFFIX as OF_PIECES, check_files, check_given, memory_size
+from .pieces import MEMORY, SUFFIX as PIECES_SUFFIX, check_files, check_given, memory_size
 from .properties import COLOURS, PROPERTIES, check_together, option_of
 from .results import WrongOption
 from .selecting import condition
@@ -206,7 +206,7 @@ def check_options(options):
     like = options.grid if isinstance(options.grid, str) else None
     try:
         for path, one in files_of(options):
-            suffixes = (OF_PIECES,) if options.in_pieces else one.suffixes
+            suffixes = (PIECES_SUFFIX,) if options.in_pieces else one.suffixes
             check_suffix(path, suffixes, "written in pieces" if options.in_pieces else "written")
             if one.name != "output":
                 check_gdal(path)

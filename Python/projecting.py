@@ -10,7 +10,7 @@ from .messages import FileError
 from .names import option
 
 LONGITUDES, LATITUDES = 360.0, 90.0
-OF_UTM = 84.0  # degrees north, and 80 south; polar stereographic beyond
+UTM_NORTH = 84.0  # degrees north, and 80 south; polar stereographic beyond
 WIDE = 9.0  # degrees from the middle: lengths are 1 % too long there at the equator
 
 
@@ -44,7 +44,7 @@ def note_on_degrees(words):
 
 def zone_of(longitude, latitude):
     """AUTHORITY:CODE of the UTM zone at a place, or of the polar system."""
-    if not -80.0 <= latitude <= OF_UTM:
+    if not -80.0 <= latitude <= UTM_NORTH:
         return "EPSG:32661" if latitude > 0 else "EPSG:32761"
     zone = int((longitude + 180.0) % 360.0 // 6.0) + 1
     return f"EPSG:{326 if latitude >= 0 else 327}{zone:02d}"

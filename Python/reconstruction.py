@@ -366,7 +366,7 @@ def replaced_ids(points):
     if not points.GetPointData().HasArray(ORIGINAL_IDS) or original_ids(points) is not None:
         return []
     return [
-        f"the point array {ORIGINAL_IDS} is not one integer for each point, so it is replaced by the "
+        f"the point array {ORIGINAL_IDS} is not one signed integer for each point, so it is replaced by the "
         "numbers of the points; rename it to keep it"
     ]
 

@@ -17,7 +17,7 @@ from .spreading import (
     HIDDEN,
     IN_NO_TRIANGLE,
     NOT_FINITE,
-    OUT_OF_OUTLINE,
+    OUTSIDE_OUTLINE,
     SAME_PLACE,
     WITHIN_ERROR,
     ids_of,
@@ -32,7 +32,7 @@ REASONS = {
     NOT_FINITE: "not finite",
     WITHIN_ERROR: "within the elevation error",
     HIDDEN: "marked as hidden",
-    OUT_OF_OUTLINE: OUTSIDE,
+    OUTSIDE_OUTLINE: OUTSIDE,
     IN_NO_TRIANGLE: "in no triangle below the edge limit",
 }
 MOST_LISTED = 25_000  # unused points for each reason
@@ -140,7 +140,7 @@ def distance_of(result, reasons, ids):
     coordinates = result.coordinates
     measured = numpy.isfinite(coordinates).all(axis=1) & (reasons != HIDDEN)
     if result.boundary_name:
-        measured &= reasons != OUT_OF_OUTLINE
+        measured &= reasons != OUTSIDE_OUTLINE
     began = time.perf_counter()
     distance = distance_to(
         result.complete, coordinates, measured, result.measuring, result.ranks, ids
@@ -152,7 +152,7 @@ def distance_of(result, reasons, ids):
 def reasons_unused(result):
     """(n,) numbers of REASONS, or 0, for the points that Reconstruction.reasons are of."""
     used = used_points(result.ranks, result.complete)[: len(result.reasons)]
-    return numpy.where((result.reasons == 0) & ~used, OUT_OF_OUTLINE, result.reasons)
+    return numpy.where((result.reasons == 0) & ~used, OUTSIDE_OUTLINE, result.reasons)
 
 
 def list_unused(ranks, reasons, ids):

@@ -22,10 +22,10 @@ from .vtkElevationSurface import vtkTrimOutwardTriangles
 ORIGINAL_IDS = "OriginalPointIds"  # of points of the input, in a surface without unused points
 IDS = "PlaceInInput"  # made for the way, where points have no global ids
 GHOSTS = vtkDataSetAttributes.GhostArrayName()
-OF_A_RANK = ("WorkOfRank", "WorkOfTrim")  # field data
+RANK_FIELDS = ("WorkOfRank", "WorkOfTrim")  # field data
 TAG = 20
 # Why a point is in no triangle, by number; the first four are those of vtkGridDelaunay2D.
-SAME_PLACE, NOT_FINITE, WITHIN_ERROR, HIDDEN, OUT_OF_OUTLINE, IN_NO_TRIANGLE = 1, 2, 3, 4, 5, 6
+SAME_PLACE, NOT_FINITE, WITHIN_ERROR, HIDDEN, OUTSIDE_OUTLINE, IN_NO_TRIANGLE = 1, 2, 3, 4, 5, 6
 
 
 def update(algorithm, ranks):
@@ -106,10 +106,10 @@ def follow_points(ranks, earlier, reasons, later, points):
 
 
 def original_ids(data):
-    """The array OriginalPointIds of points, (n,) of any kind of integers, or None."""
+    """The array OriginalPointIds of points, (n,) of any kind of signed integers, or None."""
     array = data.GetPointData().GetArray(ORIGINAL_IDS)
     numbers = None if array is None else vtk_to_numpy(array)
-    return numbers if numbers is not None and numbers.ndim == 1 and numbers.dtype.kind in "iu" else None
+    return numbers if numbers is not None and numbers.ndim == 1 and numbers.dtype.kind == "i" else None
 
 
 def without_unused(ranks, surface, last):
@@ -244,7 +244,7 @@ def gather_surface(ranks, result):
     result.surface = joined_by_ids(ranks, parts)
     for name in (ids.GetName() if ids else "", GHOSTS):
         result.surface.GetPointData().RemoveArray(name)
-    for name in OF_A_RANK:
+    for name in RANK_FIELDS:
         result.surface.GetFieldData().RemoveArray(name)
     set_counts(result.surface, (result.delaunay, result.trim, result.fill))
     if result.removes_unused:

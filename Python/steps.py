@@ -24,7 +24,7 @@ from .outline import (
 )
 from .properties import PROPERTIES, set_properties
 from .ranks import all_values, collected, extremes, together, total
-from .spreading import OUT_OF_OUTLINE, WITHIN_ERROR, own_point_count, reasons_of, update
+from .spreading import OUTSIDE_OUTLINE, WITHIN_ERROR, own_point_count, reasons_of, update
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
 
 STEPS = {"delaunay": "triangulating", "trim": "trimming", "fill": "filling holes"}
@@ -216,7 +216,7 @@ def trim_few(run, boundary, faults):
     result.boundary = (result.trim if boundary is None else result.outlined[1]).GetOutput(2)
     left = numpy.flatnonzero(result.reasons == WITHIN_ERROR)
     xyz = vtk_to_numpy(result.cloud.points.GetPoints().GetData())
-    result.reasons[left[outside_of(outline, xyz[left], reach)]] = OUT_OF_OUTLINE
+    result.reasons[left[outside_of(outline, xyz[left], reach)]] = OUTSIDE_OUTLINE
 
 
 def why_no_triangle(ranks, xyz, limit, warnings):

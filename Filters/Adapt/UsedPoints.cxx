@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <numeric>
 
 namespace elevation
@@ -28,14 +29,6 @@ vtkAbstractArray* OriginalIdsOf(vtkPointSet* data)
 {
   vtkAbstractArray* const ids = data->GetPointData()->GetAbstractArray(NameOfOriginalIds);
   return ids && IsOriginalIds(ids) ? ids : nullptr;
-}
-
-/** An array as numbers, if it has one integer for each point. */
-vtkDataArray* IntegersOf(vtkAbstractArray* array)
-{
-  const int type = array->GetDataType();
-  const bool isFit = array->GetNumberOfComponents() == 1 && type != VTK_FLOAT && type != VTK_DOUBLE;
-  return isFit ? vtkDataArray::SafeDownCast(array) : nullptr;
 }
 
 /** Visits the cells of an array: visit(size, ids). */
@@ -64,24 +57,26 @@ vtkSmartPointer<vtkCellArray> Renumbered(vtkCellArray* cells, const std::vector<
 }
 } // namespace
 
+// Unsigned numbers have no -1.
 bool IsOriginalIds(vtkAbstractArray* array)
 {
+  constexpr int types[] = { VTK_ID_TYPE, VTK_LONG_LONG, VTK_LONG, VTK_INT, VTK_SHORT };
   return array->GetName() && !std::strcmp(array->GetName(), NameOfOriginalIds) &&
-    vtkIdTypeArray::SafeDownCast(array) && array->GetNumberOfComponents() == 1;
+    array->GetNumberOfComponents() == 1 &&
+    std::find(std::begin(types), std::end(types), array->GetDataType()) != std::end(types);
 }
 
 vtkSmartPointer<vtkPointSet> WithOriginalIds(
   vtkPointSet* input, vtkIdType first, std::vector<Message>& warnings)
 {
-  if (input->GetNumberOfPoints() == 0 || OriginalIdsOf(input))
+  if (input->GetNumberOfPoints() == 0 || vtkIdTypeArray::SafeDownCast(OriginalIdsOf(input)))
   {
     return input;
   }
   auto numbered = vtk::TakeSmartPointer(input->NewInstance());
   numbered->ShallowCopy(input);
-  vtkAbstractArray* const given = input->GetPointData()->GetAbstractArray(NameOfOriginalIds);
-  vtkDataArray* source = given ? IntegersOf(given) : nullptr;
-  if (given && !source)
+  vtkDataArray* source = vtkDataArray::SafeDownCast(OriginalIdsOf(input));
+  if (!source && input->GetPointData()->HasArray(NameOfOriginalIds))
   {
     warnings.push_back(MakeMessage<sentences::OriginalIdsReplaced>());
   }

@@ -21,13 +21,14 @@ namespace elevation
 {
 
 /**
- * Whether it is the array OriginalPointIds: which points of the first input those of a surface are.
+ * Whether it is the array OriginalPointIds, of signed integers: which points of the first input
+ * those of a surface are.
  */
 bool IsOriginalIds(vtkAbstractArray* array);
 
 /**
  * An input whose points have original ids: those that it has from a filter before, as any kind of
- * integers; else its global ids, or else its places.
+ * signed integers; else its global ids, or else its places.
  * @param[in]     first     place of the first point
  * @param[in,out] warnings  gets one where the array of this name is something else
  */

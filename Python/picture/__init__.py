@@ -53,7 +53,7 @@ from .screen_mesh import Cells, mesh_for_screen
 WALL = (0.66, 0.63, 0.59)
 
 MOST_TRIANGLES = 500_000  # of more, no more are drawn than the picture can show
-PIXELS_OF_CELL = 2.0
+CELL_PIXELS = 2.0
 MOST_SAMPLES = 1_000_000
 
 
@@ -331,7 +331,7 @@ def render(
     cells = None
     progress(0.1)
     if len(triangles) > MOST_TRIANGLES:
-        cells = Cells(real, frame.widen, used, (WIDTH - LEFT - RIGHT) / PIXELS_OF_CELL)
+        cells = Cells(real, frame.widen, used, (WIDTH - LEFT - RIGHT) / CELL_PIXELS)
     mesh = mesh_for_screen(triangles, patches_to_outline(surface), cells)
     progress(0.5)
     real = real[mesh.ids].astype("f8")

@@ -9,8 +9,10 @@
 
 #include "Adapt/Adapt.h"
 #include "Kernel/Constrain/Constrain.h"
+#include "Parts/BoundaryZone.h"
 #include "Parts/PackedData.h"
 #include "Parts/Parts.h"
+#include "Parts/TrimmedPart.h"
 #include "vtkFillElevationHoles.h"
 #include "vtkGridDelaunay2D.h"
 
@@ -41,6 +43,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <random>
@@ -790,6 +793,26 @@ void CheckFailuresOfTrimming(const Ranks& ranks)
   }
 }
 
+/** Along an outline no triangle is cut: of a part's triangles it gets back which side they are on. */
+void CheckOutlineOfPart()
+{
+  vtkNew<vtkGridDelaunay2D> whole;
+  whole->SetController(nullptr);
+  const std::vector<Place> cloud = CloudWithGaps();
+  whole->SetInputData(PointsOf(cloud, 0, cloud.size()));
+  whole->Update();
+  TrimmedPart part(whole->GetOutput());
+  part.Read();
+  Check(part.SweepForOutline(4, TrimOptions(), Progress()), "the part covers nothing twice");
+  BoundaryZone zone({ part.NearPart() });
+  Check(zone.TrimOutline(part.CountOfInnerPoints(), part.CountOfTriangles(), TrimOptions()),
+    "the near triangles decide");
+  const std::vector<TrimmedZone> back = zone.Split(Progress());
+  Check(back.size() == 1 && !back[0].Parents[0].empty() && !back[0].Parents[1].empty(),
+    "there are triangles on both sides");
+  Check(back[0].Corners[0].empty() && back[0].Corners[1].empty(), "no corner is sent back");
+}
+
 /** What would take too much is refused on all ranks alike, before any hole is filled. */
 void CheckRefusal(const Ranks& ranks)
 {
@@ -859,6 +882,57 @@ void CheckArraysWithoutValues()
   Check(noneToo && noneToo->GetNumberOfTuples() == 0, "an array without values arrives");
   Check(someToo && someToo->GetNumberOfTuples() == 1 && someToo->GetValue(0) == some->GetValue(0),
     "and keeps no other from coming");
+}
+
+/** An array of field data is that of the first part that has it. */
+void CheckJoinedFieldData()
+{
+  Parts parts;
+  for (const vtkIdType part : { 0, 1 })
+  {
+    parts.push_back(PointsOf(Cloud(false), 10 * part, 10 * part + 10));
+    for (const char* const name : { "Of both", part == 0 ? "Of the first" : "Of the second" })
+    {
+      vtkNew<vtkIdTypeArray> array;
+      array->SetName(name);
+      array->InsertNextValue(7 + part);
+      parts.back()->GetFieldData()->AddArray(array);
+    }
+  }
+  std::vector<Message> warnings;
+  const vtkSmartPointer<vtkPolyData> joined = Join(parts, PartKind::Points, Progress(), warnings);
+  vtkFieldData* const data = joined->GetFieldData();
+  const auto valueOf = [data](const char* name) {
+    vtkDataArray* const array = data->GetArray(name);
+    return array ? array->GetComponent(0, 0) : 0.0;
+  };
+  Check(data->GetNumberOfArrays() == 3 && warnings.empty(), "there are three arrays");
+  Check(
+    valueOf("Of both") == 7.0 && valueOf("Of the first") == 7.0 && valueOf("Of the second") == 8.0,
+    "each is that of the first part that has it");
+}
+
+/** Where ranks cut the plane depends on the points alone: the sample that decides has no chance. */
+void CheckCuts(const Ranks& ranks)
+{
+  constexpr long long count = 10007; // a prime number
+  std::vector<Place> cloud;
+  for (long long i = 0; i < count; ++i)
+  {
+    cloud.push_back({ static_cast<double>(i), static_cast<double>(7919 * i * i % count), 0.0 });
+  }
+  std::vector<vtkSmartPointer<vtkPolyData>> kept;
+  TriangulateParts parts(ranks);
+  AddShare(parts, ranks, cloud, false, kept);
+  std::vector<Message> warnings;
+  parts.Triangulate(1, nullptr, DelaunayOptions(), warnings);
+  const std::vector<vtkIdType> points =
+    ranks.Collect(std::vector<vtkIdType>{ static_cast<vtkIdType>(parts.Own().Points) });
+  const std::map<int, std::vector<vtkIdType>> expected = { { 2, { 5005, 5002 } },
+    { 3, { 3337, 3358, 3312 } } };
+  const auto ofRanks = expected.find(ranks.Count());
+  Check(ofRanks == expected.end() || points == ofRanks->second,
+    "rank 0 has " + std::to_string(points[0]) + " points");
 }
 
 /** Word from rank to rank, so that each comes when the one before waits for it. */
@@ -987,7 +1061,10 @@ int main(int argc, char** argv)
     CheckFailures(ranks);
     CheckTrimming(ranks);
     CheckFailuresOfTrimming(ranks);
+    CheckOutlineOfPart();
     CheckArraysWithoutValues();
+    CheckJoinedFieldData();
+    CheckCuts(ranks);
     CheckWaiting(ranks, outputs);
   }
   vtkMultiProcessController::SetGlobalController(nullptr);

@@ -18,7 +18,7 @@ from vtkelevationsurface import vtkElevationSurface as module
 HERE = sys.argv.index("--doxygen")
 PROGRAM, DOXYFILE = sys.argv[HERE + 1 :]
 # What vtkTypeMacro declares, and the ends of ranges, which the words on a setter give.
-OF_EVERY_CLASS = {
+CLASS_METHODS = {
     "GetNumberOfGenerationsFromBase",
     "GetNumberOfGenerationsFromBaseType",
     "IsA",
@@ -26,7 +26,7 @@ OF_EVERY_CLASS = {
     "NewInstance",
     "SafeDownCast",
 }
-OF_RANGES = ("MinValue", "MaxValue")
+RANGE_ENDS = ("MinValue", "MaxValue")
 
 
 def methods(wrapped):
@@ -37,8 +37,8 @@ def methods(wrapped):
         if callable(value)
         and name[0].isupper()
         and not inspect.isclass(value)
-        and name not in OF_EVERY_CLASS
-        and not name.endswith(OF_RANGES)
+        and name not in CLASS_METHODS
+        and not name.endswith(RANGE_ENDS)
     }
 
 

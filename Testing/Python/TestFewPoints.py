@@ -19,7 +19,7 @@ from vtkelevationsurface.outline import (
     spacing_of,
 )
 from vtkelevationsurface.report import OUTSIDE
-from vtkelevationsurface.spreading import OUT_OF_OUTLINE, WITHIN_ERROR
+from vtkelevationsurface.spreading import OUTSIDE_OUTLINE, WITHIN_ERROR
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 DATA = sys.argv[sys.argv.index("-D") + 1] if "-D" in sys.argv else "Data"
@@ -91,7 +91,7 @@ class Surface(unittest.TestCase):
             self.assertEqual(trim[name], of_all[name])
         spacing = spacing_of(full.boundary, None)
         self.check_bound(points, result, ERROR, 2 * ON_OUTLINE * spacing)
-        outside = points[result.reasons == OUT_OF_OUTLINE]
+        outside = points[result.reasons == OUTSIDE_OUTLINE]
         self.assertFalse(outside_of(result.boundary, outside, 0.5 * spacing).any())
         self.assertTrue(0 < len(outside) < 0.02 * len(points))
 

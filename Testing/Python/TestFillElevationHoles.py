@@ -94,6 +94,17 @@ class TestFillElevationHoles(unittest.TestCase):
                      "NumberOfThreads", "Controller", "NumberOfHoles", "NumberOfFilledHoles", "OpenEdgeLength"):
             self.assertIn(name + ":", text)
 
+    def test_cell_arrays_are_shared_with_the_input_where_nothing_is_filled(self):
+        numbers = numpy_to_vtk(numpy.arange(float(self.surface.GetNumberOfCells())), deep=True)
+        numbers.SetName("Number")
+        self.surface.GetCellData().AddArray(numbers)
+        for size, is_shared in ((1.0, True), (0.0, False)):
+            fill = vtkFillElevationHoles()
+            fill.SetInputData(self.surface)
+            fill.SetMaximumHoleSize(size)
+            fill.Update()
+            self.assertEqual(fill.GetOutput().GetCellData().GetArray("Number") is numbers, is_shared)
+
     def test_the_number_of_threads_does_not_change_a_byte(self):
         surface = sheet(
             120, lambda i, j: (i % 12) in range(2, 9) and (j % 15) in range(3, 11) and i < 117 and j < 117,

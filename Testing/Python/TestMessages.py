@@ -173,6 +173,24 @@ class Data(unittest.TestCase):
         self.assertEqual([(one.code, one.block, one.values["points"]) for one in warnings],
                          [("NoTriangle", "Block 2", "1")])  # an empty block passes in silence
 
+    def test_messages_of_many_blocks_are_as_many_rows_and_five_in_the_text(self):
+        for count in (5, 8):
+            blocks, texts = vtkMultiBlockDataSet(), []
+            for i in range(count):
+                blocks.SetBlock(i, make_points(numpy.array([[0.0, 0, 0], [1, 0, 0]])))
+            delaunay = triangulated(blocks)
+
+            def show(_caller, _event, text, texts=texts):
+                texts.append(text)
+
+            show.CallDataType = VTK_STRING
+            delaunay.AddObserver("WarningEvent", show)
+            self.assertEqual(len(run(delaunay)[1]), count)
+            (text,) = texts
+            self.assertEqual(len(re.findall(r"Block \d", text)), 5, text)
+            end = re.search(r"And (\d+) more like these\.", text)
+            self.assertEqual(end and end[1], "3" if count == 8 else None, text)
+
     def test_pieces_have_data_of_each_step(self):
         with tempfile.TemporaryDirectory() as folder:
             source = vtkReconstructPieces()

@@ -28,7 +28,7 @@ BENCHMARK = os.path.join(ROOT, "build", "bench", "bin", "BenchmarkDelaunay")
 SIZES = (150, 400)
 HAS_MATPLOTLIB = importlib.util.find_spec("matplotlib") is not None
 # What BenchmarkDelaunay --json writes, of a set of 100 points.
-OF_BENCHMARK = """{"benchmark": "BenchmarkDelaunay", "vtk": "9.1.0", "threads": 1, "seed": 1, "repeats": 2,
+BENCHMARK_FIGURES = """{"benchmark": "BenchmarkDelaunay", "vtk": "9.1.0", "threads": 1, "seed": 1, "repeats": 2,
   "sets": [{"set": "cloud", "points": 100, "codes": [
     {"code": "vtkGridDelaunay2D", "ns_per_point": {"median": 150, "least": 100, "greatest": 200,
       "runs": [100, 200]}, "processor_ns_per_point": 120, "trial_ns_per_point": 300,
@@ -151,7 +151,7 @@ class Parts(InFolder):
         self.assertIsNone(PaperTables.slope([(10, 3.0)]))
 
     def test_figures_of_the_benchmark_are_taken(self):
-        codes = PaperMeasures.codes_of(json.loads(OF_BENCHMARK))
+        codes = PaperMeasures.codes_of(json.loads(BENCHMARK_FIGURES))
         ours = codes["default"]
         self.assertAlmostEqual(ours["seconds"], 1.5e-5)
         self.assertAlmostEqual(ours["processor_seconds"], 1.2e-5)

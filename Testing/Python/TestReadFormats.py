@@ -5,10 +5,12 @@
 import struct
 import sys
 import unittest
+import warnings
 
 import numpy
 from in_folder import InFolder, coordinates
 from vtkelevationsurface import reading
+from vtkelevationsurface.reading.formats import is_table
 from vtkelevationsurface.reading.pcd import unpacked
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
@@ -119,6 +121,16 @@ class Formats(InFolder):
         self.assert_rows(self.read(MESH, "fort.14"), up)
         self.assert_rows(self.read(MESH, "bay.grd", depth=True), up)
         self.assertIn("ADCIRC mesh 'a bay'", self.read(MESH, "fort.14").notes)
+
+    def test_an_obj_without_vertices_is_refused_and_numpy_does_not_warn(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assert_refused("holds no points", "# nothing\n", "a.obj")
+
+    def test_the_first_line_of_a_table_has_at_most_1000_bytes(self):
+        for size, is_so in ((999, True), (1000, True), (1001, False)):
+            line = b"1 2 3".ljust(size - 1) + b"4"
+            self.assertEqual(is_table(line + b"\n1 2 3 4\n", "a"), is_so)
 
     def test_damaged_files_are_refused_in_one_line(self):
         cases = (

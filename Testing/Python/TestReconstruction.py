@@ -17,11 +17,12 @@ import vtkelevationsurface
 from vtkelevationsurface import (
     ElevationSurfaceError,
     ElevationSurfaceWarning,
+    picture,
     read,
     reconstruct,
 )
 from vtkelevationsurface.inputs import nodes_of
-from vtkelevationsurface.picture.signs import add_scalar_bar
+from vtkelevationsurface.picture.signs import add_scalar_bar, round_text
 from vtkelevationsurface.properties import PROPERTIES
 from vtkelevationsurface.reconstruction import as_lines
 from vtkelevationsurface.writing.xml_writer import named_arrays
@@ -62,6 +63,17 @@ class Parts(unittest.TestCase):
         props = renderer.GetViewProps()
         width, height, _ = props.GetItemAsObject(0).GetPosition2Coordinate().GetValue()
         self.assertGreater(height, 2 * width)
+
+    def test_colours_go_from_the_lowest_to_the_highest_elevation(self):
+        for low, high, expected in ((2.0, 12.0, (2.0, 12.0)), (5.0, 5.0, (5.0, 6.0))):
+            self.assertEqual(picture.colour_map(low, high).GetRange(), expected)
+
+    def test_a_number_in_a_picture_has_no_more_digits_than_it_needs(self):
+        for value, text in (
+            (0.0, "0"), (2.5, "2.5"), (0.125, "0.125"), (1234567.0, "1,234,567"), (250.04, "250"),
+            (0.000025, "2.5e-05"), (-0.0004, "-0.0004"), (2.5e7, "2.5e+07"),
+        ):
+            self.assertEqual(round_text(value), text)
 
 
 class Input(unittest.TestCase):

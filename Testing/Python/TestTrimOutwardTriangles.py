@@ -7,7 +7,7 @@ import sys
 import unittest
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersSources import vtkRegularPolygonSource
@@ -97,6 +97,27 @@ class TestTrimOutwardTriangles(unittest.TestCase):
         self.assertEqual(trim.GetOutwardTestAsString(), "Exact")
         self.assertIsNone(trim.GetBoundary())
         self.assertEqual(trim.GetNumberOfOutputPorts(), 3)
+
+    def test_counts_are_0_before_an_update(self):
+        trim = vtkTrimOutwardTriangles()
+        self.assertEqual(trim.GetNumberOfOutwardTriangles(), 0)
+        self.assertEqual(trim.GetNumberOfRecoveredEdges(), 0)
+        self.assertEqual(trim.GetNumberOfPointsLeftOut(), 0)
+        self.assertEqual(trim.GetNumberOfInsertedPoints(), 0)
+        self.assertEqual(trim.GetEffectiveGapTolerance(), 0.0)
+
+    def test_triangles_without_their_ids_of_points_are_refused(self):
+        for count, number_of_ids in ((2, 1), (2, 3), (5, 0)):
+            data, cells = polygons([(0, 0), (9, 0), (0, 9)]), vtkCellArray()
+            offsets, ids = (numpy_to_vtkIdTypeArray(numpy.array(values, dtype=numpy.int64), deep=True)
+                            for values in (range(0, 3 * count + 1, 3), range(number_of_ids)))
+            cells.SetData(offsets, ids)
+            data.SetPolys(cells)
+            trim = vtkTrimOutwardTriangles()
+            trim.SetInputData(data)
+            with Messages(trim) as messages:
+                trim.Update()
+            self.assertIn(f"end with the number of point ids, {number_of_ids}.", messages.errors[0])
 
     def test_values_are_clamped(self):
         trim = vtkTrimOutwardTriangles()

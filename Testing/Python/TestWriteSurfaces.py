@@ -16,7 +16,8 @@ from vtkelevationsurface import distance, reconstruct, writing
 from vtkelevationsurface.picture import screen_mesh
 from vtkelevationsurface.writing import xml_writer
 from vtkelevationsurface.clouds import cells_of, corner_flags, make_points
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import VTK_ID_TYPE
 from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
 
 MIDDLE = (612014.0, 6073983.0, 633.0)
@@ -74,6 +75,9 @@ class Formats(InFolder):
     def test_vtk_formats_hold_everything(self):
         from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
+        ids = numpy_to_vtkIdTypeArray(2**40 + numpy.arange(len(self.xyz) + 1), deep=True)
+        ids.SetName("Well")
+        self.data.GetPointData().AddArray(ids)
         for suffix, reader in (
             (".vtp", vtkXMLPolyDataReader()),
             (".vtu", vtkXMLUnstructuredGridReader()),
@@ -83,9 +87,11 @@ class Formats(InFolder):
                 numpy.testing.assert_array_equal(xyz_of(back), xyz_of(self.data))
                 cells = back.GetPolys() if suffix == ".vtp" else back.GetCells()
                 numpy.testing.assert_array_equal(triangles_of(cells), self.triangles + 1)
-                for name in ("RGB", "Filled Error", "Line", "Slope"):
+                for name in ("RGB", "Filled Error", "Line", "Slope", "Well"):
                     a, b = array_of(back, name), array_of(self.data, name)
                     self.assertEqual(a.dtype, b.dtype)
+                    kind = back.GetPointData().GetArray(name).GetDataType()
+                    self.assertEqual(kind == VTK_ID_TYPE, name == "Well", name)
                     numpy.testing.assert_array_equal(a, b)
                 crs = back.GetFieldData().GetAbstractArray("CRS")
                 self.assertEqual(crs.GetValue(0), "EPSG:25832")
@@ -268,7 +274,7 @@ class LargeSurfaces(unittest.TestCase):
         images, drawn = [], []
         with tempfile.TemporaryDirectory() as folder:
             for most, pixels in ((10**9, 2.0), (1000, 6.0)):
-                with mock.patch.multiple(picture, MOST_TRIANGLES=most, PIXELS_OF_CELL=pixels):
+                with mock.patch.multiple(picture, MOST_TRIANGLES=most, CELL_PIXELS=pixels):
                     path = os.path.join(folder, f"{most}.png")
                     drawn.append(result.plot(path, "waves"))
                     image = run(vtkPNGReader(), path).GetPointData().GetScalars()

@@ -71,7 +71,7 @@ def ring_area(xy):
 
 
 def pixels(path, band=1):
-    """(rows, columns), NaN where there are not data, and the transform of a raster."""
+    """(rows, columns), NaN where there are no data, and the transform of a raster."""
     raster = gdal.Open(path)
     one = raster.GetRasterBand(band)
     values = one.ReadAsArray().astype("f8")

@@ -17,7 +17,7 @@ import numpy
 from vtkelevationsurface import reconstruct
 from vtkelevationsurface.distance import distance_to
 from vtkelevationsurface.report import reasons_unused
-from vtkelevationsurface.spreading import OUT_OF_OUTLINE
+from vtkelevationsurface.spreading import OUTSIDE_OUTLINE
 
 from PaperClouds import make_horizon, points_of
 from ProcessMemory import forget_most, memory_of
@@ -76,7 +76,7 @@ class Surface:
         result = reconstruct(self.points, maximum_elevation_error=error)
         report = result.report
         # Points outside the outline that was found are not points of the surface.
-        inside = reasons_unused(result) != OUT_OF_OUTLINE
+        inside = reasons_unused(result) != OUTSIDE_OUTLINE
         distance = distance_to(result.complete, self.points, inside)
         return {
             "asked": asked,

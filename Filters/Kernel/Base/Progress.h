@@ -39,7 +39,7 @@ public:
 
 /**
  * Where a computation reports the fraction done, which rises in [0, 1], and learns that it has to
- * stop. A value: a copy, or a part for a step, serves as long as it is needed. Every pass over all
+ * stop. A value: a copy, or that of a step, serves as long as it is needed. Every pass over all
  * points or triangles reports often enough that an abort takes effect within half a second.
  */
 class Progress
@@ -67,12 +67,12 @@ public:
   }
 
   /** That of a step, which is from one fraction to another of the whole. */
-  Progress Part(double begin, double end) const
+  Progress Between(double begin, double end) const
   {
-    Progress part = *this;
-    part.Begin = std::min(this->End, this->Begin + begin * (this->End - this->Begin));
-    part.End = std::min(this->End, this->Begin + end * (this->End - this->Begin));
-    return part;
+    Progress step = *this;
+    step.Begin = std::min(this->End, this->Begin + begin * (this->End - this->Begin));
+    step.End = std::min(this->End, this->Begin + end * (this->End - this->Begin));
+    return step;
   }
 
 private:
@@ -162,7 +162,7 @@ private:
 
 inline Progress SubProgress(const Progress& progress, double begin, double end)
 {
-  return progress.Part(begin, end);
+  return progress.Between(begin, end);
 }
 
 /** std::sort of plain values with reports; after an abort the values are unusable. */

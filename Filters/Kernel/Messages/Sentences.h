@@ -35,7 +35,8 @@ ELEVATION_SENTENCE(
 ELEVATION_SENTENCE(InvalidPrecision,
   "{property:OutputPointsPrecision} is {value}; it must be 0 (single), 1 (double) or 2 (default).");
 ELEVATION_SENTENCE(OriginalIdsReplaced,
-  "The point array OriginalPointIds of the input is not one integer for each point, so it is "
+  "The point array OriginalPointIds of the input is not one signed integer for each point, so it "
+  "is "
   "replaced by the numbers of the points. Rename it to keep it.");
 ELEVATION_SENTENCE(FoldsInSingle,
   "In single precision cell {cell} of the output would turn over, lose its area or reach infinity. "
