@@ -58,7 +58,7 @@ public:
   bool FindCell(const Point2& p, std::size_t& cell) const
   {
     // NaN counts as outside.
-    if (!this->Whole.Contains(p))
+    if (!this->Bounds.Contains(p))
     {
       return false;
     }
@@ -95,36 +95,25 @@ private:
     std::for_each(this->Begin(cell), this->End(cell), visit);
   }
 
-  template <std::size_t Count>
-  static Box BoxOf(const std::array<Point2, Count>& corners)
-  {
-    Box box;
-    for (const Point2& corner : corners)
-    {
-      box.Add(corner);
-    }
-    return box;
-  }
-
   /** Fits columns and rows to the items' extents in x and y: parallel lines share few cells. */
   template <typename CornersOf>
   void SetExtent(std::size_t count, CornersOf& cornersOf)
   {
     for (std::size_t i = 0; i < count; ++i)
     {
-      this->Whole.Join(BoxOf(cornersOf(i)));
+      this->Bounds.Join(BoxOf(cornersOf(i)));
     }
     if (count == 0)
     {
       return;
     }
     // Scaled so that differences stay in the range of double.
-    const double largest = std::max({ std::fabs(this->Whole.Low.X), std::fabs(this->Whole.Low.Y),
-      std::fabs(this->Whole.High.X), std::fabs(this->Whole.High.Y) });
+    const double largest = std::max({ std::fabs(this->Bounds.Low.X), std::fabs(this->Bounds.Low.Y),
+      std::fabs(this->Bounds.High.X), std::fabs(this->Bounds.High.Y) });
     this->Scale = largest > 1e150 ? 0x1p-600 : (largest < 1e-150 ? 0x1p600 : 1.0);
-    this->Corner = { this->Whole.Low.X * this->Scale, this->Whole.Low.Y * this->Scale };
-    const double width = this->Whole.High.X * this->Scale - this->Corner.X;
-    const double height = this->Whole.High.Y * this->Scale - this->Corner.Y;
+    this->Corner = { this->Bounds.Low.X * this->Scale, this->Bounds.Low.Y * this->Scale };
+    const double width = this->Bounds.High.X * this->Scale - this->Corner.X;
+    const double height = this->Bounds.High.Y * this->Scale - this->Corner.Y;
 
     // The sums of the items' extents, in parts of the whole extent, plus one.
     double alongX = 1.0, alongY = 1.0;
@@ -166,7 +155,7 @@ private:
   void ForEachCell(const std::array<Point2, Count>& corners, Visitor&& visit) const
   {
     const Box box = BoxOf(corners);
-    if (!this->Whole.Intersects(box))
+    if (!this->Bounds.Intersects(box))
     {
       return;
     }
@@ -226,7 +215,7 @@ private:
     right = std::max(right, last);
   }
 
-  Box Whole; ///< the bounding box of all items
+  Box Bounds; ///< the bounding box of all items
   double Scale = 1.0;
   Point2 Corner{ 0.0, 0.0 }; ///< the lower left of the box, scaled
   double PerX = 0.0, PerY = 0.0;
