@@ -19,7 +19,11 @@ set(es_kernel_Mesh
   TriangleList
   Validate)
 set(es_kernel_Lattice
+  LatticeSample
+  LatticeBasis
+  OutwardFit
   FindLattice
+  GivenLattice
   Nodes
   Metric
   SharedLattice)
