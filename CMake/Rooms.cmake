@@ -73,6 +73,9 @@ set(es_kernel_Fill
   Multigrid
   Membrane
   Spline
+  PatchPlan
+  PointRows
+  Refinement
   Patch
   Neighbours
   Heights
