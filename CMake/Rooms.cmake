@@ -51,6 +51,10 @@ set(es_kernel_Simplify
 set(es_kernel_Triangulate
   Triangulate)
 set(es_kernel_Constrain
+  SegmentNetwork
+  SegmentCrossings
+  CutLines
+  NearLines
   Constrain)
 set(es_kernel_Cells
   Pieces
