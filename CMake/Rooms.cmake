@@ -29,6 +29,7 @@ set(es_kernel_Lattice
   SharedLattice)
 set(es_kernel_Bins
   BoxTree
+  GridBlock
   BinGrid
   Hull
   Options)
@@ -96,7 +97,7 @@ set(es_kernel_headers_Mesh
 set(es_kernel_headers_Lattice
   Lattice NodeOfPoint)
 set(es_kernel_headers_Bins
-  Bins Instructions WorkBudget)
+  Bins Instructions RowSorter WorkBudget)
 set(es_kernel_headers_Grow
   Grow Growth)
 set(es_kernel_headers_Simplify
