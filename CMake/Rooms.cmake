@@ -34,6 +34,7 @@ set(es_kernel_Bins
   Hull
   Options)
 set(es_kernel_Grow
+  Neighborhoods
   PointWindows
   WideApexSearch
   ApexSearch
@@ -99,7 +100,7 @@ set(es_kernel_headers_Lattice
 set(es_kernel_headers_Bins
   Bins Instructions RowSorter WorkBudget)
 set(es_kernel_headers_Grow
-  Grow Growth)
+  BoxAround Grow Growth Packing)
 set(es_kernel_headers_Simplify
   FacePlane)
 set(es_kernel_headers_Triangulate)
