@@ -114,9 +114,12 @@ set(es_kernel_headers_Fill
 # The rooms around the kernel.
 set(es_outer_rooms Adapt Parts)
 set(es_Adapt
+  ArrayChecks
   Blocks
   Constraints
+  DataArrays
   DelaunayReport
+  HiddenCells
   LimitAdvice
   MeshConversion
   PatchedSurface
