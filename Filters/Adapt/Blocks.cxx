@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Blocks.h"
 
+#include "ArrayChecks.h"
+#include "HiddenCells.h"
 #include "Kernel/Base/Base.h"
 #include "MeshConversion.h"
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Constraints.h"
 
+#include "DataArrays.h"
+
 #include "vtkAbstractArray.h"
 #include "vtkDataArray.h"
 #include "vtkPointData.h"

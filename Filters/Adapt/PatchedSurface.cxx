@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PatchedSurface.h"
 
+#include "DataArrays.h"
 #include "MeshConversion.h"
 #include "Requests.h"
 #include "TrimmedSurface.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "UsedPoints.h"
 
+#include "DataArrays.h"
 #include "MeshConversion.h"
 
 #include "vtkCellArray.h"

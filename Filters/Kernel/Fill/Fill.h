@@ -102,7 +102,7 @@ struct HoleReport
   double Perimeter = 0.0;  ///< length of all edges
   /** Inside the rim, outside the islands; NaN when Size is above 1e150 or below 1e-150. */
   double Area = 0.0;
-  double Spacing = 0.0; ///< as given, or the mean length of the edges (Patch.h)
+  double Spacing = 0.0; ///< as given, or the mean length of the edges (PatchPlan.h)
   Index NumberOfInsertedPoints = 0;
   Interpolation Method = Interpolation::NeighborMean; ///< as used; never Adaptive
   bool NeedsMoreSurroundings = false; ///< not filled: its surroundings are too small

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ApexSearch.h"
 
+#include "BoxAround.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -48,18 +50,6 @@ __attribute__((target("avx2"), always_inline)) inline __m128i ColumnsOf(
 
 #endif
 } // namespace
-
-/** A box around an edge, relative to its origin. */
-struct ApexSearch::Box
-{
-  double LowX, HighX, LowY, HighY;
-
-  bool Holds(const Box& other) const
-  {
-    return this->LowX < other.LowX && other.HighX < this->HighX && this->LowY < other.LowY &&
-      other.HighY < this->HighY;
-  }
-};
 
 /** The bins around the origin that are searched before the tree is. */
 struct ApexSearch::Region
@@ -171,58 +161,22 @@ void ApexSearch::SetEdge(Index a, Index b)
 Index ApexSearch::FindByAngle()
 {
   double reach = std::fabs(this->EdgeX) + std::fabs(this->EdgeY);
-  Box box{ -Infinity, Infinity, -Infinity, Infinity };
+  const auto compare = [this](Index first, Index count) { this->Compare(first, count); };
+  BoxAround box{ -Infinity, Infinity, -Infinity, Infinity };
   for (; this->Best == None && reach < Infinity; reach *= 2.0)
   {
     box = { 0.5 * this->EdgeX - reach, 0.5 * this->EdgeX + reach, 0.5 * this->EdgeY - reach,
       0.5 * this->EdgeY + reach };
-    this->LookIntoBox(this->NodeAround(box), box);
+    VisitLeaves(this->Grid, this->Origin, box, this->Budget, compare);
   }
   const double radius = std::sqrt(this->RadiusSquared);
-  const Box discs{ this->CenterX - radius, this->CenterX + radius, this->CenterY - radius,
+  const BoxAround discs{ this->CenterX - radius, this->CenterX + radius, this->CenterY - radius,
     this->CenterY + radius };
   if (!(reach < Infinity) || !box.Holds(discs))
   {
-    this->LookIntoBox(this->NodeAround(discs), discs);
+    VisitLeaves(this->Grid, this->Origin, discs, this->Budget, compare);
   }
   return this->Best;
-}
-
-/** The lowest node above the origin that contains all points of a box. */
-const BoxTree::Node& ApexSearch::NodeAround(const Box& box) const
-{
-  BoxTree::Step step = this->Grid.Lowest(this->Origin);
-  while (!step.IsRoot() &&
-    !Box{
-      step.LowX - this->A.X, step.HighX - this->A.X, step.LowY - this->A.Y, step.HighY - this->A.Y }
-       .Holds(box))
-  {
-    step = this->Grid.Tree.Above(step);
-  }
-  return *step.Node;
-}
-
-void ApexSearch::LookIntoBox(const Node& node, const Box& box)
-{
-  this->Budget.Spend(Node::Places);
-  for (int place = 0; place < Node::Places; ++place)
-  {
-    // Differences round monotonically: relative to the origin, a box still contains its points. The
-    // box of an infinite disc reaches even the empty boxes, so their First is tested.
-    if (node.First[place] != None && node.LowX[place] - this->A.X <= box.HighX &&
-      node.HighX[place] - this->A.X >= box.LowX && node.LowY[place] - this->A.Y <= box.HighY &&
-      node.HighY[place] - this->A.Y >= box.LowY)
-    {
-      if (node.Count[place] > 0)
-      {
-        this->Compare(node.First[place], node.Count[place]);
-      }
-      else
-      {
-        this->LookIntoBox(this->Grid.Tree.Nodes[node.First[place]], box);
-      }
-    }
-  }
 }
 
 /**

@@ -18,7 +18,7 @@ namespace elevation
 namespace
 {
 /**
- * Of a gap, per distance from the point that has it: ten times the growth of spacings (Patch.h).
+ * Of a gap, per distance from the point that has it: ten times SpacingGrowth (Fill/PatchPlan.h).
  */
 constexpr double DecayOfGaps = 2.0;
 

@@ -130,18 +130,9 @@ private:
 
   bool IsToFlip(const Mesh& mesh, Index a, Index b) const
   {
-    const Point2& from = mesh.PointOf(this->Triangles[a]);
-    const Point2& to = mesh.PointOf(this->Triangles[b]);
-    const Point2& p = mesh.PointOf(this->Triangles[Mesh::Previous(a)]);
-    const Point2& q = mesh.PointOf(this->Triangles[Mesh::Previous(b)]);
-    const Sign side = InCircle(from, to, p, q);
-    if (side != Zero)
-    {
-      return side == Positive;
-    }
-    const Point2& lowestOn = IsLower(from, to) ? from : to;
-    const Point2& lowestOff = IsLower(p, q) ? p : q;
-    return IsLower(lowestOff, lowestOn);
+    return ShouldFlip(mesh.PointOf(this->Triangles[a]), mesh.PointOf(this->Triangles[b]),
+      mesh.PointOf(this->Triangles[Mesh::Previous(a)]),
+      mesh.PointOf(this->Triangles[Mesh::Previous(b)]));
   }
 
   struct Entry
