@@ -722,7 +722,7 @@ double ErrorOfExtraction(const std::vector<Point2>& points, const Mask& mask,
 {
   const Mesh mesh = Delaunay(points);
   const ExtractedBoundary boundary = ExtractBoundary(mesh, ExtractOptions());
-  return ErrorOfOutline(mesh.Points, boundary.Vertices, mask, spacing, placing);
+  return SampledMask(mask, spacing, placing).Error(mesh.Points, boundary.Vertices);
 }
 
 /** The points on land of so many at random in the unit square. */
