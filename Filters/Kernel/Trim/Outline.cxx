@@ -24,8 +24,6 @@ constexpr double DefaultTolerance = 4.5;
 constexpr double LargestSpacingInTriangle = 2.0;
 // The longest edge in a bay, in tolerances. From 1.5 to 2, outlines are nearest to the true ones.
 constexpr double LongestInBay = 1.6;
-// Smaller lakes, in least lakes, have no bays.
-constexpr std::int64_t LakeWithBays = 4;
 // The cheaper test: fractions of the tolerance, in short spacings. In the same trials, and with
 // clusters and real surveys, spacings alone would leave out at most one triangle in 10,000 more, in
 // lattices none. With 0.55 the outlines of scan lines are a little worse; without the limit by the
@@ -50,8 +48,7 @@ enum Flag : char
 {
   Outside = 0,
   Surface = 1,
-  Bay = 2,   ///< surface if it belongs to a small bay
-  Sliver = 3 ///< while DropSlivers() runs
+  Bay = 2 ///< surface if it belongs to a small bay
 };
 
 /**
@@ -90,8 +87,7 @@ void VisitOpenings(const Components& parts, std::vector<Opening>& openings, IsOp
 }
 
 /**
- * Closes openings smaller than the least lake that do not reach the border of the mesh. Small lakes
- * have no bays, as these would fill them.
+ * Closes openings smaller than the least lake that do not reach the border of the mesh.
  * @param[in] shareOf  shareOf(t): the area of a triangle as a fraction of the least lake's
  */
 template <typename ShareOf>
@@ -112,9 +108,9 @@ void CloseSmallLakes(
     });
   VisitOpenings(
     parts, openings, isOpen, SubProgress(progress, 0.8, 1.0), [&](Index t, Opening& opening) {
-      if (!opening.ReachesBorder && opening.Share < LakeWithBays * Whole)
+      if (!opening.ReachesBorder && opening.Share < Whole)
       {
-        keep[t] = opening.Share < Whole ? Surface : Outside;
+        keep[t] = Surface;
       }
     });
 }
@@ -153,88 +149,54 @@ void CloseSmallBays(
     });
 }
 
-/** The longest edge of a triangle; of equal ones the first. */
-Index LongestEdge(const Mesh& mesh, Index t)
+/** Whether an edge is the longest of its triangle, or one of them. */
+bool IsLongest(const Mesh& mesh, Index h)
 {
-  Index longest = 3 * t;
-  for (const Index h : { 3 * t + 1, 3 * t + 2 })
-  {
-    longest = mesh.SquaredLengthOf(h) > mesh.SquaredLengthOf(longest) ? h : longest;
-  }
-  return longest;
+  const Index t = Mesh::Triangle(h);
+  const double squared = mesh.SquaredLengthOf(h);
+  return mesh.SquaredLengthOf(3 * t) <= squared && mesh.SquaredLengthOf(3 * t + 1) <= squared &&
+    mesh.SquaredLengthOf(3 * t + 2) <= squared;
 }
 
 /**
- * Makes slivers surface that lean with their longest edge on it, and those that then do. Linear.
- */
-void RestoreSlivers(const Mesh& mesh, const std::vector<Index>& slivers, std::vector<char>& keep,
-  const Progress& progress)
-{
-  std::vector<Index> queue = slivers;
-  StepCount steps;
-  for (std::size_t i = 0; i < queue.size(); ++i)
-  {
-    steps.Add();
-    ReportStep(progress, i, 4 * slivers.size()); // each adds at most its three neighbours
-    const Index t = queue[i];
-    const Index h = LongestEdge(mesh, t);
-    if (keep[t] == Sliver && !mesh.IsBorder(h) && keep[Mesh::Triangle(mesh.Twin(h))] == Surface)
-    {
-      keep[t] = Surface;
-      for (Index side = 3 * t; side < 3 * t + 3; ++side)
-      {
-        if (!mesh.IsBorder(side) && keep[Mesh::Triangle(mesh.Twin(side))] == Sliver)
-        {
-          queue.push_back(Mesh::Triangle(mesh.Twin(side)));
-        }
-      }
-    }
-  }
-}
-
-/**
- * Makes slivers parts of bays, from the border inwards, as long as there are any. Those that lean
- * with their longest edge on surface come back.
- * @param[in] isSliver  isSliver(h): whether the triangle of h is very flat over that edge
+ * Makes slivers parts of bays, from the border inwards, each across its longest edge: so its apex
+ * comes to the border, and no vertex is lost. Linear.
+ * @param[in] isSliver  isSliver(t): whether the triangle is very flat
  */
 template <typename IsSliver>
 void DropSlivers(
   const Mesh& mesh, IsSliver&& isSliver, std::vector<char>& keep, const Progress& progress)
 {
   std::vector<Index> dropped;
-  std::size_t next = 0; // of the dropped ones, whose neighbours are looked at
-  const auto look = [&](Index t) {
-    for (Index h = 3 * t; h < 3 * t + 3 && keep[t] == Surface; ++h)
+  const auto look = [&](Index h) {
+    const Index t = Mesh::Triangle(h);
+    if (keep[t] == Surface && IsLongest(mesh, h) && isSliver(t))
     {
-      if ((mesh.IsBorder(h) || keep[Mesh::Triangle(mesh.Twin(h))] != Surface) && isSliver(h))
-      {
-        keep[t] = Sliver;
-        dropped.push_back(t);
-      }
+      keep[t] = Bay;
+      dropped.push_back(t);
     }
   };
-  ForEachStretch(
-    mesh.NumberOfTriangles(), SubProgress(progress, 0.0, 0.8), [&](Index begin, Index end) {
-      for (Index t = begin; t < end; ++t)
+  ForEachStretch(mesh.NumberOfHalfEdges(), progress, [&](Index begin, Index end) {
+    for (Index h = begin; h < end; ++h)
+    {
+      if (mesh.IsBorder(h) || keep[Mesh::Triangle(mesh.Twin(h))] != Surface)
       {
-        look(t);
-        for (; next < dropped.size(); ++next)
+        look(h);
+      }
+      while (!dropped.empty())
+      {
+        const Index first = 3 * dropped.back();
+        dropped.pop_back();
+        for (Index side = first; side < first + 3; ++side)
         {
-          for (Index h = 3 * dropped[next]; h < 3 * dropped[next] + 3; ++h)
+          if (!mesh.IsBorder(side))
           {
-            if (!mesh.IsBorder(h))
-            {
-              look(Mesh::Triangle(mesh.Twin(h)));
-            }
+            look(mesh.Twin(side));
           }
         }
       }
-    });
-  RestoreSlivers(mesh, dropped, keep, SubProgress(progress, 0.8, 1.0));
-  for (const Index t : dropped)
-  {
-    keep[t] = keep[t] == Sliver ? static_cast<char>(Bay) : keep[t];
-  }
+    }
+  });
 }
 
 /**
@@ -517,16 +479,17 @@ bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
 {
   const TriangleList& list = measured.List;
   std::vector<char>& keep = result.IsSurface;
-  const auto isSliverOver = [&](Index t, double length) {
+  const auto isFlat = [&](Index t) {
     const double spacing = SpacingOf(measured.ShortSpacings, list.CornersOf(t));
-    return 2.0 * list.SquareShare(t, spacing) * spacing < LeastHeight * length;
+    return 2.0 * list.SquareShare(t, spacing) * spacing <
+      LeastHeight * std::sqrt(measured.Longest[t]);
   };
   // Slivers have two corners at the border, or at flat triangles with a corner there. Then the mesh
   // includes all their neighbours.
   IdSet atEdge = near;
   for (const Index t : TrianglesAt(list, near, SubProgress(progress, 0.0, 0.1)))
   {
-    if (isSliverOver(t, std::sqrt(measured.Longest[t])))
+    if (isFlat(t))
     {
       atEdge.AddAll(list.CornersOf(t));
     }
@@ -554,11 +517,11 @@ bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
       const Index t = mesh.Triangles[i];
       return keep[t] == Surface ? 0.0 : list.SquareShare(t, spacingOf(t));
     };
-    const auto isSliver = [&](Index h) {
-      const Index t = mesh.Triangles[Mesh::Triangle(h)];
+    const auto isSliver = [&](Index i) {
+      const Index t = mesh.Triangles[i];
       const Index* corners = list.CornersOf(t);
       return atEdge.Has(corners[0]) + atEdge.Has(corners[1]) + atEdge.Has(corners[2]) >= 2 &&
-        isSliverOver(t, std::sqrt(mesh.Surface.SquaredLengthOf(h)));
+        isFlat(t);
     };
     DropSlivers(mesh.Surface, isSliver, keepHere, SubProgress(round, 0.3, 0.4));
     if (std::find(keepHere.begin(), keepHere.end(), char(Surface)) == keepHere.end() &&
@@ -880,15 +843,17 @@ private:
     return median == scales.end() ? 1.0 : *median;
   }
 
+  double ScaleAt(Index vertex) const { return this->Scales.empty() ? 1.0 : this->Scales[vertex]; }
+
   /** The longest edge that a triangle may have. */
   double ToleranceOf(Index t) const
   {
     const Index* const corners = this->Measured.List.CornersOf(t);
     double spacing = SpacingOf(this->Spacings, corners);
-    for (int k = 0; k < 3 && !this->Scales.empty(); ++k)
+    for (int k = 0; k < 3; ++k)
     {
       // Not at once, as the largest spacing replaces the median.
-      const double scale = this->Scales[corners[k]];
+      const double scale = this->ScaleAt(corners[k]);
       spacing = std::max(spacing, std::min(1.0, scale - 1.0) * scale * this->Spacings[corners[k]]);
     }
     return this->Tolerance * spacing;
@@ -901,8 +866,7 @@ private:
     double spacing = 0.0;
     for (int k = 0; k < 3; ++k)
     {
-      const double scale = this->Scales.empty() ? 1.0 : this->Scales[corners[k]];
-      spacing = std::max(spacing, scale * this->Spacings[corners[k]]);
+      spacing = std::max(spacing, this->ScaleAt(corners[k]) * this->Spacings[corners[k]]);
     }
     return LongestInBay * this->Tolerance * spacing;
   }
