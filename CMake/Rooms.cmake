@@ -63,6 +63,12 @@ set(es_kernel_Trim
   Spacings
   PartialMesh
   Scales
+  Openings
+  Slivers
+  SmallPieces
+  SimpleRings
+  TraceSurface
+  MissingNodes
   Outline
   Trim)
 set(es_kernel_Fill
