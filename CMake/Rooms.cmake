@@ -57,6 +57,7 @@ set(es_kernel_Trim
   Crossings
   MeshCutter
   FollowSurface
+  RingPoints
   Insertion
   OutwardTriangles
   MeasuredTriangles
