@@ -26,10 +26,11 @@ Components FindFlagParts(const Mesh& mesh, FlagOf&& flagOf, const Progress& prog
  * In whole numbers, so that a sum does not depend on the order. Shares above 1 count as 1, and
  * those below 0, of needles whose area rounding has turned, as 0.
  */
-constexpr std::int64_t LeastLake = std::int64_t(1) << 30;
-std::int64_t ToLeastLakes(double share)
+constexpr std::int64_t FixedOne = std::int64_t(1) << 30;
+std::int64_t ToFixedPoint(double share)
 {
-  return static_cast<std::int64_t>(std::max(0.0, std::min(1.0, share)) * static_cast<double>(LeastLake));
+  return static_cast<std::int64_t>(
+    std::max(0.0, std::min(1.0, share)) * static_cast<double>(FixedOne));
 }
 
 /** What is known of connected triangles that are not surface. */
@@ -68,7 +69,7 @@ void CloseSmallLakes(
   const auto isOpen = [&](Index t) { return flags[t] != Surface; };
   VisitOpenings(
     parts, openings, isOpen, SubProgress(progress, 0.6, 0.8), [&](Index t, Opening& opening) {
-      opening.Share += ToLeastLakes(share(t));
+      opening.Share += ToFixedPoint(share(t));
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
         opening.ReachesBorder |= mesh.IsBorder(h);
@@ -76,7 +77,7 @@ void CloseSmallLakes(
     });
   VisitOpenings(
     parts, openings, isOpen, SubProgress(progress, 0.8, 1.0), [&](Index t, Opening& opening) {
-      if (!opening.ReachesBorder && opening.Share < LeastLake)
+      if (!opening.ReachesBorder && opening.Share < FixedOne)
       {
         flags[t] = Surface;
       }
@@ -92,7 +93,7 @@ void CloseSmallBays(
   const auto isOpen = [&](Index t) { return flags[t] == Bay; };
   VisitOpenings(
     parts, openings, isOpen, SubProgress(progress, 0.5, 0.7), [&](Index t, Opening& opening) {
-      opening.Share += ToLeastLakes(share(t));
+      opening.Share += ToFixedPoint(share(t));
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
         opening.Longest = std::max(opening.Longest, mesh.SquaredLengthOf(h));
@@ -104,14 +105,15 @@ void CloseSmallBays(
       {
         const char beside =
           mesh.IsBorder(h) ? static_cast<char>(Outside) : flags[Mesh::Triangle(mesh.Twin(h))];
-        const std::int64_t length =
-          beside == Bay ? 0 : ToLeastLakes(std::sqrt(mesh.SquaredLengthOf(h) / opening.Longest)) >> 8;
+        const std::int64_t length = beside == Bay
+          ? 0
+          : ToFixedPoint(std::sqrt(mesh.SquaredLengthOf(h) / opening.Longest)) >> 8;
         opening.Open += beside == Surface ? -length : length;
       }
     });
   VisitOpenings(
     parts, openings, isOpen, SubProgress(progress, 0.9, 1.0), [&](Index t, Opening& opening) {
-      flags[t] = opening.Share < LeastLake && opening.Open <= 0 ? Surface : Outside;
+      flags[t] = opening.Share < FixedOne && opening.Open <= 0 ? Surface : Outside;
     });
 }
 
@@ -134,7 +136,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
       const bool isAtBorder = atBorder.HasAny(corners);
       const double area = isAtBorder ? 1.0 : share(triangles[i]);
       Index root = RootOf(parents, corners[0]);
-      sums[root] += ToLeastLakes(area);
+      sums[root] += ToFixedPoint(area);
       for (int k = 0; k < 3; ++k)
       {
         list.PrefetchPoint(ahead[k]);
@@ -155,7 +157,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
     for (Index i = begin; i < end; ++i)
     {
       const Index t = triangles[i];
-      keep[t] = sums[RootOf(parents, list.CornersOf(t)[0])] < LeastLake;
+      keep[t] = sums[RootOf(parents, list.CornersOf(t)[0])] < FixedOne;
       if (!keep[t])
       {
         others.push_back(t);

@@ -4,8 +4,8 @@
  * @file
  * Openings between the triangles of a surface, and which of them are too small to stay open.
  *
- * An opening is a set of triangles that are not surface, connected by edges. A lake is one that does
- * not reach the border of the mesh; a bay lies open on a side. Cost: linear.
+ * An opening is a set of triangles that are not surface, connected by edges. A lake is one that
+ * does not reach the border of the mesh; a bay lies open on a side. Cost: linear.
  */
 #ifndef elevation_Trim_Openings_h
 #define elevation_Trim_Openings_h

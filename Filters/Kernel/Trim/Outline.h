@@ -127,8 +127,8 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
  *     spacing. The other triangles are grouped by common corners; a group away from the border of
  *     the mesh is surface too if it is smaller than a square with a side of 0.7 GapTolerance short
  *     spacings: it has no room for a lake.
- *   - A triangle with its longest edge at the border of the surface is a sliver, and not surface, if
- *     its height is less than a tenth of its short spacing. So is the next one that comes to the
+ *   - A triangle with its longest edge at the border of the surface is a sliver, and not surface,
+ *     if its height is less than a tenth of its short spacing. So is the next one that comes to the
  *     border, if two of its corners were at the border from the start, or are corners of flat
  *     triangles with a corner there. Slivers do not count in the size of an opening. So a line of
  *     points that leads away from the others is left out, even if it wavers (unless no triangle

@@ -13,7 +13,7 @@ namespace elevation
 namespace
 {
 
-/** Cuts walks along the border into rings: one that returns to a vertex on its path closes a ring. */
+/** Cuts walks along the border into rings: one that comes back to its path closes a ring. */
 class RingCutter
 {
 public:

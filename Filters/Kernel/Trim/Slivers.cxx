@@ -48,8 +48,8 @@ IdSet VerticesOfSlivers(
   return vertices;
 }
 
-void DropSlivers(const MeasuredTriangles& measured, const PartialMesh& partial,
-  const IdSet& atEdge, std::vector<char>& flags, const Progress& progress)
+void DropSlivers(const MeasuredTriangles& measured, const PartialMesh& partial, const IdSet& atEdge,
+  std::vector<char>& flags, const Progress& progress)
 {
   const Mesh& mesh = partial.Surface;
   const auto isSliver = [&](Index i) {

@@ -33,8 +33,8 @@ IdSet VerticesOfSlivers(
  * @param[in,out] flags   a Flag for each triangle of the mesh
  * @throws Aborted, std::bad_alloc
  */
-void DropSlivers(const MeasuredTriangles& measured, const PartialMesh& partial,
-  const IdSet& atEdge, std::vector<char>& flags, const Progress& progress);
+void DropSlivers(const MeasuredTriangles& measured, const PartialMesh& partial, const IdSet& atEdge,
+  std::vector<char>& flags, const Progress& progress);
 
 } // namespace elevation
 

@@ -18,8 +18,8 @@ namespace
 {
 
 /** The triangles at some vertices; all if these are many, or no more can be had. */
-PartialMesh MeshNear(const TriangleList& list, const MeshBorder& border, const IdSet& near,
-  const Progress& progress)
+PartialMesh MeshNear(
+  const TriangleList& list, const MeshBorder& border, const IdSet& near, const Progress& progress)
 {
   std::vector<Index> triangles = TrianglesAt(list, near, SubProgress(progress, 0.0, 0.33));
   if (border.IsPart || static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
@@ -29,7 +29,10 @@ PartialMesh MeshNear(const TriangleList& list, const MeshBorder& border, const I
   return PartialMesh(list, border, std::move(triangles), SubProgress(progress, 0.33, 1.0));
 }
 
-/** Drops slivers, and closes bays and lakes. @param[in] isAll  whether the mesh has all triangles */
+/**
+ * Drops slivers, and closes bays and lakes.
+ * @param[in] isAll  whether the mesh has all triangles
+ */
 std::vector<char> SmoothFlags(const MeasuredTriangles& measured, const PartialMesh& mesh,
   const IdSet& atEdge, bool isAll, const SurfaceOptions& options, const std::vector<char>& flags,
   const Progress& progress)
