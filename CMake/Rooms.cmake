@@ -67,12 +67,19 @@ set(es_kernel_Trim
   Crossings
   MeshCutter
   FollowSurface
+  RingPoints
   Insertion
   OutwardTriangles
   MeasuredTriangles
   Spacings
   PartialMesh
   Scales
+  Openings
+  Slivers
+  SmallPieces
+  SimpleRings
+  TraceSurface
+  MissingNodes
   Outline
   Trim)
 set(es_kernel_Fill

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Crossings.h"
 
-#include "Rings.h"
 #include "Kernel/Base/Base.h"
+#include "Rings.h"
 
 #include <algorithm>
 #include <unordered_set>
@@ -185,10 +185,9 @@ private:
     }
   }
 
-  bool FindCrossingAt(
-    const Index* begin, const Index* end, Meeting& crossing, WorkReporter& work) const
+  /** All strands at a place, sorted by angle, with their directions. */
+  std::vector<Strand> SortedStrands(const Index* begin, const Index* end, WorkReporter& work) const
   {
-    // All strands at this place, sorted by angle.
     const Point2& at = this->At(*begin);
     std::vector<Strand> strands;
     for (const Index* node = begin; node < end; ++node)
@@ -207,29 +206,31 @@ private:
       const Sign turn = to(s) == to(t) ? Zero : Orientation(at, to(s), to(t));
       return turn != Zero ? turn == Positive : s.Node < t.Node;
     });
-    // The directions of both strands of each node.
-    std::vector<std::array<Index, 2>> passages(end - begin);
-    const auto passageOf = [&](Index node) -> std::array<Index, 2>& {
-      return passages[std::lower_bound(begin, end, node) - begin];
-    };
-    for (std::size_t i = 0; i < strands.size(); ++i)
+    for (std::size_t i = 1; i < strands.size(); ++i)
     {
-      const bool isSame = i > 0 && to(strands[i]) == to(strands[i - 1]);
-      strands[i].Direction = i == 0 ? 0 : strands[i - 1].Direction + (isSame ? 0 : 1);
-      passageOf(strands[i].Node)[strands[i].Way] = strands[i].Direction;
+      const bool isSame = to(strands[i]) == to(strands[i - 1]);
+      strands[i].Direction = strands[i - 1].Direction + (isSame ? 0 : 1);
     }
+    return strands;
+  }
 
-    // Walks that meet only at this place: like brackets, they must be disjoint or nested.
+  /** The directions of both strands of a node. */
+  using Passage = std::array<Index, 2>;
+
+  /** Tests walks that meet only at a place: like brackets, they must be disjoint or nested. */
+  bool FindCrossingSpans(
+    const Index* nodes, const std::vector<Passage>& passages, Meeting& crossing) const
+  {
     struct Span
     {
       Index From, To;
       Index Node;
     };
     std::vector<Span> spans, open;
-    for (const Index* node = begin; node < end; ++node)
+    for (std::size_t i = 0; i < passages.size(); ++i)
     {
-      const auto [from, last] = std::minmax(passageOf(*node)[Before], passageOf(*node)[After]);
-      spans.push_back({ from, last, *node });
+      const auto [from, last] = std::minmax(passages[i][Before], passages[i][After]);
+      spans.push_back({ from, last, nodes[i] });
     }
     std::sort(spans.begin(), spans.end(), [](const Span& s, const Span& t) {
       return s.From != t.From ? s.From < t.From : s.To != t.To ? s.To > t.To : s.Node < t.Node;
@@ -248,7 +249,26 @@ private:
       }
       open.push_back(span);
     }
+    return false;
+  }
 
+  /** @param[in] begin, end  all nodes at one place; increasing */
+  bool FindCrossingAt(
+    const Index* begin, const Index* end, Meeting& crossing, WorkReporter& work) const
+  {
+    std::vector<Strand> strands = this->SortedStrands(begin, end, work);
+    std::vector<Passage> passages(end - begin);
+    const auto passageOf = [&](Index node) -> Passage& {
+      return passages[std::lower_bound(begin, end, node) - begin];
+    };
+    for (const Strand& strand : strands)
+    {
+      passageOf(strand.Node)[strand.Way] = strand.Direction;
+    }
+    if (this->FindCrossingSpans(begin, passages, crossing))
+    {
+      return true;
+    }
     // Walks that share an edge from here on.
     for (Strand& strand : strands)
     {

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scales.h"
 
-#include "PartialMesh.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -543,7 +541,8 @@ bool AreFew(
 }
 
 std::vector<float> FindScales(const MeasuredTriangles& measured, const Neighbors& neighbors,
-  const IdSet& atBorder, const IdSet& near, int threads, const Progress& progress, double* spacings)
+  const MeshBorder& border, const IdSet& near, int threads, const Progress& progress,
+  double* spacings)
 {
   const TriangleList& list = measured.List;
   const Index count = list.Points.Count;
@@ -560,9 +559,8 @@ std::vector<float> FindScales(const MeasuredTriangles& measured, const Neighbors
   }
   FindSpacings(list, neighbors, CornersOf(list, triangles, SubProgress(progress, 0.15, 0.2)),
     threads, SubProgress(progress, 0.2, 0.4), spacings);
-  const PartialMesh partial(
-    list, measured.Border, atBorder, std::move(triangles), SubProgress(progress, 0.4, 0.6));
-  return ThinTriangles(list, partial, atBorder, thin, spacings)
+  const PartialMesh partial(list, border, std::move(triangles), SubProgress(progress, 0.4, 0.6));
+  return ThinTriangles(list, partial, border.Vertices, thin, spacings)
     .FindScales(thin.Count() < count, SubProgress(progress, 0.6, 1.0));
 }
 

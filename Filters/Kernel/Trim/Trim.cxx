@@ -247,27 +247,24 @@ Rings ThereAndBack(const BoundaryLines& lines)
 }
 
 /**
- * @param[in] lines     a boundary, or with Following::Lines lines along which triangles are split
- * @param[in] ofWhole   the border of the mesh, where these are all triangles near the boundary
+ * Finds the triangles near the boundary, the flags of the others, and the border of the mesh.
+ * @param[in] known  the border of the mesh, where these are all triangles near the boundary
+ * @return nothing: all of them, whose border is that of the mesh
  */
-void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
-  const std::vector<BorderEdge>* ofWhole, const TrimOptions& options, Following follow,
-  const Progress& progress, Changes& changes, Trimmed& result)
+NearTriangles FindNear(const TriangleList& list, const NamedPoints& points, const Rings& boundary,
+  const std::vector<BorderEdge>* known, const TrimOptions& options, const Progress& progress,
+  std::vector<BorderEdge>& border, Changes& changes)
 {
-  const int threads = options.NumberOfThreads;
-  const bool areLines = follow == Following::Lines;
-  result.Boundary = areLines ? ThereAndBack(lines) : JoinLines(lines, &result.Warning);
   NearTriangles near;
-  std::vector<BorderEdge> border;
-  if (ofWhole)
+  if (known)
   {
     near = AllTriangles(list);
-    border = *ofWhole;
+    border = *known;
   }
   else if (options.Test == OutwardTest::Exact)
   {
-    std::optional<SweptAlongRings> swept = FindNearTriangles(
-      list, lines.Points.Places, result.Boundary, threads, SubProgress(progress, 0.0, 0.3));
+    std::optional<SweptAlongRings> swept =
+      FindNearTriangles(list, points.Places, boundary, options.NumberOfThreads, progress);
     if (swept)
     {
       near = std::move(swept->Near);
@@ -276,6 +273,23 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
     }
   }
   changes.IsOutward.resize(list.Count);
+  return near;
+}
+
+/**
+ * @param[in] lines  a boundary, or with Following::Lines lines along which triangles are split
+ * @param[in] known  the border of the mesh, where these are all triangles near the boundary
+ */
+void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
+  const std::vector<BorderEdge>* known, const TrimOptions& options, Following follow,
+  const Progress& progress, Changes& changes, Trimmed& result)
+{
+  const int threads = options.NumberOfThreads;
+  const bool areLines = follow == Following::Lines;
+  result.Boundary = areLines ? ThereAndBack(lines) : JoinLines(lines, &result.Warning);
+  std::vector<BorderEdge> border;
+  const NearTriangles near = FindNear(list, lines.Points, result.Boundary, known, options,
+    SubProgress(progress, 0.0, 0.3), border, changes);
   const Progress making =
     SubProgress(progress, options.Test == OutwardTest::Exact ? 0.3 : 0.0, 0.5);
   Mesh mesh = near ? NearMesh(list, *near, making) : ProvenMesh(list, threads, making);
@@ -308,7 +322,7 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
   PutBack(list, near, mesh, SubProgress(progress, 0.97, 1.0), changes);
   PutBackFlags(near, std::move(outward.IsOutward), changes);
   PutBackInserted(near, mesh, rings, changes, result);
-  if (!ofWhole)
+  if (!known)
   {
     CheckEnclosed(list, changes.IsOutward, lines.Points, result.Boundary);
   }
