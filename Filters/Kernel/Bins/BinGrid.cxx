@@ -64,13 +64,13 @@ public:
       return;
     }
     this->Lay(extent);
-    const Progress filling = SubProgress(progress, 0.0, 0.875);
-    this->CountInGroups(SubProgress(filling, 0.0, 0.1));
+    const Progress filling = progress.Between(0.0, 0.875);
+    this->CountInGroups(filling.Between(0.0, 0.1));
     this->MakeBlocks();
-    this->SortIntoBlocks(SubProgress(filling, 0.1, 0.3));
-    this->FillBlocks(SubProgress(filling, 0.3, 1.0));
-    const Progress joining = SubProgress(progress, 0.875, 1.0);
-    this->CloseGaps(SubProgress(joining, 0.0, 0.0));
+    this->SortIntoBlocks(filling.Between(0.1, 0.3));
+    this->FillBlocks(filling.Between(0.3, 1.0));
+    const Progress joining = progress.Between(0.875, 1.0);
+    this->CloseGaps(joining.Between(0.0, 0.0));
     this->Join(joining);
   }
 
@@ -237,7 +237,7 @@ private:
       block.Fill(this->Points, this->Policy, inBlock, this->Grid);
     };
     ForEachPiece(static_cast<Index>(this->Blocks.size()), this->Threads,
-      SubProgress(progress, 0.0, done), [&](Index i) {
+      progress.Between(0.0, done), [&](Index i) {
         if (!isLarge(this->Blocks[i]))
         {
           fill(this->Blocks[i], Progress());
@@ -249,7 +249,7 @@ private:
       {
         const double begin = done;
         done = std::min(1.0, done + static_cast<double>(block.Count) / count);
-        fill(block, SubProgress(progress, begin, done));
+        fill(block, progress.Between(begin, done));
       }
     }
     this->Grid.Scratch.Recycle(std::move(this->Memory));
@@ -376,12 +376,11 @@ BinGrid::BinGrid(const PointView& points, DuplicatePolicy policy, const Progress
   int threads, Extent* known)
 {
   const auto look = [&]() {
-    return FindExtent(
-      points, threads, SubProgress(progress, 0.0, 0.2), [](Index, const Point2&) {});
+    return FindExtent(points, threads, progress.Between(0.0, 0.2), [](Index, const Point2&) {});
   };
   Extent extent = known ? std::move(*known) : look();
   this->NotFinite = std::move(extent.NotFinite);
-  GridBuilder(*this, points, policy, threads).Run(extent, SubProgress(progress, 0.2, 1.0));
+  GridBuilder(*this, points, policy, threads).Run(extent, progress.Between(0.2, 1.0));
 }
 
 } // namespace elevation

@@ -38,7 +38,7 @@ public:
       this->Filled.Nodes.Reserve(this->Filled.Count / 48); // growing it takes long
     }
     this->Filled.Root = BoxTree::Build(this->Local, this->Rows, this->Filled.Points,
-      this->Filled.Nodes, SubProgress(this->Monitor, 0.1, 0.6));
+      this->Filled.Nodes, this->Monitor.Between(0.1, 0.6));
     this->SortRows();
     this->SetDuplicatesAside(points, policy);
     if (!this->Filled.Duplicates.empty())
@@ -78,7 +78,7 @@ private:
     Index sum = 0;
     this->ForEach(
       this->Bins, 0.05, 0.05, [&](Index bin) { sum += std::exchange(starts[bin + 1], sum); });
-    const Progress here = SubProgress(this->Monitor, 0.05, 0.05);
+    const Progress here = this->Monitor.Between(0.05, 0.05);
     TouchPages(this->Grid.X, begin, begin + count, here);
     TouchPages(this->Grid.Y, begin, begin + count, here);
     TouchPages(this->Grid.Ids, begin, begin + count, here);
@@ -103,7 +103,7 @@ private:
       if (slots.first < slots.second)
       {
         const double done = 0.6 + 0.3 * row / this->Rows;
-        inSort = SubProgress(this->Monitor, done, done);
+        inSort = this->Monitor.Between(done, done);
         const double low = bins.OriginY + (this->Filled.FirstRow + row) * bins.BinHeight;
         sorter.Sort(slots, low, low + bins.BinHeight, this->Order + slots.first);
         lowest = this->Local.Y[this->Order[slots.first]];

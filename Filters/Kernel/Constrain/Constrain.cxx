@@ -63,7 +63,7 @@ void SortInChanged(const Mesh& mesh, Buffer<Index>& triangles, const Progress& p
   Corners* kept = all; // the end of those that have not changed
   std::vector<Corners> changed;
   const Index count = mesh.NumberOfTriangles();
-  ForEachStretch(count, SubProgress(progress, 0.0, 0.3), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.0, 0.3), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       Corners corners{ mesh.Triangles[3 * t], mesh.Triangles[3 * t + 1],
@@ -83,9 +83,9 @@ void SortInChanged(const Mesh& mesh, Buffer<Index>& triangles, const Progress& p
   const auto comesBefore = [&](const Corners& p, const Corners& q) {
     return ComesBefore(mesh.Points, p, q);
   };
-  Sort(changed.begin(), changed.end(), comesBefore, SubProgress(progress, 0.3, 0.6));
+  Sort(changed.begin(), changed.end(), comesBefore, progress.Between(0.3, 0.6));
   std::copy(changed.begin(), changed.end(), kept);
-  const Progress merging = SubProgress(progress, 0.6, 1.0);
+  const Progress merging = progress.Between(0.6, 1.0);
   WorkReporter work(merging);
   std::inplace_merge(all, kept, all + count, [&](const Corners& p, const Corners& q) {
     work.Tick();
@@ -115,14 +115,13 @@ ConstrainedTriangulation TriangulateConstrained(
   Triangulation& result = constrained.Result;
   const Progress& progress = asked.Monitor;
   static_cast<LinePieces&>(constrained) =
-    CutLines(points, lines, asked.Duplicates, SubProgress(progress, 0.0, 0.17));
+    CutLines(points, lines, asked.Duplicates, progress.Between(0.0, 0.17));
   if (constrained.AreNone)
   {
     result = Triangulate(points, asked);
     return constrained;
   }
-  const Buffer<double> joined =
-    JoinPoints(points, constrained.Added, SubProgress(progress, 0.17, 0.2));
+  const Buffer<double> joined = JoinPoints(points, constrained.Added, progress.Between(0.17, 0.2));
   PointView all = points;
   if (!joined.empty())
   {
@@ -132,12 +131,12 @@ ConstrainedTriangulation TriangulateConstrained(
   }
 
   DelaunayOptions options = asked;
-  options.Monitor = SubProgress(progress, 0.2, 0.6);
+  options.Monitor = progress.Between(0.2, 0.6);
   options.UseLattice = LatticeMode::Off;
   options.MaximumEdgeLength = 0.0; // recovery needs all triangles
   if (options.MaximumElevationError > 0.0)
   {
-    options.Monitor = SubProgress(progress, 0.2, 1.0);
+    options.Monitor = progress.Between(0.2, 1.0);
     result = TriangulateFew(all, options, constrained.Pieces);
     return constrained;
   }
@@ -148,25 +147,25 @@ ConstrainedTriangulation TriangulateConstrained(
   }
   Mesh mesh;
   mesh.Points.resize(all.Count);
-  ForEachStretch(all.Count, SubProgress(progress, 0.6, 0.62), [&](Index begin, Index end) {
+  ForEachStretch(all.Count, progress.Between(0.6, 0.62), [&](Index begin, Index end) {
     for (Index id = begin; id < end; ++id)
     {
       mesh.Points[id] = all.At(id);
     }
   });
   mesh.Triangles.assign(result.Triangles.begin(), result.Triangles.end());
-  mesh.ConnectTwins(0, SubProgress(progress, 0.62, 0.8));
+  mesh.ConnectTwins(0, progress.Between(0.62, 0.8));
   std::vector<char> flags;
   const Index missing =
-    RecoverSegments(mesh, constrained.Pieces, flags, SubProgress(progress, 0.8, 0.95));
+    RecoverSegments(mesh, constrained.Pieces, flags, progress.Between(0.8, 0.95));
   if (missing > 0)
   {
-    SortInChanged(mesh, result.Triangles, SubProgress(progress, 0.95, 0.99));
+    SortInChanged(mesh, result.Triangles, progress.Between(0.95, 0.99));
   }
   const EdgeLimit limit(asked.MaximumEdgeLength);
   if (limit.IsSet())
   {
-    LeaveOutLong(mesh.Points, limit, result.Triangles, SubProgress(progress, 0.99, 1.0));
+    LeaveOutLong(mesh.Points, limit, result.Triangles, progress.Between(0.99, 1.0));
   }
   Report(progress, 1.0);
   return constrained;

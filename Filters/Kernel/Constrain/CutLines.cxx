@@ -25,11 +25,11 @@ public:
     , Lines(lines)
     , Duplicates(duplicates)
   {
-    this->Collect(lines, SubProgress(progress, 0.0, 0.1));
+    this->Collect(lines, progress.Between(0.0, 0.1));
     if (!this->Pieces.empty())
     {
-      this->Split(SubProgress(progress, 0.1, 0.9));
-      this->Match(SubProgress(progress, 0.9, 1.0));
+      this->Split(progress.Between(0.1, 0.9));
+      this->Match(progress.Between(0.9, 1.0));
     }
   }
 
@@ -95,19 +95,19 @@ private:
   /** Pass 2. */
   void Split(const Progress& progress)
   {
-    this->CutAtPoints(SubProgress(progress, 0.0, 0.5));
+    this->CutAtPoints(progress.Between(0.0, 0.5));
     // Up to here, pieces follow the lines exactly; the next steps move them by rounding.
     const std::vector<SegmentPiece> pieces = this->Pieces;
     const std::size_t count = this->Vertices.size();
     // Two units cover the rounding of an end and of a crossing. A reach of 0 is for lines no longer
     // than a few units: the doubles between them are finite in number, so that it ends.
-    if (this->Settle(2.0, true, SubProgress(progress, 0.5, 0.9)))
+    if (this->Settle(2.0, true, progress.Between(0.5, 0.9)))
     {
       return;
     }
     this->Pieces = pieces;
     this->Vertices.resize(count);
-    if (!this->Settle(0.0, false, SubProgress(progress, 0.9, 1.0)))
+    if (!this->Settle(0.0, false, progress.Between(0.9, 1.0)))
     {
       const Segment &one = this->Segments[this->Unsettled[0]],
                     &other = this->Segments[this->Unsettled[1]];
@@ -131,14 +131,13 @@ private:
     {
       // Each round gets half of the remaining progress.
       const Progress ofRound =
-        SubProgress(progress, 1.0 - std::ldexp(1.0, -round), 1.0 - std::ldexp(1.0, -round - 1));
-      this->EnterInGrid(SubProgress(ofRound, 0.0, 0.2));
+        progress.Between(1.0 - std::ldexp(1.0, -round), 1.0 - std::ldexp(1.0, -round - 1));
+      this->EnterInGrid(ofRound.Between(0.0, 0.2));
       std::vector<PieceCut> cuts;
-      this->CutAtVertices(cuts, Everything, SubProgress(ofRound, 0.2, 0.4));
+      this->CutAtVertices(cuts, Everything, ofRound.Between(0.2, 0.4));
       if (cuts.empty())
       {
-        const std::vector<Crossing> crossings =
-          FindCrossings(*this, SubProgress(ofRound, 0.4, 0.7));
+        const std::vector<Crossing> crossings = FindCrossings(*this, ofRound.Between(0.4, 0.7));
         if (crossings.empty())
         {
           return true;
@@ -148,11 +147,11 @@ private:
           this->CountCrossings(crossings);
           haveCounted = true;
         }
-        CutAtCrossings(*this, crossings, reach, cuts, SubProgress(ofRound, 0.7, 0.9));
+        CutAtCrossings(*this, crossings, reach, cuts, ofRound.Between(0.7, 0.9));
         const auto [p, q] = crossings[0];
         this->Unsettled = { this->Pieces[p].Rank, this->Pieces[q].Rank };
       }
-      this->Apply(cuts, SubProgress(ofRound, 0.9, 1.0));
+      this->Apply(cuts, ofRound.Between(0.9, 1.0));
     }
     return false;
   }
@@ -160,31 +159,31 @@ private:
   /** Cuts at vertices and input points that lie exactly on the lines. */
   void CutAtPoints(const Progress& progress)
   {
-    this->EnterInGrid(SubProgress(progress, 0.0, 0.2));
+    this->EnterInGrid(progress.Between(0.0, 0.2));
     std::vector<PieceCut> cuts;
     std::vector<Passage> passages;
     // With so many, lines overlap or run along each other.
     const std::size_t many = 64 * (this->Vertices.size() + this->Pieces.size());
-    if (!this->CutAtVertices(cuts, many, SubProgress(progress, 0.2, 0.3)))
+    if (!this->CutAtVertices(cuts, many, progress.Between(0.2, 0.3)))
     {
       std::vector<Point2> places(this->Vertices.size());
       for (std::size_t v = 0; v < places.size(); ++v)
       {
         places[v] = this->Vertices[v].Position;
       }
-      passages = JoinOverlaps(this->Pieces, places, SubProgress(progress, 0.3, 0.35));
-      this->EnterInGrid(SubProgress(progress, 0.35, 0.4));
+      passages = JoinOverlaps(this->Pieces, places, progress.Between(0.3, 0.35));
+      this->EnterInGrid(progress.Between(0.35, 0.4));
       cuts.clear();
-      this->CutAtVertices(cuts, Everything, SubProgress(progress, 0.4, 0.45));
+      this->CutAtVertices(cuts, Everything, progress.Between(0.4, 0.45));
     }
-    this->CutAtInputPoints(cuts, SubProgress(progress, 0.45, 0.9));
+    this->CutAtInputPoints(cuts, progress.Between(0.45, 0.9));
     for (const PieceCut& cut : cuts)
     {
       const SegmentPiece& piece = this->Pieces[cut.Piece];
       passages.push_back({ cut.Vertex, piece.B, piece.Count });
     }
-    this->CountCrossingsAtVertices(passages, SubProgress(progress, 0.9, 0.94));
-    this->Apply(cuts, SubProgress(progress, 0.94, 1.0));
+    this->CountCrossingsAtVertices(passages, progress.Between(0.9, 0.94));
+    this->Apply(cuts, progress.Between(0.94, 1.0));
   }
 
   /**
@@ -195,7 +194,7 @@ private:
   {
     std::vector<PieceCut> found; // with input points for vertices
     ForEachStretch(
-      this->Points.Count, SubProgress(progress, 0.0, 0.8), [&](Index begin, Index end) {
+      this->Points.Count, progress.Between(0.0, 0.8), [&](Index begin, Index end) {
         for (Index id = begin; id < end; ++id)
         {
           const Point2 p = this->Points.At(id);
@@ -230,7 +229,7 @@ private:
         const Point2 at = this->Points.At(p.Vertex), other = this->Points.At(q.Vertex);
         return at != other ? IsLower(at, other) : p.Piece < q.Piece;
       },
-      SubProgress(progress, 0.8, 1.0));
+      progress.Between(0.8, 1.0));
     const std::size_t first = this->Vertices.size(), firstCut = cuts.size();
     for (const PieceCut& cut : found)
     {
@@ -291,8 +290,8 @@ private:
           ? p.Vertex < q.Vertex
           : Orientation(this->At(p.Vertex), this->At(p.Toward), this->At(q.Toward)) == Positive;
       },
-      SubProgress(progress, 0.0, 0.8));
-    const Progress counting = SubProgress(progress, 0.8, 1.0);
+      progress.Between(0.0, 0.8));
+    const Progress counting = progress.Between(0.8, 1.0);
     std::int64_t around = 0, alike = 0; // earlier segments at this vertex; in this direction
     for (const std::size_t i : Counted(std::size_t(1), passages.size()))
     {
@@ -321,9 +320,9 @@ private:
   {
     SortAlong(
       cuts, [&](Index piece) -> const Ends& { return this->PieceEnds[piece]; },
-      [&](Index vertex) { return this->At(vertex); }, SubProgress(progress, 0.0, 0.5));
+      [&](Index vertex) { return this->At(vertex); }, progress.Between(0.0, 0.5));
     std::vector<SegmentPiece> pieces;
-    const Progress cutting = SubProgress(progress, 0.5, 0.7);
+    const Progress cutting = progress.Between(0.5, 0.7);
     WorkReporter work(cutting);
     auto cut = cuts.begin();
     for (std::size_t i = 0; i < this->Pieces.size(); ++i)
@@ -354,7 +353,7 @@ private:
       append(end);
     }
     this->Pieces = std::move(pieces);
-    this->JoinEqualPieces(SubProgress(progress, 0.7, 1.0));
+    this->JoinEqualPieces(progress.Between(0.7, 1.0));
   }
 
   /** Pass 3: the input points at crossings. All others have been found when cutting. */
@@ -375,9 +374,9 @@ private:
     const CellGrid grid(
       crossings.size(),
       [&](std::size_t i) { return std::array<Point2, 1>{ { this->At(crossings[i]) } }; },
-      SubProgress(progress, 0.0, 0.1));
+      progress.Between(0.0, 0.1));
     ForEachStretch(
-      this->Points.Count, SubProgress(progress, 0.1, 1.0), [&](Index begin, Index end) {
+      this->Points.Count, progress.Between(0.1, 1.0), [&](Index begin, Index end) {
         for (Index id = begin; id < end; ++id)
         {
           const Point2 p = this->Points.At(id);
@@ -415,8 +414,8 @@ private:
 LinePieces CutLines(const PointView& points, const ConstraintLines& lines,
   DuplicatePolicy duplicates, const Progress& progress)
 {
-  return LineCutting(points, lines, duplicates, SubProgress(progress, 0.0, 0.9))
-    .Result(SubProgress(progress, 0.9, 1.0));
+  return LineCutting(points, lines, duplicates, progress.Between(0.0, 0.9))
+    .Result(progress.Between(0.9, 1.0));
 }
 
 } // namespace elevation

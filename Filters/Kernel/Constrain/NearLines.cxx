@@ -34,8 +34,8 @@ std::vector<Index> ListNearLines(
   constexpr double reach = 1e-9;
   std::vector<Ends> segments;
   lines.VisitSegments([&](Index line, Index k, Index next) {
-    segments.push_back({ lines.Points.At(PointOfLine(lines, line, k)),
-      lines.Points.At(PointOfLine(lines, line, next)) });
+    segments.push_back({ lines.Points.At(LinePoint(lines, line, k)),
+      lines.Points.At(LinePoint(lines, line, next)) });
   });
   double largest = 0.0; // of the coordinates
   for (const Ends& ends : segments)
@@ -45,8 +45,8 @@ std::vector<Index> ListNearLines(
       largest = std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
     }
   }
-  const CellGrid grid = GridOf(segments, SubProgress(progress, 0.0, 0.2));
-  const Progress looking = SubProgress(progress, 0.2, 1.0);
+  const CellGrid grid = GridOf(segments, progress.Between(0.0, 0.2));
+  const Progress looking = progress.Between(0.2, 1.0);
   std::vector<Index> near;
   for (const Index id : Counted(points.Count))
   {

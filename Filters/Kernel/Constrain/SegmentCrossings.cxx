@@ -39,9 +39,9 @@ public:
     Sort(
       places.begin(), places.end(),
       [](const Place& p, const Place& q) { return IsLower(p.Position, q.Position); },
-      SubProgress(progress, 0.5, 0.7));
+      progress.Between(0.5, 0.7));
 
-    const Progress naming = SubProgress(progress, 0.7, 1.0);
+    const Progress naming = progress.Between(0.7, 1.0);
     StepCount steps;
     for (std::size_t i = 0, end = 0; i < places.size(); i = end)
     {
@@ -179,12 +179,12 @@ private:
 std::vector<Crossing> FindCrossings(const SegmentNetwork& network, const Progress& progress)
 {
   std::vector<Crossing> crossings;
-  VisitCrossings(network.PieceEnds, network.Grid, SubProgress(progress, 0.0, 0.8),
-    [&](std::size_t i, std::size_t j) {
+  VisitCrossings(
+    network.PieceEnds, network.Grid, progress.Between(0.0, 0.8), [&](std::size_t i, std::size_t j) {
       crossings.push_back({ static_cast<Index>(i), static_cast<Index>(j) });
     });
   // A pair may be found in every cell that both are in.
-  Sort(crossings.begin(), crossings.end(), std::less<Crossing>(), SubProgress(progress, 0.8, 1.0));
+  Sort(crossings.begin(), crossings.end(), std::less<Crossing>(), progress.Between(0.8, 1.0));
   crossings.erase(std::unique(crossings.begin(), crossings.end()), crossings.end());
   return crossings;
 }

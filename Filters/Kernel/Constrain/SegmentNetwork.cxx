@@ -25,7 +25,7 @@ std::vector<Index> CollectPoints(
     for (const Index k : Counted(lines.Offsets[line], lines.Offsets[line + 1]))
     {
       ReportStep(progress, k, 2 * lines.Vertices.size());
-      used.push_back(PointOfLine(lines, line, k));
+      used.push_back(LinePoint(lines, line, k));
     }
   }
   // By position, so that equal points are adjacent; the lowest id is the source of the vertex.
@@ -35,7 +35,7 @@ std::vector<Index> CollectPoints(
       const Point2 at = own.At(p), other = own.At(q);
       return at != other ? IsLower(at, other) : p < q;
     },
-    SubProgress(progress, 0.5, 1.0));
+    progress.Between(0.5, 1.0));
   std::vector<Index> vertexOf(own.Count, None); // at first, the source
   for (std::size_t i = 0, first = 0; i < used.size(); ++i)
   {
@@ -59,7 +59,7 @@ std::vector<Index> CollectPoints(
 }
 } // namespace
 
-Index PointOfLine(const ConstraintLines& lines, Index line, Index k)
+Index LinePoint(const ConstraintLines& lines, Index line, Index k)
 {
   const PointView& points = lines.Points;
   const Index id = lines.Vertices[k];
@@ -77,7 +77,7 @@ Index PointOfLine(const ConstraintLines& lines, Index line, Index k)
 void SegmentNetwork::Collect(const ConstraintLines& lines, const Progress& progress)
 {
   const std::vector<Index> vertexOf =
-    CollectPoints(lines, SubProgress(progress, 0.0, 0.5), this->Vertices);
+    CollectPoints(lines, progress.Between(0.0, 0.5), this->Vertices);
   std::vector<char> hasSegment(this->Vertices.size(), 0);
   lines.VisitSegments([&](Index line, Index k, Index next) {
     Index p = vertexOf[lines.Vertices[k]], q = vertexOf[lines.Vertices[next]];
@@ -94,7 +94,7 @@ void SegmentNetwork::Collect(const ConstraintLines& lines, const Progress& progr
       hasSegment[p] = hasSegment[q] = 1;
     }
   });
-  this->JoinEqualPieces(SubProgress(progress, 0.6, 1.0));
+  this->JoinEqualPieces(progress.Between(0.6, 1.0));
   for (SegmentPiece& piece : this->Pieces)
   {
     piece.Count = 1; // equal segments of several lines count as one
@@ -115,8 +115,8 @@ void SegmentNetwork::JoinEqualPieces(const Progress& progress)
     [](const SegmentPiece& p, const SegmentPiece& q) {
       return p.A != q.A ? p.A < q.A : (p.B != q.B ? p.B < q.B : p.Rank < q.Rank);
     },
-    SubProgress(progress, 0.0, 0.9));
-  const Progress joining = SubProgress(progress, 0.9, 1.0);
+    progress.Between(0.0, 0.9));
+  const Progress joining = progress.Between(0.9, 1.0);
   std::size_t kept = 0, done = 0;
   for (const SegmentPiece& piece : Counted(this->Pieces))
   {

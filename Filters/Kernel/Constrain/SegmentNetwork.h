@@ -49,7 +49,7 @@ struct ConstraintLines
 };
 
 /** The id of vertex k of the lines. @throws Error if it does not exist or is not finite */
-Index PointOfLine(const ConstraintLines& lines, Index line, Index k);
+Index LinePoint(const ConstraintLines& lines, Index line, Index k);
 
 /** A vertex of the lines. */
 struct LineVertex

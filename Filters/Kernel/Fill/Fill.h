@@ -77,7 +77,7 @@ struct FillOptions
   Index MaximumInsertedPoints = MaximumNumberOfPoints;
   /** More new points expected of all holes together are an Error; 0: see CheckEffort(). */
   Index MaximumExpectedPoints = 0;
-  double MemoryOfHole = 0.0; ///< in bytes; more expected for one hole are an Error; 0: no limit
+  double HoleMemory = 0.0; ///< in bytes; more expected for one hole are an Error; 0: no limit
   /** Whether new points are lattice nodes where the surface's points are. */
   LatticeMode UseLattice = LatticeMode::Automatic;
   /** Threads to use; 0: all there are. The result is the same, byte for byte. */
@@ -174,7 +174,7 @@ std::vector<HoleNeed> FindHoleNeeds(const Mesh& mesh, const PointView& points, c
  * @throws Error if more new points are expected than MaximumExpectedPoints; if this is 0, than ten
  *         times the surface's points and more than a million. It names a spacing that would do. No
  *         error if MaximumInsertedPoints is no larger: then large holes fail. The same if one hole
- *         takes more than MemoryOfHole.
+ *         takes more than HoleMemory.
  */
 void CheckEffort(
   const std::vector<HoleNeed>& needs, double numberOfPoints, const FillOptions& options);

@@ -79,7 +79,7 @@ Mesh Connect(const Patch& patch, int threads, const Progress& progress)
   view.Count = patch.NumberOfVertices();
   DelaunayOptions options;
   options.NumberOfThreads = threads;
-  options.Monitor = SubProgress(progress, 0.0, 0.6);
+  options.Monitor = progress.Between(0.0, 0.6);
   const Triangulation triangulation = Triangulate(view, options);
   if (!triangulation.UnusedPoints.empty())
   {
@@ -94,15 +94,15 @@ Mesh Connect(const Patch& patch, int threads, const Progress& progress)
     mesh.Points[v] = patch.At(v);
   }
   mesh.Triangles.assign(triangulation.Triangles.begin(), triangulation.Triangles.end());
-  mesh.ConnectTwins(0, SubProgress(progress, 0.6, 0.8));
+  mesh.ConnectTwins(0, progress.Between(0.6, 0.8));
   std::vector<char> constrained;
-  RecoverSegments(mesh, patch.Edges, constrained, SubProgress(progress, 0.8, 0.9));
-  KeepTriangles(FindInside(mesh, constrained, SubProgress(progress, 0.9, 1.0)), mesh);
+  RecoverSegments(mesh, patch.Edges, constrained, progress.Between(0.8, 0.9));
+  KeepTriangles(FindInside(mesh, constrained, progress.Between(0.9, 1.0)), mesh);
   if (!IsBoundedBy(patch.Edges, mesh))
   {
     throw BordersTouch();
   }
-  CutAlong(patch.InnerEdges, mesh, SubProgress(progress, 1.0, 1.0));
+  CutAlong(patch.InnerEdges, mesh, progress.Between(1.0, 1.0));
   return mesh;
 }
 } // namespace
@@ -157,7 +157,7 @@ Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
 void MakePatch(const PatchPlan& plan, const Progress& progress, Patch& patch)
 {
   patch.Spacing = plan.Spacing;
-  const Progress placing = SubProgress(progress, 0.0, 0.1);
+  const Progress placing = progress.Between(0.0, 0.1);
   if (plan.Kind == Arrangement::Nodes)
   {
     // Between neighbouring nodes there are edges anyway; a longer edge would block nodes.
@@ -173,10 +173,10 @@ void MakePatch(const PatchPlan& plan, const Progress& progress, Patch& patch)
   {
     PlaceEvenly(plan, placing, patch);
   }
-  Mesh mesh = Connect(patch, plan.NumberOfThreads, SubProgress(progress, 0.1, 0.7));
+  Mesh mesh = Connect(patch, plan.NumberOfThreads, progress.Between(0.1, 0.7));
   if (plan.Kind != Arrangement::Nodes)
   {
-    Refine(plan, patch, SubProgress(progress, 0.7, 1.0), mesh);
+    Refine(plan, patch, progress.Between(0.7, 1.0), mesh);
   }
   for (Index v = patch.NumberOfVertices(); v < mesh.NumberOfPoints(); ++v)
   {

@@ -65,7 +65,7 @@ struct PatchMesh
   }
   /** Adds a vertex, whose z is not used here; a NaN would keep it from being triangulated. */
   void AddPoint(const Point2& p) { this->Points.insert(this->Points.end(), { p.X, p.Y, 0.0 }); }
-  Box BoxOfBoundary() const
+  Box BoundaryBox() const
   {
     Box box;
     for (Index v = 0; v < this->NumberOfBoundaryVertices(); ++v)

@@ -20,7 +20,7 @@ namespace
 constexpr Index EdgesAround = 8;
 
 /** If spacings at the boundary differ more than this, points are graded. */
-constexpr double LargestRatioOfSpacings = 3.0;
+constexpr double LargestSpacingRatio = 3.0;
 
 /** A line needs no closer points than this part of the gap beside it. */
 constexpr double LeastSpacingInGap = 0.1;
@@ -153,8 +153,8 @@ EdgeLengths MeasureEdges(const Mesh& mesh, const Holes& holes, Index hole)
  * The spacing that each edge asks for: its length. In a region of lines, whose points are mostly
  * inside, it follows the gaps beside them, where these are wide; but not wider than the region is.
  */
-EdgeLengths SpacingsOfEdges(
-  const Holes& holes, Index hole, const EdgeLengths& lengths, double widthOfRegion)
+EdgeLengths EdgeSpacings(
+  const Holes& holes, Index hole, const EdgeLengths& lengths, double regionWidth)
 {
   EdgeLengths spacings = lengths;
   if (!holes.IsOfLines(hole))
@@ -165,7 +165,7 @@ EdgeLengths SpacingsOfEdges(
   const auto raise = [&](Index a, Index b) {
     if (*next > 0.0 && *next <= holes.LongestEdge)
     {
-      const double gap = std::min({ holes.Gaps[a], holes.Gaps[b], widthOfRegion });
+      const double gap = std::min({ holes.Gaps[a], holes.Gaps[b], regionWidth });
       *next = std::max(*next, LeastSpacingInGap * gap);
     }
     ++next;
@@ -222,7 +222,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
   const EdgeLengths lengths = MeasureEdges(mesh, holes, hole);
   const double edges = static_cast<double>(lengths.Boundary.size() + lengths.Inner.size());
   const double perimeter = std::accumulate(lengths.Boundary.begin(), lengths.Boundary.end(), 0.0);
-  const EdgeLengths spacings = SpacingsOfEdges(holes, hole, lengths, 2.0 * area / perimeter);
+  const EdgeLengths spacings = EdgeSpacings(holes, hole, lengths, 2.0 * area / perimeter);
   if (spacing > 0.0)
   {
     plan.Spacing = spacing;
@@ -257,7 +257,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
   plan.Spacings = SpacingsAlong(holes, hole, spacings.Boundary);
   AddInnerSpacings(holes, hole, spacings.Inner, plan.Spacing, plan.Spacings);
   const auto range = std::minmax_element(plan.Spacings.begin(), plan.Spacings.end());
-  if (*range.second > LargestRatioOfSpacings * *range.first)
+  if (*range.second > LargestSpacingRatio * *range.first)
   {
     // More points are near parts of the boundary that are finer than average.
     constexpr double morePerEdgeWhenGraded = 8.0;
@@ -277,7 +277,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
   return plan;
 }
 
-double SpacingOfPoints(double area, double points)
+double PointSpacing(double area, double points)
 {
   return std::sqrt(area / RowHeight / points);
 }

@@ -105,7 +105,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
   double area, double spacing, const Lattice* lattice);
 
 /** The spacing at which so many points, in rows, fill an area. */
-double SpacingOfPoints(double area, double points);
+double PointSpacing(double area, double points);
 
 /** Finds the node nearest to a point. @return false if it is farther than LatticeTolerance */
 bool FindNode(const Lattice& lattice, const Point2& p, Point2& node);

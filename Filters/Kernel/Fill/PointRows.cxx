@@ -17,7 +17,7 @@ namespace
 
 /** Least distance of points from the boundary in spacings, and in lattice steps. */
 constexpr double Clearance = 0.6;
-constexpr double ClearanceOfNodes = 0.4;
+constexpr double NodeClearance = 0.4;
 
 /** A stretch of a row too near to a boundary edge, and whether the edge crosses the row. */
 struct Blocked
@@ -33,7 +33,7 @@ struct Rows
 {
   double Step;
   double RowHeight;
-  double ShiftOfOddRows; ///< in steps
+  double OddRowShift; ///< in steps
   double Clearance;
 };
 
@@ -78,7 +78,7 @@ Blocked BlockRow(const Rows& rows, Index row, const Point2& a, const Point2& b)
 std::vector<Blocked> BlockRows(
   const Rows& rows, const std::vector<Point2>& points, const Patch& patch, const Progress& progress)
 {
-  const Progress blocking = SubProgress(progress, 0.0, 0.7);
+  const Progress blocking = progress.Between(0.0, 0.7);
   std::vector<Blocked> blocked;
   StepCount visited;
   const std::size_t count = patch.Edges.size() + patch.InnerEdges.size();
@@ -112,7 +112,7 @@ std::vector<Blocked> BlockRows(
     [](const Blocked& s, const Blocked& t) {
       return s.Row != t.Row ? s.Row < t.Row : s.Begin < t.Begin;
     },
-    SubProgress(progress, 0.7, 1.0));
+    progress.Between(0.7, 1.0));
   return blocked;
 }
 
@@ -133,8 +133,8 @@ void VisitRows(
   {
     points[v] = inRows(v);
   }
-  std::vector<Blocked> blocked = BlockRows(rows, points, patch, SubProgress(progress, 0.0, 0.6));
-  const Progress placing = SubProgress(progress, 0.6, 1.0);
+  std::vector<Blocked> blocked = BlockRows(rows, points, patch, progress.Between(0.0, 0.6));
+  const Progress placing = progress.Between(0.6, 1.0);
   bool isInside = false;
   StepCount placed;
   for (std::size_t i = 0; i < blocked.size(); ++i)
@@ -154,7 +154,7 @@ void VisitRows(
       continue;
     }
     const Index row = blocked[i].Row;
-    const double shift = row % 2 == 0 ? 0.0 : rows.ShiftOfOddRows;
+    const double shift = row % 2 == 0 ? 0.0 : rows.OddRowShift;
     const double last = std::floor(blocked[i + 1].Begin / rows.Step - shift);
     for (double k = std::ceil(blocked[i].End / rows.Step - shift); k <= last; ++k)
     {
@@ -180,7 +180,7 @@ void PlaceNodes(const PatchPlan& plan, const Progress& progress, Patch& patch)
     FindNode(plan.Steps, patch.At(vertex), node);
     return Point2{ node.X - first.X, node.Y - first.Y };
   };
-  VisitRows({ 1.0, 1.0, 0.0, ClearanceOfNodes }, patch, progress, inRows, [&](Index row, double x) {
+  VisitRows({ 1.0, 1.0, 0.0, NodeClearance }, patch, progress, inRows, [&](Index row, double x) {
     const Point2 node{ first.X + x, first.Y + row };
     const Point2 p = plan.Rounded(plan.Steps.Node(node.X, node.Y));
     Point2 found;
@@ -194,7 +194,7 @@ void PlaceNodes(const PatchPlan& plan, const Progress& progress, Patch& patch)
 
 void PlaceEvenly(const PatchPlan& plan, const Progress& progress, Patch& patch)
 {
-  const Point2 center = patch.BoxOfBoundary().Center();
+  const Point2 center = patch.BoundaryBox().Center();
   const auto inRows = [&](Index vertex) {
     return Point2{ patch.At(vertex).X - center.X, patch.At(vertex).Y - center.Y };
   };

@@ -19,7 +19,7 @@ namespace
  * with unequal edges, 0.5 leaves twice as many small angles and many more long edges; less than 0.3
  * gains nothing.
  */
-constexpr double ClearanceWhenRefining = 0.3;
+constexpr double RefinementClearance = 0.3;
 
 constexpr double LongestEdge = 1.6; // of interior ones, in spacings
 
@@ -162,7 +162,7 @@ private:
       spacing = std::min(
         this->Largest, std::min(s[0], std::min(s[1], s[2])) + SpacingGrowth * std::sqrt(square));
     }
-    const double clearance = ClearanceWhenRefining * spacing;
+    const double clearance = RefinementClearance * spacing;
     if ((lengths.LongestInside <= LongestEdge * LongestEdge * mean * mean &&
           lengths.Shortest >= LeastEdgeToRadius * square) ||
       square < clearance * clearance ||

@@ -17,7 +17,7 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double UnitRoundoff = 1.1102230246251565e-16; // 2^-53
 
 /** The cost of an exact comparison, in points looked at. */
-constexpr std::int64_t WorkOfExact = 10;
+constexpr std::int64_t ExactWork = 10;
 /** With more exact comparisons in one search, points are on one circle or line: growth ends. */
 constexpr int MostExacts = 2000;
 /** With more work in one search, there would be no report for too long: growth ends. */
@@ -260,7 +260,7 @@ Index ApexSearch::BestOf(std::uint64_t candidates)
     if (candidates & 1)
     {
       const Index slot = this->Around.SlotOf(i);
-      this->Budget.Spend(best == None ? 0 : WorkOfExact);
+      this->Budget.Spend(best == None ? 0 : ExactWork);
       best = best == None || this->IsBetter(slot, best) ? slot : best;
     }
   }
@@ -650,7 +650,7 @@ bool ApexSearch::CompareOne(Index slot)
 
 void ApexSearch::CountExact()
 {
-  this->Budget.Spend(WorkOfExact);
+  this->Budget.Spend(ExactWork);
   if (++this->Exacts > MostExacts)
   {
     throw CannotGrow();

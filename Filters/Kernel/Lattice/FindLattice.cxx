@@ -103,15 +103,15 @@ LatticeSearch FindLattice(
   const PointView& points, double tolerance, int threads, const Progress& progress)
 {
   LatticeSearch search;
-  const LatticeSample sample = SampleForLattice(
-    points, points.Count, threads, SubProgress(progress, 0.0, 0.55), search.NotFinite);
+  const LatticeSample sample =
+    SampleForLattice(points, points.Count, threads, progress.Between(0.0, 0.55), search.NotFinite);
   static_cast<Box&>(search) = sample;
   if (sample.MayFitLattice())
   {
     std::vector<Point2> around = DistinctPointsIn(
-      FullestPlace(sample), points, search.NotFinite, threads, SubProgress(progress, 0.55, 0.95));
-    search.Found = FitLattice(
-      sample, std::move(around), tolerance, SubProgress(progress, 0.95, 1.0), search.Steps);
+      FullestPlace(sample), points, search.NotFinite, threads, progress.Between(0.55, 0.95));
+    search.Found =
+      FitLattice(sample, std::move(around), tolerance, progress.Between(0.95, 1.0), search.Steps);
   }
   return search;
 }

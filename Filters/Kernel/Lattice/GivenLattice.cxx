@@ -3,7 +3,7 @@
 #include "GivenLattice.h"
 
 #include "LatticeBasis.h"
-#include "NodeOfPoint.h"
+#include "NodeFinder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ Lattice Reduced(const Lattice& given)
 }
 
 /** How far a point is from its node, along the step where it is farther, in steps. */
-double StepsBeside(const NodeOfPoint& nodeOf, const Point2& p)
+double StepsBeside(const NodeFinder& nodeOf, const Point2& p)
 {
   const double i = nodeOf.I(p), j = nodeOf.J(p);
   return std::max(std::fabs(i - std::round(i)), std::fabs(j - std::round(j)));
@@ -56,7 +56,7 @@ Lattice CheckedSteps(const Lattice& given)
 Index FirstOffLattice(const PointView& points, const std::vector<Index>& notFinite,
   const Lattice& steps, double tolerance, const Progress& progress)
 {
-  const NodeOfPoint nodeOf(steps);
+  const NodeFinder nodeOf(steps);
   Index first = None;
   StepCount looks;
   ForEachPoint(points, 0, points.Count, notFinite, [&](Index id, const Point2& p) {
@@ -74,7 +74,7 @@ Error BesideGivenLattice(std::int64_t id, const Point2& p, const Lattice& steps,
 {
   std::ostringstream text;
   text << std::setprecision(10) << "Point " << id << " at (" << p.X << ", " << p.Y << ") is "
-       << std::setprecision(3) << StepsBeside(NodeOfPoint(steps), p)
+       << std::setprecision(3) << StepsBeside(NodeFinder(steps), p)
        << " steps away from the nearest node of the given lattice; LatticeTolerance is "
        << tolerance << ".";
   return Error(text.str());
@@ -100,9 +100,9 @@ LatticeSearch GivenLattice(const PointView& points, const Lattice& given, double
   search.Found = true;
   search.Steps = CheckedSteps(given);
   static_cast<Extent&>(search) =
-    FindExtent(points, threads, SubProgress(progress, 0.0, 0.4), [](Index, const Point2&) {});
-  const Index beside = FirstOffLattice(
-    points, search.NotFinite, search.Steps, tolerance, SubProgress(progress, 0.4, 1.0));
+    FindExtent(points, threads, progress.Between(0.0, 0.4), [](Index, const Point2&) {});
+  const Index beside =
+    FirstOffLattice(points, search.NotFinite, search.Steps, tolerance, progress.Between(0.4, 1.0));
   if (beside != None)
   {
     throw BesideGivenLattice(beside, points.At(beside), search.Steps, tolerance);

@@ -123,7 +123,7 @@ std::vector<Point2> JoinPicked(Picked sets, const Progress& progress)
     set = std::vector<Point2>();
   }
   std::vector<Point2> places = all.Places();
-  Sort(places.begin(), places.end(), IsLower, SubProgress(progress, 0.5, 1.0));
+  Sort(places.begin(), places.end(), IsLower, progress.Between(0.5, 1.0));
   return places;
 }
 
@@ -249,14 +249,14 @@ void LatticeSample::Add(LatticeSample&& part)
   SortUnique(this->Points);
 }
 
-LatticeSample SampleForLattice(const PointView& points, double countOfAll, int threads,
+LatticeSample SampleForLattice(const PointView& points, double totalCount, int threads,
   const Progress& progress, std::vector<Index>& notFinite)
 {
   Picked picked(NumberOfRanges(points.Count));
   std::vector<PlaceSet> sets(picked.size());
-  const std::uint64_t limit = HashLimit(WideSampleSize(countOfAll), countOfAll);
+  const std::uint64_t limit = HashLimit(WideSampleSize(totalCount), totalCount);
   Extent extent =
-    FindExtent(points, threads, SubProgress(progress, 0.0, 0.9), [&](Index piece, const Point2& p) {
+    FindExtent(points, threads, progress.Between(0.0, 0.9), [&](Index piece, const Point2& p) {
       if (HashOf(p) < limit)
       {
         sets[piece].Add(p);
@@ -266,9 +266,9 @@ LatticeSample SampleForLattice(const PointView& points, double countOfAll, int t
     sets.begin(), sets.end(), picked.begin(), [](const PlaceSet& set) { return set.Places(); });
   LatticeSample sample;
   static_cast<Box&>(sample) = extent;
-  sample.CloudSize = countOfAll;
+  sample.CloudSize = totalCount;
   sample.Count = static_cast<double>(points.Count) - static_cast<double>(extent.NotFinite.size());
-  sample.Points = JoinPicked(std::move(picked), SubProgress(progress, 0.9, 1.0));
+  sample.Points = JoinPicked(std::move(picked), progress.Between(0.9, 1.0));
   notFinite = std::move(extent.NotFinite);
   return sample;
 }
@@ -298,8 +298,8 @@ std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
   const std::vector<Index>& notFinite, int threads, const Progress& progress)
 {
   Picked picked(NumberOfRanges(points.Count));
-  ForEachRange(points.Count, threads, SubProgress(progress, 0.0, 0.8),
-    [&](Index piece, Index begin, Index end) {
+  ForEachRange(
+    points.Count, threads, progress.Between(0.0, 0.8), [&](Index piece, Index begin, Index end) {
       PlaceSet here;
       ForEachPoint(points, begin, end, notFinite, [&](Index, const Point2& p) {
         if (place.Contains(p))
@@ -309,7 +309,7 @@ std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
       });
       picked[piece] = here.Places();
     });
-  return JoinPicked(std::move(picked), SubProgress(progress, 0.8, 1.0));
+  return JoinPicked(std::move(picked), progress.Between(0.8, 1.0));
 }
 
 std::vector<Point2> FullestPart(std::vector<Point2>&& points, const Progress& progress)

@@ -39,7 +39,7 @@ struct LatticeSample : Box
 void SortUnique(std::vector<Point2>& points);
 
 /** @param[out] notFinite  ids of points with a non-finite coordinate, increasing */
-LatticeSample SampleForLattice(const PointView& points, double countOfAll, int threads,
+LatticeSample SampleForLattice(const PointView& points, double totalCount, int threads,
   const Progress& progress, std::vector<Index>& notFinite);
 
 /** A place with some hundred points where they are densest: where a sample has most, repeatedly. */

@@ -14,7 +14,7 @@ namespace elevation
 namespace
 {
 
-std::string NameOfSegment(const Mesh& mesh, const Segment& segment)
+std::string SegmentName(const Mesh& mesh, const Segment& segment)
 {
   return "The segment from " + NameOf(mesh, segment.A) + " to " + NameOf(mesh, segment.B);
 }
@@ -207,7 +207,7 @@ private:
     if (this->Constrained[crossed])
     {
       const Mesh& mesh = this->Surface;
-      throw Error(NameOfSegment(mesh, segment) + " crosses the fixed edge from " +
+      throw Error(SegmentName(mesh, segment) + " crosses the fixed edge from " +
         NameOf(mesh, mesh.Origin(crossed)) + " to " + NameOf(mesh, mesh.Destination(crossed)) +
         ". Segments may not cross; they may meet in a vertex.");
     }
@@ -380,7 +380,7 @@ private:
 
   [[noreturn]] void ThrowLeaves(Index from, const Segment& segment) const
   {
-    throw Error(NameOfSegment(this->Surface, segment) +
+    throw Error(SegmentName(this->Surface, segment) +
       " leaves the mesh: it crosses a hole or the outside" +
       (from == segment.A ? "." : " after " + NameOf(this->Surface, from) + "."));
   }
@@ -445,8 +445,8 @@ Index FirstCrossed(const Mesh& mesh, VertexStars& stars, Index from, Index to)
 Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
   std::vector<char>& constrained, const Progress& progress)
 {
-  VertexStars stars(mesh, SubProgress(progress, 0.0, 0.5));
-  return RecoverSegments(mesh, stars, segments, constrained, SubProgress(progress, 0.5, 1.0));
+  VertexStars stars(mesh, progress.Between(0.0, 0.5));
+  return RecoverSegments(mesh, stars, segments, constrained, progress.Between(0.5, 1.0));
 }
 
 Index RecoverSegments(Mesh& mesh, VertexStars& stars, const std::vector<Segment>& segments,

@@ -27,8 +27,8 @@ public:
     const CellGrid& grid, const Progress& progress)
   {
     const std::vector<PieceCut> cuts =
-      FindCuts(points, rings, edges, grid, SubProgress(progress, 0.0, 0.9));
-    const Progress walking = SubProgress(progress, 0.9, 1.0);
+      FindCuts(points, rings, edges, grid, progress.Between(0.0, 0.9));
+    const Progress walking = progress.Between(0.9, 1.0);
     auto cut = cuts.begin();
     for (Index ring = 0; ring < rings.Count(); ++ring)
     {
@@ -67,7 +67,7 @@ public:
   {
     Index First; ///< the point where two walks meet
     Index Last;  ///< the point where they separate; First if they share no edge
-    bool IsOfOneRing;
+    bool IsOneRing;
   };
 
   /**
@@ -91,8 +91,8 @@ public:
       [&](Index p, Index q) {
         return this->At(p) != this->At(q) ? IsLower(this->At(p), this->At(q)) : p < q;
       },
-      SubProgress(progress, 0.0, 0.5));
-    const Progress looking = SubProgress(progress, 0.5, 1.0);
+      progress.Between(0.0, 0.5));
+    const Progress looking = progress.Between(0.5, 1.0);
     WorkReporter work(looking);
     for (std::size_t i = 0, end = 0; i < order.size(); i = end)
     {
@@ -118,7 +118,7 @@ private:
     // In a crowded cell, a place that occurs many times is looked up only once.
     constexpr std::ptrdiff_t many = 64;
     std::unordered_set<Point2, PointHash> known;
-    const Progress cutting = SubProgress(progress, 0.0, 0.6);
+    const Progress cutting = progress.Between(0.0, 0.6);
     WorkReporter work(cutting);
     for (std::size_t i = 0; i < edges.size(); ++i)
     {
@@ -141,7 +141,7 @@ private:
     }
     SortAlong(
       cuts, [&](Index edge) { return edges[edge]; }, [&](Index point) { return points[point]; },
-      SubProgress(progress, 0.6, 1.0));
+      progress.Between(0.6, 1.0));
     return cuts;
   }
 
@@ -298,12 +298,12 @@ private:
       {
         work.Tick();
         const Node &first = this->Nodes[p->Node], &second = this->Nodes[q->Node];
-        const bool isOfOneRing = first.Ring == second.Ring;
+        const bool isOneRing = first.Ring == second.Ring;
         Index last = None;
-        if (p->Other != q->Other && !(isOfOneRing && q->Way == Before) &&
+        if (p->Other != q->Other && !(isOneRing && q->Way == Before) &&
           this->ChangeSides(*p, *q, work, last))
         {
-          crossing = { first.Point, this->Nodes[last].Point, isOfOneRing };
+          crossing = { first.Point, this->Nodes[last].Point, isOneRing };
           return true;
         }
       }
@@ -368,7 +368,7 @@ private:
 
 } // namespace
 
-std::string NameOfEdge(const NamedPoints& points, const Rings& rings, std::size_t edge)
+std::string EdgeName(const NamedPoints& points, const Rings& rings, std::size_t edge)
 {
   const Index from = static_cast<Index>(edge);
   return "from " + NameOf(points, rings.Vertices[from]) + " to " +
@@ -379,19 +379,19 @@ void CheckCrossings(const NamedPoints& points, const Rings& rings, const Progres
 {
   const std::vector<Ends> edges = EdgesOf(points.Places, rings);
   const CellGrid grid = GridOf(edges);
-  VisitCrossings(edges, grid, SubProgress(progress, 0.0, 0.5), [&](std::size_t i, std::size_t j) {
-    throw Error("The boundary's edge " + NameOfEdge(points, rings, i) + " crosses its edge " +
-      NameOfEdge(points, rings, j) + ". Rings may touch and nest, but not cross.");
+  VisitCrossings(edges, grid, progress.Between(0.0, 0.5), [&](std::size_t i, std::size_t j) {
+    throw Error("The boundary's edge " + EdgeName(points, rings, i) + " crosses its edge " +
+      EdgeName(points, rings, j) + ". Rings may touch and nest, but not cross.");
   });
 
-  const RingWalks walks(points.Places, rings, edges, grid, SubProgress(progress, 0.5, 0.75));
+  const RingWalks walks(points.Places, rings, edges, grid, progress.Between(0.5, 0.75));
   RingWalks::Meeting crossing;
-  if (!walks.FindCrossing(crossing, SubProgress(progress, 0.75, 1.0)))
+  if (!walks.FindCrossing(crossing, progress.Between(0.75, 1.0)))
   {
     return;
   }
-  throw Error((crossing.IsOfOneRing ? "A ring of the boundary crosses itself "
-                                    : "Two rings of the boundary cross ") +
+  throw Error((crossing.IsOneRing ? "A ring of the boundary crosses itself "
+                                  : "Two rings of the boundary cross ") +
     (crossing.First == crossing.Last ? "in " + NameOf(points, crossing.First)
                                      : "where they run together from " +
           NameOf(points, crossing.First) + " to " + NameOf(points, crossing.Last)) +

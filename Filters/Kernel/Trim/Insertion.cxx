@@ -39,30 +39,30 @@ public:
   {
     if (this->Follow != Following::Lines)
     {
-      CheckCrossings(this->Points, this->Drawn, SubProgress(progress, 0.0, 0.1));
+      CheckCrossings(this->Points, this->Drawn, progress.Between(0.0, 0.1));
     }
     this->VertexAt = InsertPoints(this->Surface, this->Points, this->Drawn, this->MayInsert,
-      this->Follow != Following::None, this->Cutter, SubProgress(progress, 0.1, 0.8));
+      this->Follow != Following::None, this->Cutter, progress.Between(0.1, 0.8));
     this->StartRings();
     // An edge or a border that is cut at a rounded place moves slightly: all are tested again. As
     // the move rarely causes a crossing, one more round is usually enough.
     constexpr int mostRounds = 100;
     const double end = this->Follow != Following::None ? 0.9 : 1.0;
-    bool isCut = this->CutAtBorder(SubProgress(progress, 0.8, end));
+    bool isCut = this->CutAtBorder(progress.Between(0.8, end));
     for (int round = 1; isCut; ++round)
     {
       if (round == mostRounds)
       {
-        throw Error("The boundary's edge " + this->NameOfEdge(this->EdgeOfCut) +
+        throw Error("The boundary's edge " + this->EdgeName(this->EdgeOfCut) +
           " runs so near the border of the mesh that rounding does not let it be cut there. Let it "
           "pass through points of the mesh.");
       }
-      const Progress again = SubProgress(progress, end, end);
+      const Progress again = progress.Between(end, end);
       isCut = this->CutAtEachOther(again) || this->CutAtBorder(again);
     }
     if (this->Follow != Following::None)
     {
-      this->FollowSurface(SubProgress(progress, 0.9, 1.0));
+      this->FollowSurface(progress.Between(0.9, 1.0));
     }
     this->FinishRings();
   }
@@ -92,12 +92,12 @@ private:
     bool IsBeyond; ///< whether it is past the foot of the triangle's apex, along the border
   };
 
-  std::string NameOfEdge(std::size_t edge) const
+  std::string EdgeName(std::size_t edge) const
   {
-    return elevation::NameOfEdge(this->Points, this->Drawn, edge);
+    return elevation::EdgeName(this->Points, this->Drawn, edge);
   }
 
-  std::string NameOfVertex(Index vertex) const
+  std::string VertexName(Index vertex) const
   {
     return this->Cutter.IsGiven(vertex)
       ? NameOf(this->Surface, vertex) + " of the mesh"
@@ -131,21 +131,21 @@ private:
    */
   bool CutAtBorder(const Progress& progress)
   {
-    const std::vector<Ends> pieces = this->EndsOfPieces();
+    const std::vector<Ends> pieces = this->PieceEnds();
     this->Stops.clear();
     this->IsCut.clear();
     this->Cutter.ForgetMoves();
-    const BorderEdges border = FindBorder(this->Surface, SubProgress(progress, 0.0, 0.3));
+    const BorderEdges border = FindBorder(this->Surface, progress.Between(0.0, 0.3));
     std::vector<BorderCrossing> crossings =
-      this->FindBorderCrossings(pieces, border, SubProgress(progress, 0.3, 0.5));
+      this->FindBorderCrossings(pieces, border, progress.Between(0.3, 0.5));
     if (!crossings.empty() && !this->MayInsert)
     {
       throw Error("The boundary's edge " +
-        this->NameOfEdge(this->Pieces[crossings.front().Piece].Edge) +
+        this->EdgeName(this->Pieces[crossings.front().Piece].Edge) +
         " leaves the mesh where it has no corner. Turn RecoverBoundary on.");
     }
     this->CutBorder(crossings, pieces, border);
-    this->FindStops(pieces, SubProgress(progress, 0.5, 1.0));
+    this->FindStops(pieces, progress.Between(0.5, 1.0));
     this->CutPieces(pieces);
     return !this->IsCut.empty();
   }
@@ -234,9 +234,9 @@ private:
       Point2 place = crossing.Place;
       if (vertex == None && !this->Cutter.MoveToCut(h, place))
       {
-        throw Error("The boundary's edge " + this->NameOfEdge(this->Pieces[crossing.Piece].Edge) +
+        throw Error("The boundary's edge " + this->EdgeName(this->Pieces[crossing.Piece].Edge) +
           " leaves the mesh across a triangle too thin to be cut there, between " +
-          this->NameOfVertex(from) + " and " + this->NameOfVertex(to) +
+          this->VertexName(from) + " and " + this->VertexName(to) +
           ". Let the boundary pass through one of them.");
       }
       if (vertex == None)
@@ -257,7 +257,7 @@ private:
    */
   bool CutAtEachOther(const Progress& progress)
   {
-    const std::vector<Ends> pieces = this->EndsOfPieces();
+    const std::vector<Ends> pieces = this->PieceEnds();
     this->Stops.clear();
     const auto cut = [&](std::size_t i, std::size_t j) {
       const RoundingUnits units = UnitsOf(pieces[i][0], pieces[i][1]);
@@ -299,7 +299,7 @@ private:
   }
 
   /** The ends of each piece. */
-  std::vector<Ends> EndsOfPieces() const
+  std::vector<Ends> PieceEnds() const
   {
     std::vector<Ends> ends;
     ends.reserve(this->Pieces.size());
@@ -333,7 +333,7 @@ private:
     std::unordered_map<Index, std::vector<Index>> segmentsThrough;
     std::vector<char> isOn(mesh.Points.size(), 0);
     ForEachStretch(
-      mesh.NumberOfPoints(), SubProgress(progress, 0.0, 0.5), [&](Index begin, Index end) {
+      mesh.NumberOfPoints(), progress.Between(0.0, 0.5), [&](Index begin, Index end) {
         for (Index v = begin; v < end; ++v)
         {
           const Point2& p = mesh.PointOf(v);
@@ -352,7 +352,7 @@ private:
     }
     // Only vertices that a triangle uses become stops.
     ForEachStretch(
-      mesh.NumberOfHalfEdges(), SubProgress(progress, 0.5, 1.0), [&](Index begin, Index end) {
+      mesh.NumberOfHalfEdges(), progress.Between(0.5, 1.0), [&](Index begin, Index end) {
         for (Index h = begin; h < end; ++h)
         {
           const Index v = mesh.Origin(h);
@@ -451,14 +451,13 @@ private:
         segments.emplace_back(segment);
       }
     }
-    Sort(segments.begin(), segments.end(), isBefore, SubProgress(progress, 0.0, 0.1));
+    Sort(segments.begin(), segments.end(), isBefore, progress.Between(0.0, 0.1));
     segments.erase(std::unique(segments.begin(), segments.end(),
                      [](const FollowedSegment& s, const FollowedSegment& t) {
                        return s.Ends.A == t.Ends.A && s.Ends.B == t.Ends.B;
                      }),
       segments.end());
-    elevation::FollowSurface(
-      this->Surface, this->Cutter, segments, SubProgress(progress, 0.1, 0.95));
+    elevation::FollowSurface(this->Surface, this->Cutter, segments, progress.Between(0.1, 0.95));
     std::vector<Piece> followed;
     std::vector<Index> offsets{ 0 };
     for (Index i = 0; i < count; ++i)
@@ -494,7 +493,7 @@ private:
 
   [[noreturn]] void RefuseDoubleBorder(std::size_t edge, const Point2& p) const
   {
-    throw Error("The boundary's edge " + this->NameOfEdge(edge) + " passes " + NameOf(p) +
+    throw Error("The boundary's edge " + this->EdgeName(edge) + " passes " + NameOf(p) +
       ", where borders of the mesh lie on each other without points in common. Merge the points, "
       "as vtkStaticCleanPolyData does.");
   }

@@ -64,11 +64,11 @@ void CloseSmallLakes(
   const Mesh& mesh, const LakeShare& share, std::vector<char>& flags, const Progress& progress)
 {
   const Components parts = FindFlagParts(
-    mesh, [&](Index t) { return flags[t] == Surface; }, SubProgress(progress, 0.0, 0.6));
+    mesh, [&](Index t) { return flags[t] == Surface; }, progress.Between(0.0, 0.6));
   std::vector<Opening> openings(parts.Count());
   const auto isOpen = [&](Index t) { return flags[t] != Surface; };
   VisitOpenings(
-    parts, openings, isOpen, SubProgress(progress, 0.6, 0.8), [&](Index t, Opening& opening) {
+    parts, openings, isOpen, progress.Between(0.6, 0.8), [&](Index t, Opening& opening) {
       opening.Share += ToFixedPoint(share(t));
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
@@ -76,7 +76,7 @@ void CloseSmallLakes(
       }
     });
   VisitOpenings(
-    parts, openings, isOpen, SubProgress(progress, 0.8, 1.0), [&](Index t, Opening& opening) {
+    parts, openings, isOpen, progress.Between(0.8, 1.0), [&](Index t, Opening& opening) {
       if (!opening.ReachesBorder && opening.Share < FixedOne)
       {
         flags[t] = Surface;
@@ -88,11 +88,11 @@ void CloseSmallBays(
   const Mesh& mesh, const LakeShare& share, std::vector<char>& flags, const Progress& progress)
 {
   const Components parts = FindFlagParts(
-    mesh, [&](Index t) { return flags[t]; }, SubProgress(progress, 0.0, 0.5));
+    mesh, [&](Index t) { return flags[t]; }, progress.Between(0.0, 0.5));
   std::vector<Opening> openings(parts.Count());
   const auto isOpen = [&](Index t) { return flags[t] == Bay; };
   VisitOpenings(
-    parts, openings, isOpen, SubProgress(progress, 0.5, 0.7), [&](Index t, Opening& opening) {
+    parts, openings, isOpen, progress.Between(0.5, 0.7), [&](Index t, Opening& opening) {
       opening.Share += ToFixedPoint(share(t));
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
@@ -100,7 +100,7 @@ void CloseSmallBays(
       }
     });
   VisitOpenings(
-    parts, openings, isOpen, SubProgress(progress, 0.7, 0.9), [&](Index t, Opening& opening) {
+    parts, openings, isOpen, progress.Between(0.7, 0.9), [&](Index t, Opening& opening) {
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
         const char beside =
@@ -112,7 +112,7 @@ void CloseSmallBays(
       }
     });
   VisitOpenings(
-    parts, openings, isOpen, SubProgress(progress, 0.9, 1.0), [&](Index t, Opening& opening) {
+    parts, openings, isOpen, progress.Between(0.9, 1.0), [&](Index t, Opening& opening) {
       flags[t] = opening.Share < FixedOne && opening.Open <= 0 ? Surface : Outside;
     });
 }
@@ -128,7 +128,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
   sums.Resize(list.Points.Count);
   std::fill(sums.begin(), sums.end(), 0);
   const Index count = static_cast<Index>(triangles.size());
-  ForEachStretch(count, SubProgress(progress, 0.0, 0.7), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.0, 0.7), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
     {
       const Index* ahead = list.CornersOf(triangles[std::min(i + 16, count - 1)]);
@@ -153,7 +153,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
     }
   });
   std::vector<Index> others;
-  ForEachStretch(count, SubProgress(progress, 0.7, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.7, 1.0), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
     {
       const Index t = triangles[i];

@@ -130,14 +130,14 @@ public:
   std::optional<ExtractedBoundary> Run(const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
-    this->SortBorder(SubProgress(progress, 0.0, 0.02));
-    const Neighbors neighbors(this->Measured, SubProgress(progress, 0.02, 0.15));
+    this->SortBorder(progress.Between(0.0, 0.02));
+    const Neighbors neighbors(this->Measured, progress.Between(0.02, 0.15));
     if (!this->Border.IsPart)
     {
       this->Spacings.Resize(list.Points.Count);
     }
-    this->KeepCertainTriangles(SubProgress(progress, 0.15, 0.2));
-    std::vector<Index> doubtful = this->FindDoubtful(SubProgress(progress, 0.2, 0.32));
+    this->KeepCertainTriangles(progress.Between(0.15, 0.2));
+    std::vector<Index> doubtful = this->FindDoubtful(progress.Between(0.2, 0.32));
     Report(progress, 0.32);
     // How long the next steps take depends on how many are doubtful. Where these are few, no step
     // has so large a share that progress jumps.
@@ -146,21 +146,20 @@ public:
     const double scaled = 0.32 + (this->IsAutomatic ? 0.25 * share : 0.0);
     const double decided = scaled + 0.25 * share + 0.03;
     if (this->IsAutomatic &&
-      !this->FindAllScales(neighbors, doubtful, SubProgress(progress, 0.32, scaled)))
+      !this->FindAllScales(neighbors, doubtful, progress.Between(0.32, scaled)))
     {
       return std::nullopt;
     }
     const std::vector<Index> outside =
-      FindOutsideBridges(list, this->Grid, this->Border, SubProgress(progress, scaled, scaled));
+      FindOutsideBridges(list, this->Grid, this->Border, progress.Between(scaled, scaled));
     const auto middle = doubtful.insert(doubtful.end(), outside.begin(), outside.end());
     std::inplace_merge(doubtful.begin(), middle, doubtful.end());
     doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
-    if (!this->FindCornerSpacings(
-          doubtful, neighbors, SubProgress(progress, scaled, decided - 0.03)))
+    if (!this->FindCornerSpacings(doubtful, neighbors, progress.Between(scaled, decided - 0.03)))
     {
       return std::nullopt;
     }
-    this->Decide(doubtful, SubProgress(progress, decided - 0.03, decided));
+    this->Decide(doubtful, progress.Between(decided - 0.03, decided));
     for (const Index t : outside)
     {
       this->Result.IsSurface[t] = Outside;
@@ -168,15 +167,14 @@ public:
     const SurfaceOptions tracing{ [this](Index t) { return this->ToleranceOf(t); },
       !this->Grid.Steps.IsSet() };
     if (!TraceSurface(this->Measured, this->Border, this->CornersNear(doubtful), tracing,
-          SubProgress(progress, decided, 0.97), this->Result.IsSurface, this->Result.Vertices) ||
-      !this->MeasureLoss(neighbors, SubProgress(progress, 0.97, 1.0)))
+          progress.Between(decided, 0.97), this->Result.IsSurface, this->Result.Vertices) ||
+      !this->MeasureLoss(neighbors, progress.Between(0.97, 1.0)))
     {
       return std::nullopt;
     }
     if (this->Measured.Ids.size() > 0)
     {
-      ToIds(
-        this->Result.Vertices.Vertices, this->Measured.Ids.data(), SubProgress(progress, 1.0, 1.0));
+      ToIds(this->Result.Vertices.Vertices, this->Measured.Ids.data(), progress.Between(1.0, 1.0));
     }
     Report(progress, 1.0);
     return std::move(this->Result);
@@ -187,15 +185,15 @@ public:
   {
     const TriangleList& list = this->Measured.List;
     const IdSet& border = this->Border.Vertices;
-    this->SortBorder(SubProgress(progress, 0.0, 0.02));
-    const Neighbors neighbors(this->Measured, SubProgress(progress, 0.02, 0.15));
+    this->SortBorder(progress.Between(0.0, 0.02));
+    const Neighbors neighbors(this->Measured, progress.Between(0.02, 0.15));
     this->Spacings.Resize(list.Points.Count);
-    this->KeepCertainTriangles(SubProgress(progress, 0.15, 0.2));
-    for (const Index t : TrianglesAt(list, border, SubProgress(progress, 0.2, 0.25)))
+    this->KeepCertainTriangles(progress.Between(0.15, 0.2));
+    for (const Index t : TrianglesAt(list, border, progress.Between(0.2, 0.25)))
     {
       this->Result.IsSurface[t] = Outside; // not all edges are known there
     }
-    const std::vector<Index> doubtful = this->FindDoubtful(SubProgress(progress, 0.25, 0.4));
+    const std::vector<Index> doubtful = this->FindDoubtful(progress.Between(0.25, 0.4));
     const IdSet lonely = this->IsAutomatic
       ? LonelyVertices(neighbors, this->CornersNear(doubtful), list.Points.Count)
       : IdSet(0);
@@ -206,12 +204,12 @@ public:
     }
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     std::fill(this->Spacings.begin(), this->Spacings.end(), unknown);
-    FindSpacings(list, neighbors, CornersOf(list, doubtful, SubProgress(progress, 0.4, 0.45)),
-      this->Threads, SubProgress(progress, 0.45, 0.6), this->Spacings.data(), &border);
+    FindSpacings(list, neighbors, CornersOf(list, doubtful, progress.Between(0.4, 0.45)),
+      this->Threads, progress.Between(0.45, 0.6), this->Spacings.data(), &border);
     // Of groups that reach the border, other parts may have more.
     std::vector<char> isInside(list.Count, 0);
     const auto nothing = [](Index) { return 0.0; };
-    DropSmallGroups(list, border, doubtful, nothing, isInside, SubProgress(progress, 0.6, 0.65));
+    DropSmallGroups(list, border, doubtful, nothing, isInside, progress.Between(0.6, 0.65));
     std::vector<Known> states(list.Count, Known::Surface);
     for (const Index t : doubtful)
     {
@@ -224,11 +222,11 @@ public:
         near.AddAll(list.CornersOf(t));
       }
     }
-    for (const Index t : FindBridges(list, this->Grid, SubProgress(progress, 0.65, 0.65)))
+    for (const Index t : FindBridges(list, this->Grid, progress.Between(0.65, 0.65)))
     {
       near.AddAll(list.CornersOf(t)); // the border of the mesh may be in another part
     }
-    return this->PartNear(near, margin, states, SubProgress(progress, 0.65, 1.0));
+    return this->PartNear(near, margin, states, progress.Between(0.65, 1.0));
   }
 
 private:
@@ -290,7 +288,7 @@ private:
     near.Add(vertices, both);
     this->Widen(around, Progress(), near);
     OutlinePart part;
-    part.Triangles = TrianglesAt(list, near, SubProgress(progress, 0.7, 0.9));
+    part.Triangles = TrianglesAt(list, near, progress.Between(0.7, 0.9));
     for (const Index t : part.Triangles)
     {
       part.States.push_back(states[t]);
@@ -363,13 +361,13 @@ private:
   {
     Report(progress, 0.0);
     const TriangleList& list = this->Measured.List;
-    std::vector<Index> corners = CornersOf(list, triangles, SubProgress(progress, 0.0, 0.1));
+    std::vector<Index> corners = CornersOf(list, triangles, progress.Between(0.0, 0.1));
     const auto isKnown = [this](Index v) { return !std::isnan(this->Spacings[v]); };
     if (this->Border.IsPart)
     {
       corners.erase(std::remove_if(corners.begin(), corners.end(), isKnown), corners.end());
     }
-    FindSpacings(list, neighbors, corners, this->Threads, SubProgress(progress, 0.1, 1.0),
+    FindSpacings(list, neighbors, corners, this->Threads, progress.Between(0.1, 1.0),
       this->Spacings.data(), this->Border.IsPart ? &this->Ends : nullptr);
     Report(progress, 1.0);
     return !this->Border.IsPart || std::all_of(corners.begin(), corners.end(), isKnown);
@@ -401,7 +399,7 @@ private:
   }
 
   /** The same for triangles in bays. */
-  double ToleranceOfBay(Index t) const
+  double BayTolerance(Index t) const
   {
     const Index* const corners = this->Measured.List.CornersOf(t);
     double spacing = 0.0;
@@ -442,7 +440,7 @@ private:
     const TriangleList& list = this->Measured.List;
     std::vector<char>& keep = this->Result.IsSurface;
     std::vector<Index> doubtful, inGroups; // the groups of the others are known
-    ForEachStretch(list.Count, SubProgress(progress, 0.0, 0.2), [&](Index begin, Index end) {
+    ForEachStretch(list.Count, progress.Between(0.0, 0.2), [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
         if (!keep[t])
@@ -457,7 +455,7 @@ private:
       return list.SquareShare(t, SmallGroup * this->Tolerance * spacing);
     };
     const std::vector<Index> others = DropSmallGroups(
-      list, this->Border.Vertices, inGroups, shareOf, keep, SubProgress(progress, 0.2, 1.0));
+      list, this->Border.Vertices, inGroups, shareOf, keep, progress.Between(0.2, 1.0));
     const auto middle = doubtful.insert(doubtful.end(), others.begin(), others.end());
     std::inplace_merge(doubtful.begin(), middle, doubtful.end());
     return doubtful;
@@ -486,7 +484,7 @@ private:
         const Index t = doubtful[i];
         const double longest = std::sqrt(this->Measured.Longest[t]);
         this->Result.IsSurface[t] = longest <= this->ToleranceOf(t) ? Surface
-          : longest <= this->ToleranceOfBay(t)                      ? Bay
+          : longest <= this->BayTolerance(t)                        ? Bay
                                                                     : Outside;
       }
     });
@@ -507,7 +505,7 @@ private:
       outward.push_back(static_cast<Index>(t - keep.begin()));
       area += list.SquareShare(outward.back(), 1.0);
     }
-    const IdSet leftOut = CornersLeftOut(list, outward, keep, SubProgress(progress, 0.0, 0.6));
+    const IdSet leftOut = CornersLeftOut(list, outward, keep, progress.Between(0.0, 0.6));
     this->Result.NumberOfPointsLeftOut = leftOut.Count();
     const double all = AreaOf(list, this->Border.Edges);
     this->Result.AreaLeftOut = all > 0.0 ? std::min(1.0, area / all) : 0.0;
@@ -518,7 +516,7 @@ private:
     {
       return true;
     }
-    if (!this->FindCornerSpacings(outward, neighbors, SubProgress(progress, 0.6, 1.0)))
+    if (!this->FindCornerSpacings(outward, neighbors, progress.Between(0.6, 1.0)))
     {
       return false;
     }
@@ -584,13 +582,12 @@ bool FindOutlinePart(
   {
     return true;
   }
-  if (!MeasureBySweep(
-        list, options.NumberOfThreads, SubProgress(options.Monitor, 0.0, 0.5), measured))
+  if (!MeasureBySweep(list, options.NumberOfThreads, options.Monitor.Between(0.0, 0.5), measured))
   {
     return false;
   }
-  part = OutlineSearch(std::move(measured), options)
-           .FindPart(margin, SubProgress(options.Monitor, 0.5, 1.0));
+  part =
+    OutlineSearch(std::move(measured), options).FindPart(margin, options.Monitor.Between(0.5, 1.0));
   part.Spacings.resize(list.Points.Count); // there are more of the measured ids than of points
   return true;
 }
@@ -600,12 +597,11 @@ std::optional<ExtractedBoundary> FindSharedOutline(
 {
   MeasuredTriangles measured;
   if (list.Count == 0 ||
-    !MeasureBySweep(
-      list, options.NumberOfThreads, SubProgress(options.Monitor, 0.0, 0.3), measured))
+    !MeasureBySweep(list, options.NumberOfThreads, options.Monitor.Between(0.0, 0.3), measured))
   {
     return std::nullopt;
   }
-  const Progress finding = SubProgress(options.Monitor, 0.3, 1.0);
+  const Progress finding = options.Monitor.Between(0.3, 1.0);
   if (list.Count == mesh.NumberOfTriangles)
   {
     return OutlineSearch(std::move(measured), options).Run(finding);
@@ -629,9 +625,9 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
     nothing.GapTolerance = options.GapTolerance;
     return nothing;
   }
-  MeasuredTriangles measured = Measure(mesh, SubProgress(options.Monitor, 0.0, 0.4));
+  MeasuredTriangles measured = Measure(mesh, options.Monitor.Between(0.0, 0.4));
   ExtractOptions rest = options;
-  const Progress finding = SubProgress(options.Monitor, 0.4, 1.0);
+  const Progress finding = options.Monitor.Between(0.4, 1.0);
   rest.Monitor = finding;
   return FindOutline(std::move(measured), rest);
 }

@@ -44,16 +44,16 @@ std::vector<Index> CornersOf(
 
 PartialMesh::PartialMesh(const TriangleList& list, const MeshBorder& border,
   std::vector<Index> triangles, const Progress& progress)
-  : Surface(SubMesh(list, triangles, SubProgress(progress, 0.0, 0.5)))
+  : Surface(SubMesh(list, triangles, progress.Between(0.0, 0.5)))
   , Triangles(std::move(triangles))
 {
-  this->Surface.ConnectTwins(0, SubProgress(progress, 0.5, 0.8));
+  this->Surface.ConnectTwins(0, progress.Between(0.5, 0.8));
   if (!border.IsPart && static_cast<Index>(this->Triangles.size()) == list.Count)
   {
     return; // nothing is left out
   }
-  ForEachStretch(this->Surface.NumberOfHalfEdges(), SubProgress(progress, 0.8, 1.0),
-    [&](Index begin, Index end) {
+  ForEachStretch(
+    this->Surface.NumberOfHalfEdges(), progress.Between(0.8, 1.0), [&](Index begin, Index end) {
       for (Index h = begin; h < end; ++h)
       {
         if (this->Surface.IsBorder(h))

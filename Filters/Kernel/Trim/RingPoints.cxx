@@ -43,9 +43,9 @@ public:
 
   RingVertices Run(const Progress& progress)
   {
-    this->MatchCorners(SubProgress(progress, 0.0, 0.57));
-    this->LocateOthers(SubProgress(progress, 0.57, 0.93));
-    this->InsertLocated(SubProgress(progress, 0.93, 1.0));
+    this->MatchCorners(progress.Between(0.0, 0.57));
+    this->LocateOthers(progress.Between(0.57, 0.93));
+    this->InsertLocated(progress.Between(0.93, 1.0));
     return std::move(this->VertexAt);
   }
 
@@ -78,15 +78,14 @@ private:
       sieve.Add(bitOf(entry.first));
     }
     std::vector<char> isToMatch(mesh.Points.size());
-    ForEachStretch(
-      mesh.NumberOfPoints(), SubProgress(progress, 0.0, 0.3), [&](Index begin, Index end) {
-        for (Index v = begin; v < end; ++v)
-        {
-          const Point2& p = mesh.PointOf(v);
-          isToMatch[v] = sieve.Has(bitOf(p)) && this->VertexAt.count(p) > 0;
-        }
-      });
-    const Progress matching = SubProgress(progress, 0.3, 1.0);
+    ForEachStretch(mesh.NumberOfPoints(), progress.Between(0.0, 0.3), [&](Index begin, Index end) {
+      for (Index v = begin; v < end; ++v)
+      {
+        const Point2& p = mesh.PointOf(v);
+        isToMatch[v] = sieve.Has(bitOf(p)) && this->VertexAt.count(p) > 0;
+      }
+    });
+    const Progress matching = progress.Between(0.3, 1.0);
     for (const Index h : Counted(mesh.NumberOfHalfEdges()))
     {
       ReportStep(matching, h, mesh.Triangles.size());
@@ -125,7 +124,7 @@ private:
     }
     if (!open.empty() && this->MayInsert)
     {
-      this->SnapBorderToPoints(open, SubProgress(progress, 0.0, 0.2));
+      this->SnapBorderToPoints(open, progress.Between(0.0, 0.2));
     }
     if (open.empty())
     {
@@ -136,7 +135,7 @@ private:
     const CellGrid grid(open.size(),
       [&](std::size_t i) { return std::array<Point2, 1>{ { this->Points[open[i]] } }; });
     std::vector<Index> triangles(open.size(), None);
-    const Progress looking = SubProgress(progress, 0.2, 1.0);
+    const Progress looking = progress.Between(0.2, 1.0);
     ForEachStretch(mesh.NumberOfTriangles(), looking, [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {

@@ -102,7 +102,7 @@ Rings SortedRings(const Mesh& mesh, const Rings& rings, const Progress& progress
   };
   std::vector<Index> order(rings.Count());
   std::iota(order.begin(), order.end(), 0);
-  Sort(order.begin(), order.end(), isBefore, SubProgress(progress, 0.0, 0.75));
+  Sort(order.begin(), order.end(), isBefore, progress.Between(0.0, 0.75));
   Rings sorted;
   sorted.Vertices.reserve(rings.Vertices.size());
   for (const Index ring : Counted(order))
@@ -118,9 +118,9 @@ Rings SortedRings(const Mesh& mesh, const Rings& rings, const Progress& progress
 
 Rings FindSimpleRings(const Mesh& mesh, const std::vector<char>& keep, const Progress& progress)
 {
-  const Rings walks = TraceBorder(mesh, SubProgress(progress, 0.0, 0.6), keep);
-  const Rings rings = RingCutter(mesh).Cut(walks, SubProgress(progress, 0.6, 0.8));
-  return SortedRings(mesh, rings, SubProgress(progress, 0.8, 1.0));
+  const Rings walks = TraceBorder(mesh, progress.Between(0.0, 0.6), keep);
+  const Rings rings = RingCutter(mesh).Cut(walks, progress.Between(0.6, 0.8));
+  return SortedRings(mesh, rings, progress.Between(0.8, 1.0));
 }
 
 } // namespace elevation

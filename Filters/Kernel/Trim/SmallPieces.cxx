@@ -48,19 +48,18 @@ std::vector<std::pair<Index, Index>> CornersOfSmall(const Mesh& mesh, const Comp
   const PieceSizes& sizes, const std::vector<char>& keep, const Progress& progress)
 {
   std::vector<std::pair<Index, Index>> corners;
-  ForEachStretch(
-    mesh.NumberOfTriangles(), SubProgress(progress, 0.0, 0.7), [&](Index begin, Index end) {
-      for (Index h = 3 * begin; h < 3 * end; ++h)
+  ForEachStretch(mesh.NumberOfTriangles(), progress.Between(0.0, 0.7), [&](Index begin, Index end) {
+    for (Index h = 3 * begin; h < 3 * end; ++h)
+    {
+      const Index piece = pieces.ComponentOf(Mesh::Triangle(h));
+      if (keep[Mesh::Triangle(h)] && !sizes.IsLarge(piece))
       {
-        const Index piece = pieces.ComponentOf(Mesh::Triangle(h));
-        if (keep[Mesh::Triangle(h)] && !sizes.IsLarge(piece))
-        {
-          corners.emplace_back(piece, mesh.Origin(h));
-        }
+        corners.emplace_back(piece, mesh.Origin(h));
       }
-    });
+    }
+  });
   Sort(corners.begin(), corners.end(), std::less<std::pair<Index, Index>>(),
-    SubProgress(progress, 0.7, 1.0));
+    progress.Between(0.7, 1.0));
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   return corners;
 }
@@ -70,12 +69,12 @@ std::vector<std::pair<Index, Index>> CornersOfSmall(const Mesh& mesh, const Comp
 std::vector<Index> DropSmallPieces(
   const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
 {
-  const Components pieces = FindComponents(mesh, SubProgress(progress, 0.0, 0.5), [&](Index h) {
+  const Components pieces = FindComponents(mesh, progress.Between(0.0, 0.5), [&](Index h) {
     return keep[Mesh::Triangle(h)] == keep[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
   });
-  const PieceSizes sizes(mesh, pieces, keep, SubProgress(progress, 0.5, 0.7));
+  const PieceSizes sizes(mesh, pieces, keep, progress.Between(0.5, 0.7));
   const std::vector<std::pair<Index, Index>> corners =
-    CornersOfSmall(mesh, pieces, sizes, keep, SubProgress(progress, 0.7, 1.0));
+    CornersOfSmall(mesh, pieces, sizes, keep, progress.Between(0.7, 1.0));
   bool hasLarge = false;
   for (Index piece = 0; piece < pieces.Count(); ++piece)
   {

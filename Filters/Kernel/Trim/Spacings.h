@@ -29,7 +29,7 @@ constexpr double SpacingPerNeighborDistance = 0.5;
 /** A lower bound, so that no spacing is 0 and squares stay in the range of double. */
 constexpr double LeastSpacing = 1e-150;
 /** A vertex with more neighbours is not expanded. */
-constexpr std::size_t NeighborsOfHub = 64;
+constexpr std::size_t HubNeighbors = 64;
 
 /** The largest spacing of a triangle, in the least of its corners. */
 constexpr double LargestSpacingInTriangle = 2.0;

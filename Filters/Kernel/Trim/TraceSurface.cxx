@@ -21,12 +21,12 @@ namespace
 PartialMesh MeshNear(
   const TriangleList& list, const MeshBorder& border, const IdSet& near, const Progress& progress)
 {
-  std::vector<Index> triangles = TrianglesAt(list, near, SubProgress(progress, 0.0, 0.33));
+  std::vector<Index> triangles = TrianglesAt(list, near, progress.Between(0.0, 0.33));
   if (border.IsPart || static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
   {
     triangles = AllTriangles(list);
   }
-  return PartialMesh(list, border, std::move(triangles), SubProgress(progress, 0.33, 1.0));
+  return PartialMesh(list, border, std::move(triangles), progress.Between(0.33, 1.0));
 }
 
 /**
@@ -38,7 +38,7 @@ std::vector<char> SmoothFlags(const MeasuredTriangles& measured, const PartialMe
   const Progress& progress)
 {
   std::vector<char> smooth = mesh.FlagsOf(flags);
-  DropSlivers(measured, mesh, atEdge, smooth, SubProgress(progress, 0.0, 0.4));
+  DropSlivers(measured, mesh, atEdge, smooth, progress.Between(0.0, 0.4));
   if (isAll && std::find(smooth.begin(), smooth.end(), char(Surface)) == smooth.end())
   {
     smooth = mesh.FlagsOf(flags); // the surface is nothing but slivers
@@ -48,8 +48,8 @@ std::vector<char> SmoothFlags(const MeasuredTriangles& measured, const PartialMe
     const Index t = mesh.Triangles[i];
     return flags[t] == Surface ? 0.0 : measured.List.SquareShare(t, options.LeastSide(t));
   };
-  CloseSmallLakes(mesh.Surface, share, smooth, SubProgress(progress, 0.4, 0.7));
-  CloseSmallBays(mesh.Surface, share, smooth, SubProgress(progress, 0.7, 1.0));
+  CloseSmallLakes(mesh.Surface, share, smooth, progress.Between(0.4, 0.7));
+  CloseSmallBays(mesh.Surface, share, smooth, progress.Between(0.7, 1.0));
   return smooth;
 }
 
@@ -59,27 +59,27 @@ bool TraceSurface(const MeasuredTriangles& measured, const MeshBorder& border, I
   const SurfaceOptions& options, const Progress& progress, std::vector<char>& flags, Rings& rings)
 {
   const TriangleList& list = measured.List;
-  const IdSet atEdge = VerticesOfSlivers(measured, near, SubProgress(progress, 0.0, 0.1));
+  const IdSet atEdge = VerticesOfSlivers(measured, near, progress.Between(0.0, 0.1));
   near = atEdge;
   double begin = 0.1; // of the round, in the progress
   for (;;)
   {
     // A second round is rare, a third even rarer.
     const double end = 0.5 * (1.0 + begin);
-    const Progress round = SubProgress(progress, begin, end);
+    const Progress round = progress.Between(begin, end);
     begin = end;
-    const PartialMesh mesh = MeshNear(list, border, near, SubProgress(round, 0.0, 0.3));
+    const PartialMesh mesh = MeshNear(list, border, near, round.Between(0.0, 0.3));
     const bool isAll = !border.IsPart && static_cast<Index>(mesh.Triangles.size()) == list.Count;
     std::vector<char> smooth =
-      SmoothFlags(measured, mesh, atEdge, isAll, options, flags, SubProgress(round, 0.3, 0.55));
+      SmoothFlags(measured, mesh, atEdge, isAll, options, flags, round.Between(0.3, 0.55));
     const std::vector<Index> unknown = options.DropsSmallPieces
-      ? DropSmallPieces(mesh.Surface, smooth, SubProgress(round, 0.55, 0.8))
+      ? DropSmallPieces(mesh.Surface, smooth, round.Between(0.55, 0.8))
       : std::vector<Index>();
     if (unknown.empty())
     {
       mesh.PutFlags(smooth, flags);
-      rings = FindSimpleRings(mesh.Surface, smooth, SubProgress(round, 0.8, 1.0));
-      ToIds(rings.Vertices, mesh.Surface.Ids.data(), SubProgress(round, 1.0, 1.0));
+      rings = FindSimpleRings(mesh.Surface, smooth, round.Between(0.8, 1.0));
+      ToIds(rings.Vertices, mesh.Surface.Ids.data(), round.Between(1.0, 1.0));
       return true;
     }
     if (border.IsPart)

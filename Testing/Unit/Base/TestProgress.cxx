@@ -86,7 +86,7 @@ TEST(Progress, OfPartsDoesNotFallWhereTheyMeet)
         EXPECT_LE(fraction, end);
         return true;
       };
-      SubProgress(progress, begin, end)(1.0);
+      progress.Between(begin, end)(1.0);
     }
   }
 }
@@ -185,12 +185,12 @@ TEST(Progress, IsTheLastReportWhereItAsksToStop)
       int reports = 0;
       std::size_t asked = 0;
       const Progress stop = [&](double) {
-        asked = WorkOfAll();
+        asked = TotalWork();
         return ++reports < last;
       };
       EXPECT_THROW(compute(stop), Aborted);
       EXPECT_EQ(reports, last);
-      EXPECT_LT(WorkOfAll() - asked, 30000u); // what was done before, and had not been counted yet
+      EXPECT_LT(TotalWork() - asked, 30000u); // what was done before, and had not been counted yet
     }
   }
 }
@@ -294,13 +294,13 @@ TEST(Progress, OfCuttingLinesAtTheirCrossingsRises)
   }
   lines.Points = ends.View();
   double last = 0.0;
-  std::size_t longest = 0, since = WorkOfAll();
+  std::size_t longest = 0, since = TotalWork();
   const auto rise = [&](double fraction) {
     if (fraction > last)
     {
       last = fraction;
-      longest = std::max(longest, WorkOfAll() - since);
-      since = WorkOfAll();
+      longest = std::max(longest, TotalWork() - since);
+      since = TotalWork();
     }
     return true;
   };
