@@ -103,7 +103,7 @@ set(es_kernel_headers_Messages
 set(es_kernel_headers_Mesh
   Mesh TriangleSweep)
 set(es_kernel_headers_Lattice
-  Lattice NodeOfPoint)
+  Lattice NodeFinder)
 set(es_kernel_headers_Bins
   Bins Instructions RowSorter WorkBudget)
 set(es_kernel_headers_Grow

@@ -4,8 +4,8 @@
  * @file
  * The node of a lattice that a point lies on. Constant time.
  */
-#ifndef elevation_Lattice_NodeOfPoint_h
-#define elevation_Lattice_NodeOfPoint_h
+#ifndef elevation_Lattice_NodeFinder_h
+#define elevation_Lattice_NodeFinder_h
 
 #include "FindLattice.h"
 
