@@ -19,16 +19,22 @@ set(es_kernel_Mesh
   TriangleList
   Validate)
 set(es_kernel_Lattice
+  LatticeSample
+  LatticeBasis
+  OutwardFit
   FindLattice
+  GivenLattice
   Nodes
   Metric
   SharedLattice)
 set(es_kernel_Bins
   BoxTree
+  GridBlock
   BinGrid
   Hull
   Options)
 set(es_kernel_Grow
+  Neighborhoods
   PointWindows
   WideApexSearch
   ApexSearch
@@ -47,6 +53,10 @@ set(es_kernel_Simplify
 set(es_kernel_Triangulate
   Triangulate)
 set(es_kernel_Constrain
+  SegmentNetwork
+  SegmentCrossings
+  CutLines
+  NearLines
   Constrain)
 set(es_kernel_Cells
   Pieces
@@ -57,18 +67,28 @@ set(es_kernel_Trim
   Crossings
   MeshCutter
   FollowSurface
+  RingPoints
   Insertion
   OutwardTriangles
   MeasuredTriangles
   Spacings
   PartialMesh
   Scales
+  Openings
+  Slivers
+  SmallPieces
+  SimpleRings
+  TraceSurface
+  MissingNodes
   Outline
   Trim)
 set(es_kernel_Fill
   Multigrid
   Membrane
   Spline
+  PatchPlan
+  PointRows
+  Refinement
   Patch
   Neighbours
   Heights
@@ -83,11 +103,11 @@ set(es_kernel_headers_Messages
 set(es_kernel_headers_Mesh
   Mesh TriangleSweep)
 set(es_kernel_headers_Lattice
-  Lattice NodeOfPoint)
+  Lattice NodeFinder)
 set(es_kernel_headers_Bins
-  Bins Instructions WorkBudget)
+  Bins Instructions RowSorter WorkBudget)
 set(es_kernel_headers_Grow
-  Grow Growth)
+  BoxAround Grow Growth Packing)
 set(es_kernel_headers_Simplify
   FacePlane)
 set(es_kernel_headers_Triangulate)
@@ -101,9 +121,12 @@ set(es_kernel_headers_Fill
 # The rooms around the kernel.
 set(es_outer_rooms Adapt Parts)
 set(es_Adapt
+  ArrayChecks
   Blocks
   Constraints
+  DataArrays
   DelaunayReport
+  HiddenCells
   LimitAdvice
   MeshConversion
   PatchedSurface

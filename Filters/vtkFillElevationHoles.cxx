@@ -68,7 +68,6 @@ using elevation::FillResult;
 using elevation::Holes;
 using elevation::Index;
 using elevation::Mesh;
-using elevation::SubProgress;
 using elevation::Report;
 
 /** Fills a block in memory. */
@@ -83,13 +82,12 @@ FillResult FillBlock(
   const elevation::DataSetPoints points = elevation::ViewPoints(input);
   const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
   Mesh mesh;
-  elevation::ToMesh(input, mesh, SubProgress(progress, 0.0, 0.15));
-  mesh.ConnectTwins(firstPolygon, SubProgress(progress, 0.15, 0.4));
-  Holes found = elevation::FindHoles(mesh, firstPolygon, SubProgress(progress, 0.4, 0.5));
+  elevation::ToMesh(input, mesh, progress.Between(0.0, 0.15));
+  mesh.ConnectTwins(firstPolygon, progress.Between(0.15, 0.4));
+  Holes found = elevation::FindHoles(mesh, firstPolygon, progress.Between(0.4, 0.5));
   Mesh opened;
   const bool isOpened = openEdgeLength > 0.0 &&
-    elevation::OpenLongTriangles(
-      mesh, openEdgeLength, found, opened, SubProgress(progress, 0.5, 0.55));
+    elevation::OpenLongTriangles(mesh, openEdgeLength, found, opened, progress.Between(0.5, 0.55));
 
   if (interpolates)
   {
@@ -102,15 +100,15 @@ FillResult FillBlock(
       marks->GetPointer(0), marks->GetPointer(0) + marks->GetNumberOfTuples());
   }
   const double filledAt = found.Count() > 0 ? 0.85 : 0.55;
-  const elevation::Progress filling = SubProgress(progress, 0.55, filledAt);
+  const elevation::Progress filling = progress.Between(0.55, filledAt);
   options.Monitor = filling;
   FillResult patches =
     elevation::FillHoles(isOpened ? opened : mesh, points.View, std::move(found), options);
   patches.FirstNumber = elevation::NextHole(input);
 
   MakeSurface(
-    input, mesh, patches, interpolates, SubProgress(progress, filledAt, 0.97), block.Outputs[0]);
-  MakeReport(input, patches, SubProgress(progress, 0.97, 1.0), block.Outputs[1]);
+    input, mesh, patches, interpolates, progress.Between(filledAt, 0.97), block.Outputs[0]);
+  MakeReport(input, patches, progress.Between(0.97, 1.0), block.Outputs[1]);
   AddHoleCounts(patches, block.Outputs);
   block.Warnings = WarningsOf(patches);
   if (mesh.NumberOfTriangles() == 0 && elevation::NeedsWarning(input))

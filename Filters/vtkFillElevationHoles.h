@@ -5,38 +5,39 @@
  * @brief   fills the holes of an elevation surface with new points and triangles, and lists them
  *
  * A hole is an empty region that the surface encloses. The outer boundary of a component is never a
- * hole. A component that lies inside a hole, an island, stays, and the ring around it is filled.
- * Voids that triangles with long edges bridge are not holes: see OpenEdgeLength, which opens them.
+ * hole. A component inside a hole, an island, stays, and the ring around it is filled. Voids that
+ * triangles with long edges bridge are not holes; OpenEdgeLength opens them.
  *
  * @par Input:
- * A vtkPolyData of triangles, an elevation surface from any source, of one or more components. x,y
- * is the plane of projection, z the elevation. Cells that are marked as hidden (vtkGhostType), or
- * have a point that is, are none, and count in no message.
+ * A vtkPolyData of triangles: an elevation surface from any source, of one or more components. x,y
+ * is the plane of projection, z the elevation. Cells that are hidden (vtkGhostType), or have a
+ * hidden point, do not count as cells, not even in messages.
  *
  * @par Outputs:
- * - 0, the surface: the points and cells of the input first, with their ids, then the new points and
- *   triangles, counter-clockwise seen from +z. Point arrays FilledPoint (vtkUnsignedCharArray, 1 for
- *   new points) and FilledError (vtkDoubleArray, the standard error of z of new points, 0 for points
- *   of the input, NaN where it is unknown); cell array HoleId (vtkIdTypeArray, -1 for cells of
- *   the input). Other point arrays: see InterpolatePointData. Where the input has been filled before,
- *   its arrays of these names stay, and holes have the numbers after the largest of its triangles.
- * - 1, the report: one closed line for each hole, filled or not, its rim, counter-clockwise. Cell data
- *   HoleId, Status (HoleStatusType) and StatusName, the same in words, Size (what MaximumHoleSize is
- *   compared with), NumberOfEdges, Perimeter, Area, NumberOfInsertedPoints, Interpolation (the one
- *   used) and InterpolationName ("" where nothing was inserted).
+ * - 0, the surface: the points and cells of the input, with their ids, then the new points and
+ *   triangles, counter-clockwise seen from +z. It has the point arrays FilledPoint
+ *   (vtkUnsignedCharArray, 1 for new points) and FilledError (vtkDoubleArray, the standard error of
+ *   z: 0 for points of the input, NaN if unknown), and the cell array HoleId (vtkIdTypeArray, -1
+ *   for cells of the input). Other point arrays: see InterpolatePointData. If the input has been
+ *   filled before, its values in these arrays stay, and new holes are numbered after its largest
+ *   HoleId.
+ * - 1, the report: the rim of each hole, filled or not, as a closed counter-clockwise line. Cell
+ *   data: HoleId, Status (HoleStatusType) and StatusName, the same in words, Size (for comparison
+ *   with MaximumHoleSize), NumberOfEdges, Perimeter, Area, NumberOfInsertedPoints, Interpolation
+ *   (the one used) and InterpolationName ("" if nothing was inserted).
  *
  * Field data of both: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
  * @par Guarantees:
  * A patch covers its hole exactly and overlaps nothing; every boundary edge gets its second
- * triangle and no edge a third one; patches are constrained Delaunay. New points and triangles do
- * not depend on the order of the input's points and cells, only their ids do; nor on the number of
- * threads or ranks. Holes that stay open are listed, with the reason.
+ * triangle and no edge a third one; patches are constrained Delaunay. New points and triangles,
+ * except for their ids, do not depend on the order of the input's points and cells, nor on the
+ * number of threads or ranks. Holes that stay open are listed, with the reason.
  *
- * Errors leave empty outputs, fail the request (but in ParaView), set GetErrorCode() and name the
- * property, cell or array: an input that is not an elevation surface is
- * refused. An abort also leaves empty output, which counts as up to date: call Modified() to start
- * again. A composite input gives outputs of the same structure, each block filled on its own.
+ * An error leaves empty outputs, makes the request fail (except in ParaView), sets GetErrorCode()
+ * and names the property, cell or array; an input that is not an elevation surface is an error. An
+ * abort also leaves empty outputs, which count as up to date: call Modified() to start again. A
+ * composite input gives outputs of the same structure; each block is filled on its own.
  *
  * @par Example:
  * @code
@@ -52,9 +53,9 @@
  * Surface of 3D Point Clouds": spacing by its eq. 1; z by its eq. 2 with Interpolation
  * NEIGHBOR_MEAN.
  *
- * The arrays in full, the method, all warnings and errors, and cost:
- * [Documentation/Filters.md](Documentation/Filters.md); how accurate it is:
- * Documentation/FillAccuracy.md. Several ranks: Documentation/ManyRanks.md.
+ * [Documentation/Filters.md](Documentation/Filters.md) has the arrays in full, the method, all
+ * warnings and errors, and cost; Documentation/FillAccuracy.md shows how accurate it is;
+ * Documentation/ManyRanks.md explains several ranks.
  *
  * @sa vtkGridDelaunay2D vtkTrimOutwardTriangles vtkFillHolesFilter
  */

@@ -63,7 +63,6 @@ namespace
 {
 using elevation::ConstraintLines;
 using elevation::Index;
-using elevation::SubProgress;
 using elevation::Progress;
 using elevation::ReportStep;
 
@@ -72,10 +71,10 @@ ConstraintLines LinesOf(vtkPolyData* source, const elevation::DataSetPoints& own
   const elevation::PointView& points, int threads, const Progress& progress,
   std::vector<elevation::Message>& warnings)
 {
-  const ConstraintLines lines = elevation::ToLines(source, own, SubProgress(progress, 0.0, 0.5));
+  const ConstraintLines lines = elevation::ToLines(source, own, progress.Between(0.0, 0.5));
   const elevation::Box box =
     elevation::FindExtent(points, elevation::ResolveNumberOfThreads(threads),
-      SubProgress(progress, 0.5, 1.0), [](Index, const elevation::Point2&) {});
+      progress.Between(0.5, 1.0), [](Index, const elevation::Point2&) {});
   elevation::CheckLines(lines, box, warnings);
   return lines;
 }
@@ -95,9 +94,9 @@ elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
   elevation::CheckPointArrays(source, "The constraints'");
   elevation::WarnOfLattice(options, warnings);
   const elevation::DataSetPoints own = elevation::ViewPoints(source);
-  const ConstraintLines lines = LinesOf(
-    source, own, points, options.NumberOfThreads, SubProgress(progress, 0.0, 0.02), warnings);
-  options.Monitor = SubProgress(progress, 0.02, 1.0);
+  const ConstraintLines lines =
+    LinesOf(source, own, points, options.NumberOfThreads, progress.Between(0.0, 0.02), warnings);
+  options.Monitor = progress.Between(0.02, 1.0);
   return elevation::TriangulateConstrained(points, lines, options);
 }
 
@@ -118,7 +117,7 @@ Index CountInTriangles(
 double Quantile(std::vector<double>& values, double part)
 {
   const auto at =
-    values.begin() + elevation::PlaceOfQuantile(part, static_cast<vtkIdType>(values.size()));
+    values.begin() + elevation::QuantilePlace(part, static_cast<vtkIdType>(values.size()));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -137,7 +136,7 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   elevation::LimitEffect effect;
   effect.Vertices = static_cast<vtkIdType>(ids - found.UnusedPoints.size());
   effect.Missing =
-    effect.Vertices - CountInTriangles(found.Triangles, ids, SubProgress(progress, 0.0, 0.05));
+    effect.Vertices - CountInTriangles(found.Triangles, ids, progress.Between(0.0, 0.05));
   if (!effect.AreMostMissing())
   {
     return;
@@ -147,19 +146,19 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   options.MaximumEdgeLength = 0.0;
   std::vector<elevation::Message> again;
   const elevation::ConstrainedTriangulation full =
-    TriangulateWith(source, points, options, SubProgress(progress, 0.05, 0.7), again);
+    TriangulateWith(source, points, options, progress.Between(0.05, 0.7), again);
   const auto placeOf = [&](Index id) {
     return id < points.Count ? points.At(id) : full.Added[id - points.Count].Position;
   };
   elevation::EdgeMeasures lengths =
-    elevation::MeasureEdges(full.Result.Triangles, ids, placeOf, SubProgress(progress, 0.7, 1.0));
+    elevation::MeasureEdges(full.Result.Triangles, ids, placeOf, progress.Between(0.7, 1.0));
   std::vector<double>& limits = lengths.Limits;
   limits.erase(std::remove(limits.begin(), limits.end(), std::numeric_limits<double>::infinity()),
     limits.end());
   effect.HasLengths = true;
   effect.Shortest = Quantile(lengths.Edges, 0.0);
-  effect.Median = Quantile(lengths.Edges, elevation::HalfOfAll);
-  effect.ForMost = Quantile(limits, elevation::PartOfMost);
+  effect.Median = Quantile(lengths.Edges, elevation::MedianShare);
+  effect.ForMost = Quantile(limits, elevation::MostShare);
   warnings.back() = elevation::AdviceOnLimit(limit, effect);
 }
 
@@ -189,8 +188,7 @@ vtkIdType Drape(vtkPolyData* lines, const elevation::PointView& points, int thre
 {
   elevation::CheckPointArrays(lines, "The constraints'");
   std::vector<elevation::Message> found;
-  LinesOf(
-    lines, elevation::ViewPoints(lines), points, threads, SubProgress(progress, 0.0, 0.0), found);
+  LinesOf(lines, elevation::ViewPoints(lines), points, threads, progress.Between(0.0, 0.0), found);
   for (const elevation::Message& message : found)
   {
     const bool isOutside = message.GetCode() == elevation::sentences::LinesFarOutside.Code;
@@ -218,22 +216,21 @@ elevation::ConstrainedTriangulation TriangulateBlock(
   // Little, as a limit seldom needs advice.
   const double triangulated = options.MaximumEdgeLength > 0.0 ? advised - 0.09 : advised;
   elevation::ConstrainedTriangulation made = TriangulateWith(
-    source, points.View, options, SubProgress(progress, 0.0, triangulated), block.Warnings);
+    source, points.View, options, progress.Between(0.0, triangulated), block.Warnings);
   elevation::NameHidden(elevation::GhostsOf(block.Input->GetPointData()), made.Result);
   elevation::WarnOfWall(elevation::SampleOf(points.View), block.Warnings);
-  WarnOfMissing(source, points.View, options, made, SubProgress(progress, triangulated, advised),
-    block.Warnings);
-  elevation::PassPoints(
-    block.Input, source, made.Added, SubProgress(progress, advised, split), output);
+  WarnOfMissing(
+    source, points.View, options, made, progress.Between(triangulated, advised), block.Warnings);
+  elevation::PassPoints(block.Input, source, made.Added, progress.Between(advised, split), output);
   output->GetFieldData()->PassData(block.Input->GetFieldData());
   output->SetPolys(elevation::ToCellArray(
     std::move(made.Result.Triangles), elevation::ResolveNumberOfThreads(options.NumberOfThreads)));
   if (draped)
   {
     made.Added.resize(static_cast<std::size_t>(Drape(draped, points.View, options.NumberOfThreads,
-      SubProgress(progress, split, 1.0), block.Warnings, output)));
+      progress.Between(split, 1.0), block.Warnings, output)));
   }
-  elevation::AddReport(made, SubProgress(progress, 1.0, 1.0), output->GetFieldData());
+  elevation::AddReport(made, progress.Between(1.0, 1.0), output->GetFieldData());
   if (options.MaximumElevationError > 0.0)
   {
     elevation::AddSimplification(made.Result, output->GetFieldData());
@@ -272,7 +269,7 @@ elevation::ConstrainedTriangulation TriangulateSpread(
     {
       return;
     }
-    const Progress progress = ranks.Watched(SubProgress(options.Monitor, 1.0, 1.0));
+    const Progress progress = ranks.Watched(options.Monitor.Between(1.0, 1.0));
     vtkPolyData* const output = block.Outputs.front();
     elevation::SurfacePart part = parts.Take(parts.FirstOwn(), progress);
     counts.Added.resize(static_cast<std::size_t>(part.AddedPoints));

@@ -4,44 +4,44 @@
  * @class   vtkGridDelaunay2D
  * @brief   exact Delaunay triangulation of points in the x,y plane, grown over a grid
  *
- * x,y is the plane of projection, z the elevation. Lines become edges of the triangulation.
+ * x,y is the plane of projection, z the elevation. Lines may be added as edges.
  *
  * @par Inputs:
  * - 0: a vtkPointSet (float or double), whose cells are ignored.
- * - 1, optional (SetSourceConnection, SetSourceData): a vtkPolyData whose lines and polygon edges
- *   must be edges of the result: breaklines, faults, outlines. Nothing is cut out along polygons.
+ * - 1, optional (SetSourceConnection, SetSourceData): constraints, a vtkPolyData whose lines and
+ *   polygon edges become edges of the result: breaklines, faults, outlines. Nothing is cut out.
  *
  * @par Output:
- * A vtkPolyData with the same points in the same order (shared with the input, never written), all
- * point data and field data, and the triangles in Polys, counter-clockwise seen from +z. Points
- * that constraints add come behind those of the input. Field data:
- * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;
+ * A vtkPolyData with the input's points in the same order (shared, never written), all point data
+ * and field data, and the triangles in Polys, counter-clockwise seen from +z. Points that
+ * constraints add come after those of the input. Field data:
+ * - UnusedPointIds (vtkIdTypeArray): the points that are not vertices, in increasing order;
  * - UnusedPointReasons (vtkUnsignedCharArray): for each of them, 1 = duplicate (another point with
  *   the same x,y is the vertex), 2 = not finite (x, y or z), 3 = within MaximumElevationError,
- *   4 = hidden: marked as HIDDENPOINT in vtkGhostType, as VTK marks blanked nodes;
- * - NumberOfDuplicatePoints, NumberOfNonFinitePoints, NumberOfConstraintCrossings,
- *   NumberOfAddedPoints, with a MaximumElevationError NumberOfRedundantPoints (vtkIdTypeArray, one
- *   value) and LargestElevationError (vtkDoubleArray, one value);
- * - Lattice (vtkDoubleArray, one tuple of 6), only when one was found: the lowest occupied node
- *   x,y, the first step x,y, the second step x,y, counter-clockwise from it, in input units.
+ *   4 = hidden (HIDDENPOINT in vtkGhostType, as VTK marks blanked nodes);
+ * - NumberOfDuplicatePoints, NumberOfNonFinitePoints, NumberOfConstraintCrossings and
+ *   NumberOfAddedPoints (vtkIdTypeArray, one value); with a MaximumElevationError also
+ *   NumberOfRedundantPoints (vtkIdTypeArray) and LargestElevationError (vtkDoubleArray);
+ * - Lattice (vtkDoubleArray, one tuple of 6), if one was found: x,y of the lowest occupied node, of
+ *   the first step, and of the second step, counter-clockwise from the first; in input units.
  *
  * @par Guarantees:
  * Without constraints and with MaximumEdgeLength 0 the triangulation is
- * - Exact: no point lies inside the circle through the corners of a triangle, decided by exact
- *   arithmetic; the triangles cover the whole convex hull; every point that is finite and not a
- *   duplicate is a vertex. On a lattice (LatticeMode) this holds for its nodes.
+ * - Exact: no point lies inside the circumcircle of a triangle, as exact arithmetic decides; the
+ *   triangles cover the whole convex hull; every finite point that is not a duplicate is a vertex.
+ *   On a lattice (LatticeMode) this holds for its nodes.
  * - Unique: where four or more points lie on one empty circle, their polygon is cut into the fan of
- *   its lowest point (least y, then least x). The set of triangles depends on the positions of the
- *   points alone, not on their order, nor on the number of threads or ranks.
+ *   its lowest point (least y, then least x). The set of triangles depends only on the positions of
+ *   the points, not on their order or the number of threads or ranks.
  * - Complete: points that are not vertices are counted, and listed in the field data.
- *   Coordinates may be of any size a double holds.
+ *   Coordinates may have any size that a double holds.
  *
  * With constraints it is the constrained Delaunay triangulation, exact and unique in the same way.
  *
- * Errors leave empty output, fail the request (but in ParaView), set GetErrorCode() and name the
- * property, point or cell; an abort also leaves empty output,
- * which counts as up to date: call Modified() to start again. A composite input gives output of the
- * same structure, each block a surface of its own.
+ * An error leaves empty output, makes the request fail (except in ParaView), sets GetErrorCode(),
+ * and names the property, point or cell. An abort also leaves empty output, which counts as up to
+ * date: call Modified() to start again. A composite input gives output of the same structure; each
+ * block is a surface of its own.
  *
  * @par Example:
  * @code
@@ -57,8 +57,8 @@
  * Elevation Surface of 3D Point Clouds". SearchStrategy chooses between its two searches, voxel
  * traversal and the most compact triangle, which give the same triangles.
  *
- * Lattices, constraints, few points, all warnings and errors, and cost:
- * [Documentation/Filters.md](Documentation/Filters.md). Several ranks: Documentation/ManyRanks.md.
+ * [Documentation/Filters.md](Documentation/Filters.md) has more on lattices, constraints and few
+ * points, all warnings and errors, and cost; Documentation/ManyRanks.md explains several ranks.
  *
  * @sa vtkTrimOutwardTriangles vtkFillElevationHoles vtkDelaunay2D
  */
@@ -332,9 +332,9 @@ public:
    * which are "Words": NoTriangle, NoTriangleShown, PointsOnWall, FewTriangles, FewTrianglesAdvice,
    * InvalidEdgeLength, InvalidElevationError, InvalidLatticeTolerance, InvalidThreads,
    * InvalidPrecision, OriginalIdsReplaced, FoldsInSingle, TwoLimits, LatticeNotUsed, NoLines,
-   * StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, NonFinitePointOfLine, LinesElsewhere, LinesFarOutside,
-   * PolygonsAreLines, LinesNotDraped, LinesNotSettled, ArraysLeftOut, OnOneRank (with a reason:
-   * ErrorNeedsAll, DrapingNeedsAll), RankWaits, NotEnoughMemory, Stopped.
+   * StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, NonFinitePointOfLine, LinesElsewhere,
+   * LinesFarOutside, PolygonsAreLines, LinesNotDraped, LinesNotSettled, ArraysLeftOut, OnOneRank
+   * (with a reason: ErrorNeedsAll, DrapingNeedsAll), RankWaits, NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 

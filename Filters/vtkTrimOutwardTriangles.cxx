@@ -54,7 +54,6 @@ vtkCxxSetObjectMacro(vtkTrimOutwardTriangles, Controller, vtkMultiProcessControl
 namespace
 {
 using elevation::Index;
-using elevation::SubProgress;
 using elevation::Progress;
 using elevation::Report;
 using elevation::Trimmed;
@@ -80,7 +79,7 @@ void PassSides(vtkPolyData* input, elevation::DataSetTriangles& triangles,
 {
   const int threads = elevation::ResolveNumberOfThreads(options.NumberOfThreads);
   const bool arePieces = !trimmed.Inserted.empty();
-  elevation::PassPoints(input, trimmed, SubProgress(progress, 0.0, 0.25), kept);
+  elevation::PassPoints(input, trimmed, progress.Between(0.0, 0.25), kept);
   if (lines)
   {
     elevation::PassBoundary(*lines, trimmed.OnBoundary, options, kept);
@@ -92,9 +91,9 @@ void PassSides(vtkPolyData* input, elevation::DataSetTriangles& triangles,
   PassTriangles(input, triangles, trimmed.Kept, threads, kept);
   PassTriangles(input, triangles, trimmed.Outward, threads, outward);
   elevation::PassCellData(input, elevation::FirstPolygon(input), trimmed.Kept, arePieces,
-    SubProgress(progress, 0.4, 0.7), kept);
+    progress.Between(0.4, 0.7), kept);
   elevation::PassCellData(
-    input, 0, trimmed.Outward, arePieces, SubProgress(progress, 0.7, 1.0), outward);
+    input, 0, trimmed.Outward, arePieces, progress.Between(0.7, 1.0), outward);
   kept->GetFieldData()->PassData(input->GetFieldData());
   outward->GetFieldData()->PassData(input->GetFieldData());
 }
@@ -117,12 +116,12 @@ elevation::TrimCounts TrimBlock(elevation::TrimOptions options, elevation::Block
   elevation::BoundaryLines lines;
   if (isGiven)
   {
-    lines = elevation::ToLines(given, SubProgress(progress, 0.0, 0.02));
+    lines = elevation::ToLines(given, progress.Between(0.0, 0.02));
   }
   // Cell data take time to pass, all else is shared.
   options.ReturnParents = input->GetCellData()->GetNumberOfArrays() > 0;
   const double trimmedAt = options.ReturnParents ? 0.85 : 0.95;
-  options.Monitor = SubProgress(progress, 0.02, trimmedAt);
+  options.Monitor = progress.Between(0.02, trimmedAt);
   Trimmed trimmed = elevation::Trim(triangles.View, given ? &lines : nullptr, options);
   if (triangles.View.Count == 0 && elevation::NeedsWarning(input))
   {
@@ -134,10 +133,10 @@ elevation::TrimCounts TrimBlock(elevation::TrimOptions options, elevation::Block
   }
 
   PassSides(input, triangles, isGiven ? &lines : nullptr, options, trimmed,
-    SubProgress(progress, trimmedAt, 0.98), block.Outputs[0], block.Outputs[1]);
+    progress.Between(trimmedAt, 0.98), block.Outputs[0], block.Outputs[1]);
   block.Outputs[2]->GetPointData()->CopyAllOn();
   elevation::PassRings(
-    trimmed.Boundary, isGiven ? given : input, SubProgress(progress, 0.98, 1.0), block.Outputs[2]);
+    trimmed.Boundary, isGiven ? given : input, progress.Between(0.98, 1.0), block.Outputs[2]);
   const elevation::TrimCounts counts(trimmed);
   elevation::AddCounts(counts, block.Outputs);
   Report(progress, 1.0);
@@ -153,14 +152,14 @@ bool TrimSpread(const elevation::Ranks& ranks, elevation::TrimOptions options,
   elevation::Block& block, elevation::TrimCounts& counts)
 {
   const auto isFit = [](vtkPolyData*) { return true; };
-  options.Monitor = SubProgress(block.Progress, 0.0, 0.88);
+  options.Monitor = block.Progress.Between(0.0, 0.88);
   return elevation::WorkOnParts(block, ranks, isFit, [&](const elevation::SurfaceParts& surface) {
     elevation::TrimParts parts(surface, 0, block.Second, options);
     if (!parts.Trim())
     {
       return false;
     }
-    const Progress writing = SubProgress(block.Progress, 0.88, 1.0);
+    const Progress writing = block.Progress.Between(0.88, 1.0);
     surface.Crew.ForEach(writing, [&](int part, const Progress& progress) {
       parts.Write(part, progress, block.Outputs[0], block.Outputs[1]);
       block.Outputs[2]->ShallowCopy(parts.Boundary());
@@ -170,7 +169,7 @@ bool TrimSpread(const elevation::Ranks& ranks, elevation::TrimOptions options,
       }
       elevation::AddCounts(parts.GetRankCounts(), block.Outputs);
       elevation::AddTuple(block.Outputs[0]->GetFieldData(), "WorkOfTrim",
-        { { "Triangles", parts.CountOfOwn() }, { "NearTriangles", parts.CountOfNear() },
+        { { "Triangles", parts.OwnCount() }, { "NearTriangles", parts.NearCount() },
           { "BytesSent", ranks.GetTraffic().BytesSent },
           { "Exchanges", ranks.GetTraffic().Rounds } });
       Report(progress, 1.0);

@@ -5,43 +5,42 @@
  * @brief   splits a triangulation into the triangles inside and outside the boundary of the surface
  *
  * A Delaunay triangulation covers the convex hull of its points; a surface seldom does. This filter
- * takes away the triangles outside its boundary. x,y is the plane of projection, z the elevation.
+ * removes the triangles outside its boundary. x,y is the plane of projection, z the elevation.
  *
  * @par Inputs:
  * - 0: a vtkPolyData of triangles that covers no place of the x,y plane twice.
  * - 1, optional (SetBoundaryConnection, SetBoundaryData): the boundary, a vtkPolyData of closed
- *   lines, of lines that join each other to closed rings, and of polygons. A place is inside when
- *   an odd number of rings goes around it, so rings may nest (a lake, an island in it). They may
- *   touch, but not cross. The boundary may be drawn anywhere, and its z plays no part.
+ *   lines, lines that join to closed rings, and polygons. A place is inside if an odd number of
+ *   rings goes around it, so rings may nest (a lake, an island in it). They may touch, but not
+ *   cross. The boundary may be drawn anywhere; see BoundaryEdges for the use of its z.
  *
- * Without input 1 the boundary is extracted: a triangle is surface when its longest edge is at most
+ * Without input 1 the boundary is extracted: a triangle is surface if its longest edge is at most
  * GapTolerance times the spacing of the points there.
  *
  * @par Outputs:
- * - 0: the triangles inside. Vertices and lines of the input come first. Cells that are marked as
- *   hidden (vtkGhostType), or have a point that is, are none, and count in no message.
- * - 1: the triangles outside. With a given boundary, both have a point array OnBoundary
- *   (vtkUnsignedCharArray): 1 for points on its edges, else 0. By it vtkFillElevationHoles leaves
- *   open what the boundary has cut out.
- * - 2: the boundary used: one closed line (its last point is its first) for each ring.
+ * - 0: the triangles inside, after the vertices and lines of the input. Cells that are hidden
+ *   (vtkGhostType), or have a hidden point, do not count as cells, not even in messages.
+ * - 1: the triangles outside. With a given boundary, outputs 0 and 1 have a point array OnBoundary
+ *   (vtkUnsignedCharArray): 1 for points on its edges, otherwise 0. vtkFillElevationHoles uses it
+ *   to leave open what the boundary has cut out.
+ * - 2: the boundary used, one closed line (its last point is its first) for each ring.
  *
- * Outputs 0 and 1 share the input's points and pass its point data; their triangles are
- * counter-clockwise seen from +z and keep their cell data and order. Where points are inserted,
- * they come after the input's. Field data of all outputs: NumberOfOutwardTriangles,
- * NumberOfRecoveredEdges, NumberOfPointsLeftOut, NumberOfInsertedPoints (vtkIdTypeArray, one
- * value), EffectiveGapTolerance (vtkDoubleArray, one value).
+ * Outputs 0 and 1 share the input's points and pass its point data; inserted points come after the
+ * input's. Their triangles are counter-clockwise seen from +z and keep their cell data and order.
+ * Field data of all outputs: NumberOfOutwardTriangles, NumberOfRecoveredEdges,
+ * NumberOfPointsLeftOut, NumberOfInsertedPoints (vtkIdTypeArray, one value),
+ * EffectiveGapTolerance (vtkDoubleArray, one value).
  *
  * @par Guarantees:
- * All decisions of OutwardTest EXACT are exact. The triangles of output 0 cover exactly what is
- * inside the boundary and covered by the mesh (apart from the rounding of crossings); interior
- * holes of the mesh stay. Outputs 0 and 1 together are the triangles of the input, with boundary
- * edges recovered. The result does not depend on the number of threads or ranks. Nothing is written
- * to the inputs.
+ * All decisions of OutwardTest EXACT are exact. The triangles of output 0 cover exactly the part of
+ * the mesh inside the boundary (apart from the rounding of crossings); interior holes of the mesh
+ * stay. Outputs 0 and 1 together are the triangles of the input, with boundary edges recovered. The
+ * result does not depend on the number of threads or ranks. The inputs are never written.
  *
- * Errors leave empty outputs, fail the request (but in ParaView), set GetErrorCode() and name the
- * property, cell, point or edge; an abort also leaves empty output,
- * which counts as up to date: call Modified() to start again. A composite input gives outputs of
- * the same structure, each block trimmed on its own, along the same boundary.
+ * An error leaves empty outputs, makes the request fail (except in ParaView), sets GetErrorCode()
+ * and names the property, cell, point or edge. An abort also leaves empty outputs, which count as
+ * up to date: call Modified() to start again. A composite input gives outputs of the same
+ * structure; each block is trimmed on its own, along the same boundary.
  *
  * @par Example:
  * @code
@@ -52,11 +51,12 @@
  * @endcode
  *
  * @par As published:
- * The removal of outward triangles of Nguyen, "A Complete Method for Reconstructing an Elevation
- * Surface of 3D Point Clouds"; its test is OutwardTest INWARD_NORMAL.
+ * The method is the removal of outward triangles of Nguyen, "A Complete Method for Reconstructing
+ * an Elevation Surface of 3D Point Clouds"; its test is OutwardTest INWARD_NORMAL.
  *
- * How the boundary becomes edges and how it is extracted, all warnings and errors, and cost:
- * [Documentation/Filters.md](Documentation/Filters.md). Several ranks: Documentation/ManyRanks.md.
+ * [Documentation/Filters.md](Documentation/Filters.md) explains how the boundary becomes edges and
+ * how it is extracted, and has all warnings and errors, and cost; Documentation/ManyRanks.md
+ * explains several ranks.
  *
  * @sa vtkGridDelaunay2D vtkFillElevationHoles
  */
@@ -288,10 +288,11 @@ public:
    * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent,
    * whose text has the same for people, are invoked. Codes, besides those of data that are invalid,
    * which are "Words": NothingToTrim, InvalidThreads, InvalidPrecision, FoldsInSingle,
-   * OriginalIdsReplaced, InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut, BoundaryLeavesOutAll, RingsRepeated,
-   * BoundaryEnclosesNothing (reasons: NothingInRing, NothingBetweenRings, BoundaryElsewhere),
-   * StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, ArraysLeftOut, OnOneRank (with a
-   * reason: NormalsNeedAll, PartsDoNotFit), RankWaits, NotEnoughMemory, Stopped.
+   * OriginalIdsReplaced, InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut,
+   * BoundaryLeavesOutAll, RingsRepeated, BoundaryEnclosesNothing (reasons: NothingInRing,
+   * NothingBetweenRings, BoundaryElsewhere), StripsInLines, TooManyPointsInLines,
+   * NoSuchPointOfLine, ArraysLeftOut, OnOneRank (with a reason: NormalsNeedAll, PartsDoNotFit),
+   * RankWaits, NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 

@@ -237,7 +237,7 @@ class Pieces:
             points = total(self.ranks, source.GetNumberOfPoints())
             count = options.pieces or pieces_within(options.memory, points, options.fill, ranks)
             if options.memory is not None:
-                source.SetMemoryOfHole(options.memory - BYTES_BESIDES)
+                source.SetHoleMemory(options.memory - BYTES_BESIDES)
             own = range(rank * count // ranks, (rank + 1) * count // ranks)
             run.timed("triangulate", STEPS["delaunay"], lambda: self.begin(own[0], count))
             run.timed("write", "writing", lambda: self.write(own, count))

@@ -7,9 +7,12 @@
 #ifndef Adapt_h
 #define Adapt_h
 
+#include "ArrayChecks.h"
 #include "Blocks.h"
 #include "Constraints.h"
+#include "DataArrays.h"
 #include "DelaunayReport.h"
+#include "HiddenCells.h"
 #include "LimitAdvice.h"
 #include "MeshConversion.h"
 #include "PatchedSurface.h"

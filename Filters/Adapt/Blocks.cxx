@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Blocks.h"
 
+#include "ArrayChecks.h"
+#include "HiddenCells.h"
 #include "Kernel/Base/Base.h"
 #include "MeshConversion.h"
 
@@ -97,7 +99,7 @@ void SetChild(vtkDataObjectTree* tree, unsigned int i, vtkDataObject* child)
 }
 
 /** ' ("name")', or nothing. */
-std::string NameOfChild(vtkDataObjectTree* tree, unsigned int i)
+std::string ChildName(vtkDataObjectTree* tree, unsigned int i)
 {
   const auto nameIn = [i](auto* parent) -> std::string {
     const char* const name = parent && parent->HasMetaData(i)
@@ -126,12 +128,12 @@ void AddPlaces(vtkDataObjectTree* input, const std::vector<vtkDataObjectTree*>& 
     {
       continue;
     }
-    const std::string pathOfChild = (path.empty() ? "" : path + ".") + std::to_string(i);
-    std::string nameOfChild = "Block " + pathOfChild + NameOfChild(input, i);
+    const std::string childPath = (path.empty() ? "" : path + ".") + std::to_string(i);
+    std::string childName = "Block " + childPath + ChildName(input, i);
     if (arePartitions)
     {
-      const std::string which = "artition " + std::to_string(i) + NameOfChild(input, i);
-      nameOfChild = name.empty() ? "P" + which : count == 1 ? name : name + ", p" + which;
+      const std::string which = "artition " + std::to_string(i) + ChildName(input, i);
+      childName = name.empty() ? "P" + which : count == 1 ? name : name + ", p" + which;
     }
     if (auto* const tree = vtkDataObjectTree::SafeDownCast(child))
     {
@@ -140,11 +142,11 @@ void AddPlaces(vtkDataObjectTree* input, const std::vector<vtkDataObjectTree*>& 
       {
         ofChild.push_back(vtkDataObjectTree::SafeDownCast(Child(output, i)));
       }
-      AddPlaces(tree, ofChild, nameOfChild, pathOfChild, places);
+      AddPlaces(tree, ofChild, childName, childPath, places);
       continue;
     }
-    Place place{ child, {}, nameOfChild, arePartitions ? path : pathOfChild,
-      arePartitions ? name : nameOfChild };
+    Place place{ child, {}, childName, arePartitions ? path : childPath,
+      arePartitions ? name : childName };
     for (vtkDataObjectTree* output : outputs)
     {
       const auto data = vtkSmartPointer<vtkPolyData>::New();

@@ -30,7 +30,7 @@ struct Place
    * is a surface of its own; on several, they are the parts of one.
    */
   std::string Path;
-  std::string NameOfBlock; ///< without the partition; empty for the whole input
+  std::string BlockName; ///< without the partition; empty for the whole input
   vtkSmartPointer<vtkDataObject> Made = nullptr; ///< what Input points to, if it was made here
   bool IsDone = false;                          ///< has its outputs
   Message Warning = Message();                  ///< on how its input has come here, if any

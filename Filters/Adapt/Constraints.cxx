@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Constraints.h"
 
+#include "DataArrays.h"
+
 #include "vtkAbstractArray.h"
 #include "vtkDataArray.h"
 #include "vtkPointData.h"
@@ -118,13 +120,12 @@ void PassPoints(vtkPointSet* input, vtkPolyData* source, const std::vector<Added
 {
   const vtkIdType count = static_cast<vtkIdType>(added.size());
   output->SetPoints(AppendPoints(
-    input->GetPoints(), count, SubProgress(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
+    input->GetPoints(), count, progress.Between(0.0, 0.4), [&](vtkIdType i, double* xyz) {
       xyz[0] = added[i].Position.X;
       xyz[1] = added[i].Position.Y;
       xyz[2] = added[i].Elevation;
     }));
-  PassExtended(input->GetPointData(), count, output->GetPointData(),
-    SubProgress(progress, 0.4, 1.0),
+  PassExtended(input->GetPointData(), count, output->GetPointData(), progress.Between(0.4, 1.0),
     [&](vtkAbstractArray* before, vtkAbstractArray* after, const Progress& ofArray) {
       NewValues values;
       values.First = CopyGiven(FindGiven(source->GetPointData(), before), added, ofArray, after);

@@ -19,11 +19,11 @@ namespace elevation
 
 void CheckOptions(const DelaunayOptions& options)
 {
-  constexpr double mostOfStep = 0.25;
+  constexpr double mostPerStep = 0.25;
   CheckThreads(options.NumberOfThreads);
-  if (!(options.LatticeTolerance >= 0.0 && options.LatticeTolerance <= mostOfStep))
+  if (!(options.LatticeTolerance >= 0.0 && options.LatticeTolerance <= mostPerStep))
   {
-    throw MakeError<sentences::InvalidLatticeTolerance>(options.LatticeTolerance, mostOfStep);
+    throw MakeError<sentences::InvalidLatticeTolerance>(options.LatticeTolerance, mostPerStep);
   }
   if (!(options.MaximumEdgeLength >= 0.0))
   {

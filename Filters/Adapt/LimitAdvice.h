@@ -36,10 +36,10 @@ struct LimitEffect
 };
 
 /** The quantiles that ForMost and Median are. */
-constexpr double PartOfMost = 0.95, HalfOfAll = 0.5;
+constexpr double MostShare = 0.95, MedianShare = 0.5;
 
 /** The place of a quantile among some sorted values. */
-inline vtkIdType PlaceOfQuantile(double part, vtkIdType count)
+inline vtkIdType QuantilePlace(double part, vtkIdType count)
 {
   return static_cast<vtkIdType>(part * static_cast<double>(count - 1));
 }

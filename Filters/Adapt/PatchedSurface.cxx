@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PatchedSurface.h"
 
+#include "DataArrays.h"
 #include "MeshConversion.h"
 #include "Requests.h"
 #include "TrimmedSurface.h"
@@ -96,13 +97,12 @@ void PassPoints(vtkPolyData* input, const FillResult& patches, bool interpolate,
   const Progress& progress, vtkPolyData* output)
 {
   output->SetPoints(
-    AppendPoints(input->GetPoints(), patches.NumberOfPoints(), SubProgress(progress, 0.0, 0.3),
+    AppendPoints(input->GetPoints(), patches.NumberOfPoints(), progress.Between(0.0, 0.3),
       [&](vtkIdType i, double* xyz) { std::copy_n(patches.Points.data() + 3 * i, 3, xyz); }));
   vtkPointData* pointData = input->GetPointData();
   std::size_t next = 0; // of the attributes, which are in the order of the arrays
   PassExtended(pointData, patches.NumberOfPoints(), output->GetPointData(),
-    SubProgress(progress, 0.3, 1.0),
-    [&](vtkAbstractArray* array, vtkAbstractArray*, const Progress&) {
+    progress.Between(0.3, 1.0), [&](vtkAbstractArray* array, vtkAbstractArray*, const Progress&) {
       NewValues values;
       if (!interpolate || IsIdArray(pointData, array) || array == BoundaryMarksOf(pointData))
       {
@@ -158,11 +158,11 @@ void PassCells(vtkPolyData* input, const Mesh& mesh, const std::vector<Index>& k
       return cell < first ? cell : first + kept[cell - first];
     };
     CopyTuples(cellData, first + static_cast<vtkIdType>(kept.size()), sourceOf,
-      SubProgress(progress, 0.0, 0.5), ofKept);
+      progress.Between(0.0, 0.5), ofKept);
     cellData = ofKept;
   }
   PassExtended(cellData, patches.NumberOfTriangles(), output->GetCellData(),
-    SubProgress(progress, 0.5, 1.0), nullptr);
+    progress.Between(0.5, 1.0), nullptr);
 }
 } // namespace
 
@@ -204,8 +204,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
 {
   Report(progress, 0.0);
   const bool isExtended = patches.NumberOfPoints() > 0;
-  PassPoints(
-    input, patches, interpolate, SubProgress(progress, 0.0, isExtended ? 0.6 : 0.0), output);
+  PassPoints(input, patches, interpolate, progress.Between(0.0, isExtended ? 0.6 : 0.0), output);
   Report(progress, isExtended ? 0.6 : 0.15);
   const vtkIdType before = input->GetNumberOfPoints();
   vtkNew<vtkUnsignedCharArray> isNew;
@@ -229,7 +228,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
 
   Report(progress, isExtended ? 0.64 : 0.5);
   const std::vector<Index> kept = ListKept(mesh, patches);
-  PassCells(input, mesh, kept, patches, SubProgress(progress, 0.7, 0.9), output);
+  PassCells(input, mesh, kept, patches, progress.Between(0.7, 0.9), output);
   Report(progress, 0.9);
   vtkNew<vtkIdTypeArray> holeIds;
   holeIds->SetName(HoleIdName);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PointsPrecision.h"
 
+#include "DataArrays.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Messages/Messages.h"
 #include "MeshConversion.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TrimmedSurface.h"
 
+#include "DataArrays.h"
 #include "MeshConversion.h"
 #include "Requests.h"
 
@@ -71,14 +72,14 @@ vtkIdType SplitSurface(
   TrimOptions options;
   options.ReturnParents = false;
   options.NumberOfThreads = threads;
-  options.Monitor = SubProgress(progress, 0.05, 0.9);
+  options.Monitor = progress.Between(0.05, 0.9);
   Trimmed split = SplitAlong(
-    triangles.View, ToLines(constraints, SubProgress(progress, 0.0, 0.05), "constraints"), options);
+    triangles.View, ToLines(constraints, progress.Between(0.0, 0.05), "constraints"), options);
   if (!split.Kept.IsWholeList)
   {
     surface->SetPolys(ToCellArray(std::move(split.Kept.Corners), ResolveNumberOfThreads(threads)));
     surface->GetPointData()->Initialize();
-    PassPoints(before, split, SubProgress(progress, 0.9, 1.0), surface);
+    PassPoints(before, split, progress.Between(0.9, 1.0), surface);
   }
   return static_cast<vtkIdType>(split.Inserted.size());
 }
@@ -89,7 +90,7 @@ void PassPoints(
   const std::vector<InsertedVertex>& inserted = trimmed.Inserted;
   const vtkIdType count = static_cast<vtkIdType>(inserted.size());
   output->SetPoints(AppendPoints(
-    input->GetPoints(), count, SubProgress(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
+    input->GetPoints(), count, progress.Between(0.0, 0.4), [&](vtkIdType i, double* xyz) {
       xyz[0] = trimmed.Places[i].X;
       xyz[1] = trimmed.Places[i].Y;
       xyz[2] = 0.0;
@@ -98,8 +99,7 @@ void PassPoints(
         xyz[2] += inserted[i].Weights[k] * input->GetPoint(inserted[i].Corners[k])[2];
       }
     }));
-  PassExtended(input->GetPointData(), count, output->GetPointData(),
-    SubProgress(progress, 0.4, 1.0),
+  PassExtended(input->GetPointData(), count, output->GetPointData(), progress.Between(0.4, 1.0),
     [&](vtkAbstractArray* array, vtkAbstractArray*, const Progress&) {
       NewValues values;
       values.Interpolated = [&inserted, numbers = vtkArrayDownCast<vtkDataArray>(array)](
@@ -173,7 +173,7 @@ void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBounda
 {
   const vtkIdType count = output->GetNumberOfPoints();
   vtkNew<vtkUnsignedCharArray> marks;
-  marks->SetName(NameOfBoundaryMarks);
+  marks->SetName(BoundaryMarksName);
   SetTuples(count, marks);
   marks->FillValue(0);
   vtkPointData* const data = output->GetPointData();
@@ -213,8 +213,7 @@ void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBounda
 
 vtkUnsignedCharArray* BoundaryMarksOf(vtkPointData* data)
 {
-  auto* const marks =
-    vtkUnsignedCharArray::SafeDownCast(data->GetAbstractArray(NameOfBoundaryMarks));
+  auto* const marks = vtkUnsignedCharArray::SafeDownCast(data->GetAbstractArray(BoundaryMarksName));
   return marks && marks->GetNumberOfComponents() == 1 ? marks : nullptr;
 }
 

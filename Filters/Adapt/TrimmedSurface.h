@@ -45,7 +45,7 @@ void PassPoints(
   vtkPolyData* input, const Trimmed& trimmed, const Progress& progress, vtkPolyData* output);
 
 /** The point array that marks points on the edges of a boundary that was given. */
-constexpr const char* NameOfBoundaryMarks = "OnBoundary";
+constexpr const char* BoundaryMarksName = "OnBoundary";
 /** These marks, or nullptr. */
 vtkUnsignedCharArray* BoundaryMarksOf(vtkPointData* data);
 

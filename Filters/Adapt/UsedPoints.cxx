@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "UsedPoints.h"
 
+#include "DataArrays.h"
 #include "MeshConversion.h"
 
 #include "vtkCellArray.h"
@@ -23,11 +24,11 @@ namespace elevation
 
 namespace
 {
-constexpr const char* NameOfOriginalIds = "OriginalPointIds";
+constexpr const char* OriginalIdsName = "OriginalPointIds";
 
 vtkAbstractArray* OriginalIdsOf(vtkPointSet* data)
 {
-  vtkAbstractArray* const ids = data->GetPointData()->GetAbstractArray(NameOfOriginalIds);
+  vtkAbstractArray* const ids = data->GetPointData()->GetAbstractArray(OriginalIdsName);
   return ids && IsOriginalIds(ids) ? ids : nullptr;
 }
 
@@ -61,7 +62,7 @@ vtkSmartPointer<vtkCellArray> Renumbered(vtkCellArray* cells, const std::vector<
 bool IsOriginalIds(vtkAbstractArray* array)
 {
   constexpr int types[] = { VTK_ID_TYPE, VTK_LONG_LONG, VTK_LONG, VTK_INT, VTK_SHORT };
-  return array->GetName() && !std::strcmp(array->GetName(), NameOfOriginalIds) &&
+  return array->GetName() && !std::strcmp(array->GetName(), OriginalIdsName) &&
     array->GetNumberOfComponents() == 1 &&
     std::find(std::begin(types), std::end(types), array->GetDataType()) != std::end(types);
 }
@@ -76,7 +77,7 @@ vtkSmartPointer<vtkPointSet> WithOriginalIds(
   auto numbered = vtk::TakeSmartPointer(input->NewInstance());
   numbered->ShallowCopy(input);
   vtkDataArray* source = vtkDataArray::SafeDownCast(OriginalIdsOf(input));
-  if (!source && input->GetPointData()->HasArray(NameOfOriginalIds))
+  if (!source && input->GetPointData()->HasArray(OriginalIdsName))
   {
     warnings.push_back(MakeMessage<sentences::OriginalIdsReplaced>());
   }
@@ -91,7 +92,7 @@ vtkSmartPointer<vtkPointSet> WithOriginalIds(
     SetTuples(input->GetNumberOfPoints(), ids);
     std::iota(ids->GetPointer(0), ids->GetPointer(0) + ids->GetNumberOfTuples(), first);
   }
-  ids->SetName(NameOfOriginalIds);
+  ids->SetName(OriginalIdsName);
   numbered->GetPointData()->AddArray(ids);
   return numbered;
 }

@@ -64,10 +64,9 @@ TrimmedZone::TrimmedZone(const Bytes& bytes)
 void BoundaryZone::JoinAll(const Progress& progress)
 {
   std::vector<Message> warnings; // none: all have the same arrays
-  this->Common = std::make_unique<CommonPoints>(
-    this->GivenParts, PartKind::Mesh, SubProgress(progress, 0.0, 0.3));
-  this->JoinedParts =
-    Join(this->GivenParts, PartKind::Mesh, SubProgress(progress, 0.3, 1.0), warnings);
+  this->Common =
+    std::make_unique<CommonPoints>(this->GivenParts, PartKind::Mesh, progress.Between(0.0, 0.3));
+  this->JoinedParts = Join(this->GivenParts, PartKind::Mesh, progress.Between(0.3, 1.0), warnings);
   this->FirstTriangles = { 0 };
   for (const auto& part : this->GivenParts)
   {
@@ -79,15 +78,15 @@ void BoundaryZone::JoinAll(const Progress& progress)
 
 bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& options)
 {
-  this->JoinAll(SubProgress(options.Monitor, 0.0, 0.3));
+  this->JoinAll(options.Monitor.Between(0.0, 0.3));
   const TriangleList& list = this->Triangles.View;
-  if (!this->IsProven(list, boundary, SubProgress(options.Monitor, 0.3, 0.4)))
+  if (!this->IsProven(list, boundary, options.Monitor.Between(0.3, 0.4)))
   {
     return false;
   }
   TrimOptions ofNear = options;
   ofNear.ReturnParents = true;
-  ofNear.Monitor = SubProgress(options.Monitor, 0.4, 0.9);
+  ofNear.Monitor = options.Monitor.Between(0.4, 0.9);
   if (vtkDataArray* const ids = this->JoinedParts->GetPointData()->GetGlobalIds())
   {
     const Index count = list.Points.Count;
@@ -101,27 +100,27 @@ bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& option
     };
   }
   this->Sides = TrimNear(list, boundary, this->Border, ofNear);
-  PassPoints(this->JoinedParts, this->Sides, SubProgress(options.Monitor, 0.9, 1.0), this->Points);
+  PassPoints(this->JoinedParts, this->Sides, options.Monitor.Between(0.9, 1.0), this->Points);
   return true;
 }
 
 namespace
 {
-constexpr const char* NameOfStates = "States";
-constexpr const char* NameOfSpacings = "Spacings";
+constexpr const char* StatesName = "States";
+constexpr const char* SpacingsName = "Spacings";
 } // namespace
 
 void BoundaryZone::AddKnown(
   const std::vector<Known>& states, const std::vector<double>& spacings, vtkPolyData* part)
 {
   vtkNew<vtkUnsignedCharArray> ofTriangles;
-  ofTriangles->SetName(NameOfStates);
+  ofTriangles->SetName(StatesName);
   SetTuples(static_cast<vtkIdType>(states.size()), ofTriangles);
   std::transform(states.begin(), states.end(), ofTriangles->GetPointer(0),
     [](Known state) { return static_cast<unsigned char>(state); });
   part->GetFieldData()->AddArray(ofTriangles);
   vtkNew<vtkDoubleArray> ofPoints;
-  ofPoints->SetName(NameOfSpacings);
+  ofPoints->SetName(SpacingsName);
   SetTuples(static_cast<vtkIdType>(spacings.size()), ofPoints);
   std::copy(spacings.begin(), spacings.end(), ofPoints->GetPointer(0));
   part->GetFieldData()->AddArray(ofPoints);
@@ -131,19 +130,19 @@ bool BoundaryZone::TrimOutline(
   std::int64_t innerPoints, std::int64_t triangles, const TrimOptions& options)
 {
   this->IsOutline = true;
-  this->JoinAll(SubProgress(options.Monitor, 0.0, 0.3));
+  this->JoinAll(options.Monitor.Between(0.0, 0.3));
   const TriangleList& list = this->Triangles.View;
   std::vector<Known> states;
   std::vector<double> spacings(list.Points.Count, std::numeric_limits<double>::quiet_NaN());
   for (std::size_t part = 0; part < this->GivenParts.size(); ++part)
   {
     vtkFieldData* const known = this->GivenParts[part]->GetFieldData();
-    vtkDataArray* const ofTriangles = known->GetArray(NameOfStates);
+    vtkDataArray* const ofTriangles = known->GetArray(StatesName);
     for (vtkIdType i = 0; ofTriangles && i < ofTriangles->GetNumberOfTuples(); ++i)
     {
       states.push_back(static_cast<Known>(static_cast<int>(ofTriangles->GetComponent(i, 0))));
     }
-    vtkDataArray* const ofPoints = known->GetArray(NameOfSpacings);
+    vtkDataArray* const ofPoints = known->GetArray(SpacingsName);
     for (vtkIdType i = 0; ofPoints && i < ofPoints->GetNumberOfTuples(); ++i)
     {
       const double spacing = ofPoints->GetComponent(i, 0);
@@ -152,26 +151,25 @@ bool BoundaryZone::TrimOutline(
     }
   }
   std::optional<std::vector<BorderEdge>> border =
-    this->ProvenBorder(list.Points, SubProgress(options.Monitor, 0.3, 0.4));
+    this->ProvenBorder(list.Points, options.Monitor.Between(0.3, 0.4));
   if (!border || !this->AreSamePlaces())
   {
     return false;
   }
   IdSet atBorders(list.Points.Count);
-  for (const BorderEdge& edge : this->BordersOfParts())
+  for (const BorderEdge& edge : this->PartBorders())
   {
     atBorders.Add(edge.Origin);
   }
   TrimOptions ofParts = options;
   ofParts.ReturnParents = true;
-  ofParts.Monitor = SubProgress(options.Monitor, 0.4, 0.95);
+  ofParts.Monitor = options.Monitor.Between(0.4, 0.95);
   std::optional<Trimmed> trimmed = TrimNearOutline(list,
     { states, spacings, std::move(*border), innerPoints + atBorders.Count(), triangles }, ofParts);
   if (trimmed)
   {
     this->Sides = std::move(*trimmed);
-    PassPoints(
-      this->JoinedParts, this->Sides, SubProgress(options.Monitor, 0.95, 1.0), this->Points);
+    PassPoints(this->JoinedParts, this->Sides, options.Monitor.Between(0.95, 1.0), this->Points);
   }
   return trimmed.has_value();
 }
@@ -181,13 +179,13 @@ bool BoundaryZone::IsProven(
 {
   // Joined points may have other places than the points had.
   if (!this->AreSamePlaces() ||
-    !SweepAlongRings(list, boundary.Points.Places, JoinLines(boundary), list.Count, 1,
-      SubProgress(progress, 0.0, 0.5)))
+    !SweepAlongRings(
+      list, boundary.Points.Places, JoinLines(boundary), list.Count, 1, progress.Between(0.0, 0.5)))
   {
     return false;
   }
   std::optional<std::vector<BorderEdge>> border =
-    this->ProvenBorder(list.Points, SubProgress(progress, 0.5, 1.0));
+    this->ProvenBorder(list.Points, progress.Between(0.5, 1.0));
   this->Border = border ? std::move(*border) : std::vector<BorderEdge>();
   return border.has_value();
 }
@@ -213,7 +211,7 @@ bool BoundaryZone::AreSamePlaces() const
   return true;
 }
 
-std::vector<BorderEdge> BoundaryZone::BordersOfParts() const
+std::vector<BorderEdge> BoundaryZone::PartBorders() const
 {
   std::vector<BorderEdge> all;
   auto each = vtk::TakeSmartPointer(this->JoinedParts->GetLines()->NewIterator());
@@ -234,8 +232,8 @@ std::vector<BorderEdge> BoundaryZone::BordersOfParts() const
 std::optional<std::vector<BorderEdge>> BoundaryZone::ProvenBorder(
   const PointView& points, const Progress& progress) const
 {
-  std::vector<BorderEdge> all = this->BordersOfParts(), border;
-  Sort(all.begin(), all.end(), std::less<BorderEdge>(), SubProgress(progress, 0.0, 0.4));
+  std::vector<BorderEdge> all = this->PartBorders(), border;
+  Sort(all.begin(), all.end(), std::less<BorderEdge>(), progress.Between(0.0, 0.4));
   for (std::size_t i = 0; i < all.size(); ++i)
   {
     ReportStep(progress, i, 2 * all.size());
@@ -249,7 +247,7 @@ std::optional<std::vector<BorderEdge>> BoundaryZone::ProvenBorder(
       border.push_back(all[i]);
     }
   }
-  return CoversOnce(border, points, SubProgress(progress, 0.6, 1.0))
+  return CoversOnce(border, points, progress.Between(0.6, 1.0))
     ? std::make_optional(std::move(border))
     : std::nullopt;
 }

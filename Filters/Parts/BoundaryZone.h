@@ -90,7 +90,7 @@ private:
   bool AreSamePlaces() const;
   std::optional<std::vector<BorderEdge>> ProvenBorder(
     const PointView& points, const Progress& progress) const;
-  std::vector<BorderEdge> BordersOfParts() const;
+  std::vector<BorderEdge> PartBorders() const;
   std::vector<Index> FindOwners(std::vector<TrimmedZone>& splits) const;
   void PlaceCorners(std::size_t part, std::vector<Index>& places, std::vector<char>& areOwned,
     TrimmedZone& split) const;

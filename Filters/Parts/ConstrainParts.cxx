@@ -51,10 +51,7 @@ public:
   SharedLines Result() const;
 
 private:
-  Progress Fraction(double begin, double end) const
-  {
-    return SubProgress(this->Monitor, begin, end);
-  }
+  Progress Fraction(double begin, double end) const { return this->Monitor.Between(begin, end); }
   void PassNear(vtkPolyData* points) const;
 
   PartStore& Store;
@@ -85,7 +82,7 @@ void AddedLines::ListNear(std::vector<Message>& warnings)
 {
   Box box;
   this->Store.Crew.ForEach(this->Fraction(0.0, 0.5), [&](int part, const Progress& ofPart) {
-    const Progress reading = SubProgress(ofPart, 0.0, 0.5);
+    const Progress reading = ofPart.Between(0.0, 0.5);
     this->Store.WithOwn(part, reading, [&](const SurfacePart& own) {
       const PointTable& rows = own.OwnPoints;
       for (std::size_t i = 0; i < rows.Count(); ++i)
@@ -97,7 +94,7 @@ void AddedLines::ListNear(std::vector<Message>& warnings)
         this->LargestId = std::max(this->LargestId, rows.Ids[i]);
       }
       const std::vector<Index> near =
-        ListNearLines(ViewOf(rows).View, this->Lines, SubProgress(ofPart, 0.5, 1.0));
+        ListNearLines(ViewOf(rows).View, this->Lines, ofPart.Between(0.5, 1.0));
       const Bytes packed = rows.Pack(std::vector<vtkIdType>(near.begin(), near.end()));
       this->Near.Unpack(&packed, 1);
       std::transform(
@@ -158,7 +155,7 @@ void AddedLines::PassNear(vtkPolyData* output) const
 {
   const SurfacePart& common = this->Store.Part;
   vtkNew<vtkPoints> points;
-  points->SetDataType(common.TypeOfPoints);
+  points->SetDataType(common.PointType);
   points->SetNumberOfPoints(static_cast<vtkIdType>(this->Near.Count()));
   for (std::size_t i = 0; i < this->Near.Count(); ++i)
   {
@@ -190,7 +187,7 @@ void AddedLines::AddPoints()
     rows.Read(extended, this->LargestId + 1 - ofNear, watched);
     std::vector<vtkIdType> counts;
     std::map<int, std::vector<vtkIdType>> added; // rows, for each part
-    for (int part = 0; part < crew.CountOfParts(); ++part)
+    for (int part = 0; part < crew.PartCount(); ++part)
     {
       counts.push_back(this->Store.EndOf(part) - this->Store.FirstOf(part));
     }
@@ -280,8 +277,8 @@ std::vector<std::size_t> ListMissing(
   });
   store.Crew.ForEach(progress, [&](int part, const Progress& ofPart) {
     Box& extent = extents[part];
-    store.WithWhole(part, SubProgress(ofPart, 0.0, 0.5), [&](const SurfacePart& whole) {
-      ForEachTriangle(whole, store.FirstOf(part), SubProgress(ofPart, 0.5, 1.0),
+    store.WithWhole(part, ofPart.Between(0.0, 0.5), [&](const SurfacePart& whole) {
+      ForEachTriangle(whole, store.FirstOf(part), ofPart.Between(0.5, 1.0),
         [&](std::size_t, const Index* corners, const GlobalTriangle& triangle) {
           for (int k = 0; k < 3; ++k)
           {
@@ -316,11 +313,11 @@ void SendMeeting(
   PartStore& store, int part, const std::vector<Ends>& pieces, const Progress& progress)
 {
   const CellGrid grid = GridOf(pieces);
-  store.WithWhole(part, SubProgress(progress, 0.0, 0.5), [&](const SurfacePart& whole) {
+  store.WithWhole(part, progress.Between(0.0, 0.5), [&](const SurfacePart& whole) {
     const Index ownCount = static_cast<Index>(whole.OwnPoints.Count());
     Bytes bytes;
     std::vector<vtkIdType> corners; // own ones
-    ForEachTriangle(whole, store.FirstOf(part), SubProgress(progress, 0.5, 1.0),
+    ForEachTriangle(whole, store.FirstOf(part), progress.Between(0.5, 1.0),
       [&](std::size_t t, const Index* c, const GlobalTriangle& triangle) {
         const SentTriangle sent{ part, t, triangle,
           { whole.PointAt(c[0]), whole.PointAt(c[1]), whole.PointAt(c[2]) } };
@@ -421,7 +418,7 @@ bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& pr
   Engine& crew = store.Crew;
   std::map<int, Box> extents;
   const std::vector<std::size_t> missing =
-    ListMissing(store, lines, SubProgress(progress, 0.0, 0.4), extents);
+    ListMissing(store, lines, progress.Between(0.0, 0.4), extents);
   if (missing.empty())
   {
     return false;
@@ -433,7 +430,7 @@ bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& pr
       pieces.push_back(lines.Places[i]);
     }
   });
-  crew.ForEach(SubProgress(progress, 0.4, 0.6), [&](int part, const Progress& ofPart) {
+  crew.ForEach(progress.Between(0.4, 0.6), [&](int part, const Progress& ofPart) {
     const Box& extent = extents[part];
     const auto isThere = [&extent](const Ends& piece) {
       Box box;
@@ -447,7 +444,7 @@ bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& pr
     }
   });
   crew.Deliver();
-  crew.ForEach(SubProgress(progress, 0.6, 1.0), [&](int part, const Progress& ofPart) {
+  crew.ForEach(progress.Between(0.6, 1.0), [&](int part, const Progress& ofPart) {
     if (part == 0)
     {
       const auto sent = ValuesIn<SentTriangle>(crew.At(part, Meeting));

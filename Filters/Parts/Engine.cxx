@@ -100,8 +100,8 @@ void Inbox::Clear()
 Engine::Engine(const Ranks& ranks, int ownParts, const std::vector<std::string>& boxes,
   const std::string& folder)
   : Crew(ranks)
-  , FolderOfFiles(folder)
-  , BoxesOfPart(boxes.size())
+  , FileFolder(folder)
+  , PartBoxes(boxes.size())
   , Firsts{ 0 }
   , Outbox(ranks.Count())
   , Labels(ranks.Count())
@@ -144,7 +144,7 @@ void Engine::ForEach(
     const double width = 1.0 / std::max(1, this->EndOwn() - first);
     for (int part = first; part < this->EndOwn(); ++part)
     {
-      step(part, SubProgress(watched, width * (part - first), width * (part + 1 - first)));
+      step(part, watched.Between(width * (part - first), width * (part + 1 - first)));
     }
   });
 }
@@ -161,7 +161,7 @@ void Engine::ForEachInTurn(const Progress& progress, Engine& receiving,
   for (int turn = 0; turn < turns; ++turn)
   {
     const double begin = turn, end = turn + 1;
-    const Progress ofTurn = SubProgress(progress, begin / turns, end / turns);
+    const Progress ofTurn = progress.Between(begin / turns, end / turns);
     const int part = this->FirstOwn() + turn;
     this->Crew.Agree([&]() {
       if (this->IsOwn(part))
@@ -169,7 +169,7 @@ void Engine::ForEachInTurn(const Progress& progress, Engine& receiving,
         step(part, this->Crew.Watched(ofTurn));
       }
     });
-    receiving.Deliver(SubProgress(ofTurn, 1.0, 1.0));
+    receiving.Deliver(ofTurn.Between(1.0, 1.0));
   }
 }
 
@@ -230,7 +230,7 @@ void Engine::Deliver(const Progress& progress)
 
 Inbox& Engine::At(int part, int box)
 {
-  return this->Boxes[static_cast<std::size_t>(part - this->FirstOwn()) * this->BoxesOfPart + box];
+  return this->Boxes[static_cast<std::size_t>(part - this->FirstOwn()) * this->PartBoxes + box];
 }
 
 } // namespace elevation

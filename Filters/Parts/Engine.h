@@ -87,10 +87,10 @@ public:
     const std::string& folder);
 
   const Ranks& AllRanks() const { return this->Crew; }
-  bool IsInFiles() const { return !this->FolderOfFiles.empty(); }
-  const std::string& Folder() const { return this->FolderOfFiles; } ///< of the files; empty: in memory
+  bool IsInFiles() const { return !this->FileFolder.empty(); }
+  const std::string& Folder() const { return this->FileFolder; } ///< of the files; empty: in memory
 
-  int CountOfParts() const { return this->Firsts.back(); }
+  int PartCount() const { return this->Firsts.back(); }
   /** The rank that holds a part. */
   int RankOf(int part) const;
   /** Those of this rank are [FirstOwn(), EndOwn()). */
@@ -127,8 +127,8 @@ private:
   };
 
   const Ranks& Crew;
-  const std::string FolderOfFiles;
-  const std::size_t BoxesOfPart;
+  const std::string FileFolder;
+  const std::size_t PartBoxes;
   std::vector<int> Firsts;                // part of each rank, and the end
   std::vector<Inbox> Boxes;               // of the parts of this rank
   std::vector<std::vector<Bytes>> Outbox; // of each rank

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /*
  * The passes in their order. Modes differ in three things: whether a part stays (WithPart), which
- * part a hole goes to (PartsOfHoles), and by what a point is known to be another part's: in files
+ * part a hole goes to (HoleParts), and by what a point is known to be another part's: in files
  * it is marked, in memory ranks find out together (FindCopies).
  */
 #include "FillParts.h"
@@ -31,8 +31,8 @@ namespace
 // The boxes of a part, and that of a group; see Engine.h.
 constexpr int Patches = 0, Rims = 1, Surrounding = 0;
 
-constexpr double LeastPointsOfGroup = 1000.0;
-constexpr double GroupsOfPart = 8.0; // so many groups together take the memory of a part
+constexpr double LeastGroupPoints = 1000.0;
+constexpr double PartGroups = 8.0; // so many groups together take the memory of a part
 } // namespace
 
 FillParts::FillParts(const SurfaceParts& surface, const FillOptions& options, bool interpolate,
@@ -60,11 +60,11 @@ void FillParts::WithPart(int part, const Progress& progress, const Visit& visit)
   if (!one.Input)
   {
     one.Number = part;
-    one.Input = this->Make(part, SubProgress(progress, 0.0, 0.5));
+    one.Input = this->Make(part, progress.Between(0.0, 0.5));
   }
   if (one.Input)
   {
-    visit(one, SubProgress(progress, 0.5, 1.0));
+    visit(one, progress.Between(0.5, 1.0));
   }
 }
 
@@ -78,7 +78,7 @@ FillParts::KnownPart FillParts::Describe(int part, const FilledPart& one)
   }
   known.Triangles = one.OwnMesh.NumberOfTriangles();
   known.Points = one.Input->GetNumberOfPoints();
-  known.OwnPoints = one.CountOfOwn();
+  known.OwnPoints = one.OwnCount();
   known.LargestId = one.LargestId();
   known.NextHole = NextHole(one.Input);
   for (std::size_t t = 0; t < one.RegionOf.size(); ++t)
@@ -97,9 +97,9 @@ FillParts::KnownPart FillParts::Describe(int part, const FilledPart& one)
  * A part is looked at once. The points on its border are kept meanwhile, as which of them are on
  * that of the surface is known only when all ranks have sent their edges.
  */
-void FillParts::FindHoles(int partOfRims)
+void FillParts::FindHoles(int rimsPart)
 {
-  this->RimsPart = partOfRims;
+  this->RimsPart = rimsPart;
   std::vector<KnownPart> own(this->Crew.EndOwn() - this->Crew.FirstOwn());
   PartEdges edges;
   Parts borders;
@@ -116,15 +116,15 @@ void FillParts::FindHoles(int partOfRims)
     FindCopies(this->AllRanks, this->AllHoles.ByIds, this->InMemory.Shared);
     if (this->InMemory.Input)
     {
-      own[0].OwnPoints = this->InMemory.CountOfOwn();
+      own[0].OwnPoints = this->InMemory.OwnCount();
     }
   }
   this->KnownParts = this->AllRanks.Collect(own);
-  for (int part = 0; part < this->Crew.CountOfParts(); ++part)
+  for (int part = 0; part < this->Crew.PartCount(); ++part)
   {
     const double points = static_cast<double>(this->KnownParts[part].OwnPoints);
     this->Points += points;
-    this->PointsOfRank += this->Crew.IsOwn(part) ? points : 0.0;
+    this->RankPoints += this->Crew.IsOwn(part) ? points : 0.0;
     this->LargestId = std::max(this->LargestId, this->KnownParts[part].LargestId);
   }
   this->AllHoles.Border = CollectBorder(this->AllRanks, std::move(edges));
@@ -224,7 +224,7 @@ void FillParts::Fill()
     this->Crew.ForEach(Progress(), [&](int part, const Progress& progress) {
       this->WithPart(part, progress, [&](FilledPart& one, const Progress&) {
         this->TakePatches(part, one);
-        sums[1] += one.CountOfOthers();
+        sums[1] += one.OtherCount();
       });
     });
   }
@@ -247,11 +247,11 @@ void FillParts::FindLattice()
     }
   };
   this->AllHoles.FindLattice(
-    this->AllRanks, { this->PointsOfRank, forEach }, this->Fraction(0.2, 0.5));
+    this->AllRanks, { this->RankPoints, forEach }, this->Fraction(0.2, 0.5));
 }
 
 /** The part of each hole; in memory, of a rank with points. */
-std::vector<int> FillParts::PartsOfHoles() const
+std::vector<int> FillParts::HoleParts() const
 {
   std::vector<int> parts;
   if (!this->Crew.IsInFiles())
@@ -267,11 +267,11 @@ std::vector<int> FillParts::PartsOfHoles() const
   std::vector<int> partOf(border.Keys.size(), 0);
   for (std::size_t i = 0; i < border.RegionEdges.size(); ++i)
   {
-    partOf[border.RegionEdges[i].Origin] = border.PartOfRegionEdge[i];
+    partOf[border.RegionEdges[i].Origin] = border.RegionEdgePart[i];
   }
   for (std::size_t i = 0; i < border.Edges.size(); ++i)
   {
-    partOf[border.Edges[i].Origin] = border.PartOfEdge[i];
+    partOf[border.Edges[i].Origin] = border.EdgePart[i];
   }
   const Holes& found = this->AllHoles.Result.Found;
   for (Index hole = 0; hole < found.Count(); ++hole)
@@ -295,7 +295,7 @@ double FillParts::PointsAround(Index hole, const KnownPart& part) const
 /** The same groups on all ranks; those of one rank are next to each other, as its parts are. */
 void FillParts::GroupHoles()
 {
-  const std::vector<int> partOf = this->PartsOfHoles();
+  const std::vector<int> partOf = this->HoleParts();
   std::vector<std::vector<Index>> holesOf(this->KnownParts.size());
   for (std::size_t hole = 0; hole < partOf.size(); ++hole)
   {
@@ -306,10 +306,10 @@ void FillParts::GroupHoles()
   }
   const double most = !this->Crew.IsInFiles()
     ? std::numeric_limits<double>::infinity()
-    : std::max(LeastPointsOfGroup,
-        this->Points / static_cast<double>(this->KnownParts.size()) / GroupsOfPart);
+    : std::max(
+        LeastGroupPoints, this->Points / static_cast<double>(this->KnownParts.size()) / PartGroups);
   int ownCount = 0;
-  for (int part = 0; part < this->Crew.CountOfParts(); ++part)
+  for (int part = 0; part < this->Crew.PartCount(); ++part)
   {
     double points = 0.0; // around the holes of the group
     for (const Index hole : holesOf[part])
@@ -420,8 +420,8 @@ void FillParts::FindQuotas(const Progress& progress)
 {
   std::vector<HoleNeed> needs(this->AllHoles.Extents.size());
   this->GroupCrew->ForEach(progress, [&](int group, const Progress& ofGroup) {
-    SurroundedHoles& holes = this->HolesOf(group, SubProgress(ofGroup, 0.0, 0.5));
-    const std::vector<HoleNeed> found = holes.Needs(this->AllHoles, SubProgress(ofGroup, 0.5, 1.0));
+    SurroundedHoles& holes = this->HolesOf(group, ofGroup.Between(0.0, 0.5));
+    const std::vector<HoleNeed> found = holes.Needs(this->AllHoles, ofGroup.Between(0.5, 1.0));
     for (std::size_t i = 0; i < found.size(); ++i)
     {
       needs[holes.Numbers[i]] = found[i];
@@ -435,8 +435,8 @@ void FillParts::FindQuotas(const Progress& progress)
 /** @return false if holes, which are added to those beyond, need more of the surface around them */
 bool FillParts::FillGroup(int group, const Progress& progress, std::vector<vtkIdType>& beyond)
 {
-  SurroundedHoles& holes = this->HolesOf(group, SubProgress(progress, 0.0, 0.1));
-  const std::vector<Index> found = holes.Fill(this->AllHoles, SubProgress(progress, 0.1, 1.0));
+  SurroundedHoles& holes = this->HolesOf(group, progress.Between(0.0, 0.1));
+  const std::vector<Index> found = holes.Fill(this->AllHoles, progress.Between(0.1, 1.0));
   beyond.insert(beyond.end(), found.begin(), found.end());
   for (const Index hole : this->Groups[group].Holes)
   {
@@ -516,11 +516,10 @@ void FillParts::Pass(int part, const Progress& progress, vtkPolyData* output)
   this->WithPart(part, progress, [&](FilledPart& one, const Progress& ofPart) {
     if (this->Crew.IsInFiles())
     {
-      one.Read(this->AllHoles.ByIds, this->AllHoles.LongestEdge, SubProgress(ofPart, 0.0, 0.3));
+      one.Read(this->AllHoles.ByIds, this->AllHoles.LongestEdge, ofPart.Between(0.0, 0.3));
       this->TakePatches(part, one);
     }
-    one.Write(
-      this->AllHoles, this->AreMarked, this->LargestId, SubProgress(ofPart, 0.3, 1.0), output);
+    one.Write(this->AllHoles, this->AreMarked, this->LargestId, ofPart.Between(0.3, 1.0), output);
   });
 }
 
@@ -571,7 +570,7 @@ bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolat
       return false;
     }
     FillOptions filling = options;
-    filling.Monitor = SubProgress(block.Progress, 0.0, 0.82);
+    filling.Monitor = block.Progress.Between(0.0, 0.82);
     FillParts fill(surface, filling, interpolate, longest, sums[3] == 0);
     constexpr int first = 0;
     try
@@ -588,10 +587,10 @@ bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolat
     }
     fill.Fill();
     surface.Crew.ForEach(block.Progress, [&](int part, const Progress& progress) {
-      fill.Pass(part, SubProgress(progress, 0.82, 0.97), block.Outputs[0]);
+      fill.Pass(part, progress.Between(0.82, 0.97), block.Outputs[0]);
       if (part == first)
       {
-        fill.PassRims(SubProgress(progress, 0.97, 1.0), block.Outputs[1]);
+        fill.PassRims(progress.Between(0.97, 1.0), block.Outputs[1]);
       }
     });
     patches = fill.Result();

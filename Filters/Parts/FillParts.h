@@ -66,11 +66,11 @@ public:
 
   /**
    * Pass 1.
-   * @param[in] partOfRims  its rank gets the outlines
+   * @param[in] rimsPart  its rank gets the outlines
    * @throws Error on all ranks, if the surface cannot be filled in parts: borders touch, or a point
    *         or an edge is there too often; Aborted
    */
-  void FindHoles(int partOfRims);
+  void FindHoles(int rimsPart);
 
   /** Passes 2 to 5. @throws Error, Aborted on all ranks */
   void Fill();
@@ -83,7 +83,7 @@ public:
 
   // Of all parts, on all ranks:
   const FillResult& Result() const { return this->AllHoles.Result; } ///< holes and reports
-  vtkIdType CountOfNewTriangles() const { return this->NewTriangles; }
+  vtkIdType NewTriangleCount() const { return this->NewTriangles; }
 
 private:
   /** What all ranks know of a part. */
@@ -105,7 +105,7 @@ private:
 
   Progress Fraction(double begin, double end) const
   {
-    return SubProgress(this->AllHoles.Options.Monitor, begin, end);
+    return this->AllHoles.Options.Monitor.Between(begin, end);
   }
   template <typename Visit>
   void WithPart(int part, const Progress& progress, const Visit& visit);
@@ -113,7 +113,7 @@ private:
   void FindReaches();
   KnownPart Describe(int part, const FilledPart& one);
   void FindLattice();
-  std::vector<int> PartsOfHoles() const;
+  std::vector<int> HoleParts() const;
   double PointsAround(Index hole, const KnownPart& part) const;
   void GroupHoles();
   void Surround(const std::vector<char>& areWaiting, const Progress& progress);
@@ -132,7 +132,7 @@ private:
   Parts OwnRims;       // if this rank has that part: points of its parts
   FilledPart InMemory; // the part of this rank, in memory
   std::vector<KnownPart> KnownParts;
-  double Points = 0.0, PointsOfRank = 0.0; // of all parts, and of those of this rank
+  double Points = 0.0, RankPoints = 0.0; // of all parts, and of those of this rank
   vtkIdType LargestId = -1;
   SharedHoles AllHoles;
   std::vector<Group> Groups;         // of all ranks, in their order

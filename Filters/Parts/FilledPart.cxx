@@ -28,11 +28,11 @@ namespace elevation
 
 void FilledPart::Read(bool byIds, double longest, const Progress& progress)
 {
-  ToMesh(this->Input, this->OwnMesh, SubProgress(progress, 0.0, 0.4));
-  this->OwnMesh.ConnectTwins(0, SubProgress(progress, 0.4, 0.9));
+  ToMesh(this->Input, this->OwnMesh, progress.Between(0.0, 0.4));
+  this->OwnMesh.ConnectTwins(0, progress.Between(0.4, 0.9));
   if (longest > 0.0)
   {
-    this->RegionOf = NumberRegions(this->OwnMesh, longest, SubProgress(progress, 0.9, 1.0));
+    this->RegionOf = NumberRegions(this->OwnMesh, longest, progress.Between(0.9, 1.0));
   }
   this->ListShared(byIds);
 }
@@ -95,7 +95,7 @@ std::vector<char> FilledPart::AreOthers() const
   return areOthers;
 }
 
-vtkIdType FilledPart::CountOfOwn() const
+vtkIdType FilledPart::OwnCount() const
 {
   const std::vector<char> areOthers = this->AreOthers();
   return std::count(areOthers.begin(), areOthers.end(), char(0));
@@ -148,7 +148,7 @@ void FilledPart::FindCorners()
   std::for_each(patches.NearestBoundaryPoints.begin(), patches.NearestBoundaryPoints.end(), place);
 }
 
-vtkIdType FilledPart::CountOfOthers() const
+vtkIdType FilledPart::OtherCount() const
 {
   const std::vector<char>& copies = this->Shared.AreCopies;
   return static_cast<vtkIdType>(this->Added.size()) + std::count(copies.begin(), copies.end(), 1);
@@ -276,9 +276,9 @@ void FilledPart::Write(const SharedHoles& all, bool areMarked, vtkIdType largest
   const Progress& progress, vtkPolyData* output) const
 {
   const vtkSmartPointer<vtkPolyData> input =
-    this->WithCorners(areMarked, SubProgress(progress, 0.0, 0.2));
+    this->WithCorners(areMarked, progress.Between(0.0, 0.2));
   MakeSurface(input, this->OwnMesh, this->PlacedPatches(all, input), all.Interpolate,
-    SubProgress(progress, 0.2, 1.0), output);
+    progress.Between(0.2, 1.0), output);
   this->NumberNewPoints(all, largestId, output);
 }
 

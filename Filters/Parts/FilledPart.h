@@ -39,14 +39,14 @@ struct FilledPart
 
   /** The points that no other part counts. @param[out] kept  holds them */
   PointView OwnPoints(Buffer<double>& kept) const;
-  vtkIdType CountOfOwn() const; ///< of these
+  vtkIdType OwnCount() const; ///< of these
 
   /** Corners of the patches that the part does not have; then PlaceOf is known. */
   void FindCorners();
   std::vector<Index> Added;   ///< corners, points of the surrounding of the holes
   std::vector<Index> PlaceOf; ///< of points of the surrounding, after the input's points
   /** How many points are other parts' in the output, as far as it is not marked in the input. */
-  vtkIdType CountOfOthers() const;
+  vtkIdType OtherCount() const;
   /** The largest global id, or -1. */
   vtkIdType LargestId() const;
 

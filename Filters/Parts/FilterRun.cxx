@@ -205,7 +205,7 @@ double FilterRun::GatherSpreadBlocks(
   for (const auto& block : spread)
   {
     const double next = done + share / static_cast<double>(spread.size());
-    const Progress ofBlock = SubProgress(progress, done, next);
+    const Progress ofBlock = progress.Between(done, next);
     done = next;
     std::vector<Place*> own;
     for (Place& place : places)
@@ -222,7 +222,7 @@ double FilterRun::GatherSpreadBlocks(
       if (!this->RunSpread(own, ranks, second, ofBlock, why))
       {
         std::vector<Message> warnings;
-        GatherBlock(own, block.second, this->KindOfParts(), ranks, ofBlock, warnings);
+        GatherBlock(own, block.second, this->InputKind(), ranks, ofBlock, warnings);
         this->AddMessages(own, warnings, this->Warnings);
         WarnOfGathering(FirstWithPoints(own), why);
       }
@@ -251,7 +251,7 @@ void FilterRun::AddMessages(const std::vector<Place*>& places, const std::vector
   for (std::size_t i = 0; i < messages.size() && !places.empty(); ++i)
   {
     all.push_back(messages[i]);
-    all.back().SetBlock(places.front()->NameOfBlock);
+    all.back().SetBlock(places.front()->BlockName);
   }
 }
 
@@ -265,7 +265,7 @@ vtkSmartPointer<vtkPointSet> FilterRun::Prepared(
   CheckPrecision(this->Precision);
   vtkSmartPointer<vtkPointSet> shown =
     WithPointsFor(NeedsDouble(this->Precision, second != nullptr), input);
-  if (this->KindOfParts() == PartKind::Mesh)
+  if (this->InputKind() == PartKind::Mesh)
   {
     shown = WithoutHiddenCells(vtkPolyData::SafeDownCast(shown));
   }
@@ -344,7 +344,7 @@ void FilterRun::FinishOutputs(Block& block, const Ranks& ranks) const
     {
       NameUnusedByOriginalIds(surface);
     }
-    KeepUsed(surface, ranks, SubProgress(block.Progress, 1.0, 1.0));
+    KeepUsed(surface, ranks, block.Progress.Between(1.0, 1.0));
   }
   if (this->Precision == vtkAlgorithm::SINGLE_PRECISION)
   {
@@ -361,7 +361,7 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
   }
   Block block{ nullptr, second, {}, progress, {} };
   vtkSmartPointer<vtkPointSet> own;
-  ranks.Agree([&] { own = JoinHere(PartsOf(places), this->KindOfParts(), block.Warnings); });
+  ranks.Agree([&] { own = JoinHere(PartsOf(places), this->InputKind(), block.Warnings); });
   block.Input = own;
   // A rank without points of the block may get some, if it has a place for them.
   Place* home = FirstWithPoints(places);
@@ -392,7 +392,7 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
   return true;
 }
 
-PartKind FilterRun::KindOfParts() const
+PartKind FilterRun::InputKind() const
 {
   return std::string(RequiredType(this->Filter)) == "vtkPolyData" ? PartKind::Mesh
                                                                   : PartKind::Points;
@@ -403,7 +403,7 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
 {
   const Progress ofAll = ProgressOf(this->Filter);
   const Progress progress =
-    SubProgress(ofAll, this->GatherSpreadBlocks(places, ranks, second, ofAll), 1.0);
+    ofAll.Between(this->GatherSpreadBlocks(places, ranks, second, ofAll), 1.0);
   const auto workOf = [](const Place& place) {
     auto* const points = vtkPointSet::SafeDownCast(place.Input);
     return 1.0 + (points ? points->GetNumberOfPoints() : 0);
@@ -424,7 +424,7 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
     const bool isReported = this->ShouldReport(place, ranks);
     const double next = done + workOf(place);
     Block block{ nullptr, isReported ? second : nullptr, place.Outputs,
-      SubProgress(progress, done / all, next / all), {} };
+      progress.Between(done / all, next / all), {} };
     done = next;
     Message error;
     try

@@ -108,7 +108,7 @@ private:
     const Progress& progress, Message& whyGathered);
   void AddMessages(const std::vector<Place*>& places, const std::vector<Message>& messages,
     std::vector<Message>& all) const;
-  PartKind KindOfParts() const;
+  PartKind InputKind() const;
   void RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second,
     const std::function<void(Block&)>& body);
   Message RunPlace(const Place& place, Block& block, const std::function<void(Block&)>& body);

@@ -112,7 +112,7 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
     }
     if (ranks.OwnRank() == home)
     {
-      joined = Join(all, kind, SubProgress(progress, 0.5, 1.0), warnings);
+      joined = Join(all, kind, progress.Between(0.5, 1.0), warnings);
     }
   });
   return joined;

@@ -206,7 +206,7 @@ vtkSmartPointer<vtkCellArray> JoinCells(const Parts& parts, const std::vector<vt
 /** Those of the first part that has them, and the unused points of all. */
 void JoinFieldData(const Parts& parts, const CommonPoints& points, vtkFieldData* output)
 {
-  constexpr const char* namesOfUnused[] = { "UnusedPointIds", "UnusedPointReasons" };
+  constexpr const char* unusedNames[] = { "UnusedPointIds", "UnusedPointReasons" };
   std::map<vtkIdType, double> unused; // and the reasons
   bool areKnown = false;
   for (std::size_t part = 0; part < parts.size(); ++part)
@@ -220,8 +220,8 @@ void JoinFieldData(const Parts& parts, const CommonPoints& points, vtkFieldData*
         output->AddArray(array);
       }
     }
-    vtkDataArray* const ids = data->GetArray(namesOfUnused[0]);
-    vtkDataArray* const reasons = data->GetArray(namesOfUnused[1]);
+    vtkDataArray* const ids = data->GetArray(unusedNames[0]);
+    vtkDataArray* const reasons = data->GetArray(unusedNames[1]);
     areKnown = areKnown || (ids && reasons);
     for (vtkIdType i = 0;
          ids && reasons && i < std::min(ids->GetNumberOfTuples(), reasons->GetNumberOfTuples());
@@ -240,8 +240,8 @@ void JoinFieldData(const Parts& parts, const CommonPoints& points, vtkFieldData*
   }
   vtkNew<vtkIdTypeArray> ids;
   vtkNew<vtkUnsignedCharArray> reasons;
-  ids->SetName(namesOfUnused[0]);
-  reasons->SetName(namesOfUnused[1]);
+  ids->SetName(unusedNames[0]);
+  reasons->SetName(unusedNames[1]);
   for (const auto& each : unused)
   {
     ids->InsertNextValue(each.first);
@@ -272,9 +272,9 @@ vtkSmartPointer<vtkPolyData> Join(
   const Parts& parts, PartKind kind, const Progress& progress, std::vector<Message>& warnings)
 {
   auto joined = vtkSmartPointer<vtkPolyData>::New();
-  const CommonPoints points(parts, kind, SubProgress(progress, 0.0, 1.0));
+  const CommonPoints points(parts, kind, progress.Between(0.0, 1.0));
   std::vector<Rows> rows = points.Sources();
-  const Progress copying = SubProgress(progress, 1.0, 1.0);
+  const Progress copying = progress.Between(1.0, 1.0);
   joined->SetPoints(JoinPoints(parts, rows, points.Count(), copying));
   std::vector<vtkDataSetAttributes*> data;
   for (const auto& part : parts)

@@ -140,10 +140,10 @@ Bytes PackData(vtkPolyData* data)
 vtkSmartPointer<vtkPolyData> UnpackData(const char* from, std::size_t size)
 {
   const char* const end = from + size;
-  std::size_t sizeOfMarks = 0;
-  TakeFrom(from, &sizeOfMarks, 1);
+  std::size_t marksSize = 0;
+  TakeFrom(from, &marksSize, 1);
   const char* const marks = from;
-  from += sizeOfMarks;
+  from += marksSize;
   vtkNew<vtkCharArray> buffer;
   buffer->SetArray(
     const_cast<char*>(from), static_cast<vtkIdType>(end - from), 1); // it stays the caller's

@@ -10,7 +10,7 @@
 namespace elevation
 {
 
-const std::vector<std::string>& NamesOfBoxes()
+const std::vector<std::string>& BoxNames()
 {
   static const std::vector<std::string> names = { "points", "triangles", "seam-points", "seams",
     "corners", "changed", "", "", "" };
@@ -85,8 +85,8 @@ SurfacePart PartStore::ReadOwn(int part, const Progress& progress) const
 {
   SurfacePart read;
   read.Kinds = this->Part.Kinds;
-  read.NameOfIds = this->Part.NameOfIds;
-  read.TypeOfPoints = this->Part.TypeOfPoints;
+  read.IdsName = this->Part.IdsName;
+  read.PointType = this->Part.PointType;
   read.Bases = this->Part.Bases;
   read.OwnPoints = PointTable(read.Kinds);
   read.Others = PointTable(read.Kinds);
@@ -169,7 +169,7 @@ Bytes PartStore::PackForOthers(const RowsForOthers& rows, std::vector<vtkIdType>
 
 SurfacePart PartStore::ReadWhole(int part, const Progress& progress) const
 {
-  SurfacePart read = this->ReadOwn(part, SubProgress(progress, 0.0, 0.3));
+  SurfacePart read = this->ReadOwn(part, progress.Between(0.0, 0.3));
   Report(progress, 0.3);
   bool isFirst = true;
   this->Crew.At(part, Settled).ForEach([&](const Bytes& bytes) {
@@ -186,7 +186,7 @@ SurfacePart PartStore::ReadWhole(int part, const Progress& progress) const
     TakeList(from, result.UnusedPoints);
     TakeList(from, result.UnusedReasons);
   });
-  this->PutTogether(part, SubProgress(progress, 0.6, 1.0), read);
+  this->PutTogether(part, progress.Between(0.6, 1.0), read);
   return read;
 }
 
@@ -206,7 +206,7 @@ void PartStore::ForgetOthers(int part)
   this->Crew.At(part, Corners).Clear();
   if (std::exchange(this->IsWhole, false))
   {
-    this->Part.Result.Triangles.Resize(this->CornersOfCell);
+    this->Part.Result.Triangles.Resize(this->CellCorners);
   }
 }
 
@@ -232,14 +232,14 @@ void PartStore::MakeWhole(int part, const Progress& progress)
 {
   if (!std::exchange(this->IsWhole, true))
   {
-    this->CornersOfCell = this->Part.Result.Triangles.size();
+    this->CellCorners = this->Part.Result.Triangles.size();
     this->PutTogether(part, progress, this->Part);
   }
 }
 
 void PartStore::Forget(int part)
 {
-  for (std::size_t box = 0; box < NamesOfBoxes().size(); ++box)
+  for (std::size_t box = 0; box < BoxNames().size(); ++box)
   {
     this->Crew.At(part, static_cast<int>(box)).Clear();
   }
@@ -277,7 +277,7 @@ void PartStore::ForEachRows(const std::function<void(const PointTable&)>& visit)
 
 PointSlices PartStore::Slices() const
 {
-  return { static_cast<double>(this->CountOfOwn()), [this](const auto& visit) {
+  return { static_cast<double>(this->OwnCount()), [this](const auto& visit) {
             this->ForEachRows([&visit](const PointTable& rows) { visit(ViewOf(rows).View); });
           } };
 }

@@ -68,7 +68,7 @@ struct ChangedTriangle
 };
 
 /** Names of their files; those without one are small. */
-const std::vector<std::string>& NamesOfBoxes();
+const std::vector<std::string>& BoxNames();
 
 class PartStore
 {
@@ -100,7 +100,7 @@ public:
   GlobalId FirstOf(int part) const { return this->Part.Bases[part]; }
   GlobalId EndOf(int part) const { return this->Part.Bases[part + 1]; }
   /** The points that the parts of this rank own. */
-  vtkIdType CountOfOwn() const
+  vtkIdType OwnCount() const
   {
     return this->Part.Bases[this->Crew.EndOwn()] - this->Part.Bases[this->Crew.FirstOwn()];
   }
@@ -174,7 +174,7 @@ private:
   void MakeWhole(int part, const Progress& progress);
   void PutTogether(int part, const Progress& progress, SurfacePart& whole) const;
 
-  std::size_t CornersOfCell = 0; // in memory, while IsWhole
+  std::size_t CellCorners = 0; // in memory, while IsWhole
   bool IsWhole = false;
 };
 

@@ -36,7 +36,7 @@ namespace elevation
 
 namespace
 {
-constexpr const char* NameOfIds = "GlobalPointIds";
+constexpr const char* IdsName = "GlobalPointIds";
 constexpr vtkIdType PointsInStretch = 1 << 20; // of slices, and in a file
 constexpr std::size_t MostSampled = 1 << 19;   // of slices
 constexpr vtkIdType SamplePerPart = 1000;      // of points that come at once
@@ -74,7 +74,7 @@ Error DifferentArrays()
 }
 
 /** Takes global ids out of the kinds of arrays, or finds a name for them. @return whether given */
-bool TakeKindOfIds(std::vector<ArrayKind>& kinds, std::string& name)
+bool TakeIdKind(std::vector<ArrayKind>& kinds, std::string& name)
 {
   const auto ids = std::find_if(kinds.begin(), kinds.end(), [](const ArrayKind& kind) {
     return kind.Attribute == vtkDataSetAttributes::GLOBALIDS && kind.Components == 1 &&
@@ -87,7 +87,7 @@ bool TakeKindOfIds(std::vector<ArrayKind>& kinds, std::string& name)
     kinds.erase(ids);
     return true;
   }
-  name = NameOfIds;
+  name = IdsName;
   const auto isTaken = [&name](const ArrayKind& kind) { return kind.Name == name; };
   while (std::any_of(kinds.begin(), kinds.end(), isTaken))
   {
@@ -132,7 +132,7 @@ void PointSource::TakeKinds(vtkPointSet* points)
   {
     throw Error("Point array \"" + *leftOut.begin() + "\" cannot be written to a file.");
   }
-  if (this->CountOfOwn > 0 && !AreSame(kinds, this->Kinds))
+  if (this->OwnCount > 0 && !AreSame(kinds, this->Kinds))
   {
     throw DifferentArrays();
   }
@@ -142,7 +142,7 @@ void PointSource::TakeKinds(vtkPointSet* points)
   this->Arrays->CopyAllocate(points->GetPointData(), 1);
   if (points->GetPoints()->GetDataType() != VTK_FLOAT)
   {
-    this->TypeOfPoints = VTK_DOUBLE;
+    this->PointType = VTK_DOUBLE;
   }
 }
 
@@ -156,15 +156,15 @@ void PointSource::Add(vtkPointSet* points, const Progress& progress)
   if (!this->IsInFile())
   {
     this->Input = points;
-    this->CountOfOwn = points->GetNumberOfPoints();
+    this->OwnCount = points->GetNumberOfPoints();
     return;
   }
   this->TakeKinds(points);
   std::vector<ArrayKind> kinds = this->Kinds;
-  std::string nameOfIds;
-  this->AreGiven = TakeKindOfIds(kinds, nameOfIds);
+  std::string idsName;
+  this->AreGiven = TakeIdKind(kinds, idsName);
   this->Rows = PointTable(kinds);
-  this->Read(points, nameOfIds, this->CountOfOwn, SubProgress(progress, 0.0, 0.5));
+  this->Read(points, idsName, this->OwnCount, progress.Between(0.0, 0.5));
   const vtkIdType count = static_cast<vtkIdType>(this->Kept.size());
   for (vtkIdType first = 0; first < count; first += PointsInStretch)
   {
@@ -183,7 +183,7 @@ void PointSource::Add(vtkPointSet* points, const Progress& progress)
     this->InLastStretch += static_cast<vtkIdType>(places.size());
     this->SampleStretch(places);
   }
-  this->CountOfOwn += static_cast<vtkIdType>(this->Rows.Count());
+  this->OwnCount += static_cast<vtkIdType>(this->Rows.Count());
   this->Rows = PointTable();
   this->Kept.clear();
 }
@@ -195,7 +195,7 @@ void PointSource::SampleStretch(const std::vector<vtkIdType>& places)
 {
   for (const vtkIdType at : places)
   {
-    const vtkIdType place = this->CountOfOwn + at;
+    const vtkIdType place = this->OwnCount + at;
     if (((HashOf(place) >> 20) & this->SampleMask) == 0 && this->Rows.IsFinite(at))
     {
       this->Sample.push_back({ place, { this->Rows.At(at)[0], this->Rows.At(at)[1] } });
@@ -231,7 +231,7 @@ void PointSource::NumberPoints(const Progress& progress, SurfacePart& common)
       {
         CheckPointArrays(this->Input);
         const bool areDouble = ViewPoints(this->Input).View.Double != nullptr;
-        this->TypeOfPoints = areDouble ? VTK_DOUBLE : VTK_FLOAT;
+        this->PointType = areDouble ? VTK_DOUBLE : VTK_FLOAT;
       }
     }
     catch (const Error& error)
@@ -241,36 +241,36 @@ void PointSource::NumberPoints(const Progress& progress, SurfacePart& common)
   });
   vtkPointData* const arrays = this->Input ? this->Input->GetPointData() : this->Arrays.Get();
   common.Kinds =
-    CommonArrays(this->AllRanks, this->CountOfOwn > 0 ? arrays : nullptr, common.LeftOut);
-  const bool areGiven = TakeKindOfIds(common.Kinds, common.NameOfIds);
-  const bool areOthers = this->CountOfOwn > 0 && this->AreGiven != areGiven;
+    CommonArrays(this->AllRanks, this->OwnCount > 0 ? arrays : nullptr, common.LeftOut);
+  const bool areGiven = TakeIdKind(common.Kinds, common.IdsName);
+  const bool areOthers = this->OwnCount > 0 && this->AreGiven != areGiven;
   if (this->IsInFile() && (!common.LeftOut.empty() || IsOnAny(this->AllRanks, areOthers)))
   {
     throw DifferentArrays(); // on all ranks
   }
   this->AreGiven = areGiven;
   const std::vector<vtkIdType> counts =
-    this->AllRanks.Collect(std::vector<vtkIdType>{ this->CountOfOwn });
-  common.TypeOfPoints =
-    IsOnAny(this->AllRanks, this->TypeOfPoints == VTK_DOUBLE) ? VTK_DOUBLE : VTK_FLOAT;
+    this->AllRanks.Collect(std::vector<vtkIdType>{ this->OwnCount });
+  common.PointType =
+    IsOnAny(this->AllRanks, this->PointType == VTK_DOUBLE) ? VTK_DOUBLE : VTK_FLOAT;
   this->First =
     std::accumulate(counts.begin(), counts.begin() + this->AllRanks.OwnRank(), vtkIdType(0));
   this->Rows = PointTable(common.Kinds);
   this->AllRanks.Agree([&]() {
     if (this->Input)
     {
-      this->Read(this->Input, common.NameOfIds, this->First, this->AllRanks.Watched(progress));
+      this->Read(this->Input, common.IdsName, this->First, this->AllRanks.Watched(progress));
     }
   });
 }
 
 /** Rows of points: with the ids given, if any, and without those of other ranks. */
 void PointSource::Read(
-  vtkPointSet* points, const std::string& nameOfIds, vtkIdType first, const Progress& progress)
+  vtkPointSet* points, const std::string& idsName, vtkIdType first, const Progress& progress)
 {
   this->Rows.Read(points, first, progress);
   vtkPointData* const data = points->GetPointData();
-  vtkDataArray* const ids = this->AreGiven ? data->GetArray(nameOfIds.c_str()) : nullptr;
+  vtkDataArray* const ids = this->AreGiven ? data->GetArray(idsName.c_str()) : nullptr;
   auto* const plainIds = vtkIdTypeArray::FastDownCast(ids);
   auto* const ghosts =
     vtkUnsignedCharArray::SafeDownCast(data->GetArray(vtkDataSetAttributes::GhostArrayName()));
@@ -402,12 +402,12 @@ void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Pr
 Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, SurfacePart& common,
   std::vector<vtkIdType>& counts)
 {
-  this->NumberPoints(SubProgress(progress, 0.0, 0.4), common);
-  Cuts plane = this->CutPlane(engine.CountOfParts());
-  counts.assign(engine.CountOfParts(), 0);
+  this->NumberPoints(progress.Between(0.0, 0.4), common);
+  Cuts plane = this->CutPlane(engine.PartCount());
+  counts.assign(engine.PartCount(), 0);
   double done = 0.0; // points
   auto next = this->Stretches.begin();
-  const Progress sending = SubProgress(progress, 0.4, 1.0);
+  const Progress sending = progress.Between(0.4, 1.0);
   bool isMore = true;
   while (isMore)
   {
@@ -419,7 +419,7 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
       {
         this->Rows = PointTable(common.Kinds);
         this->Rows.Unpack((next++)->Take());
-        const double all = static_cast<double>(this->CountOfOwn);
+        const double all = static_cast<double>(this->OwnCount);
         begin = done / all;
         end = (done += static_cast<double>(this->Rows.Count())) / all;
         this->Kept.resize(this->Rows.Count());
@@ -430,7 +430,7 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
           id += this->AreGiven ? 0 : this->First;
         }
       }
-      this->SendSlice(plane, engine, box, SubProgress(ofSlice, begin, end), counts);
+      this->SendSlice(plane, engine, box, ofSlice.Between(begin, end), counts);
     });
     engine.Deliver();
     isMore = IsOnAny(this->AllRanks, next != this->Stretches.end());

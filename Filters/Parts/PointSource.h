@@ -48,7 +48,7 @@ public:
   ~PointSource();
 
   /** Whatever the type of the points is. */
-  void UseDoublePoints() { this->TypeOfPoints = VTK_DOUBLE; }
+  void UseDoublePoints() { this->PointType = VTK_DOUBLE; }
 
   /**
    * Adds points of this rank, numbered on.
@@ -58,7 +58,7 @@ public:
 
   /** Whether the points bring global ids, known after Distribute(); or these are places. */
   bool AreIdsGiven() const { return this->AreGiven; }
-  vtkIdType Count() const { return this->CountOfOwn; } ///< of this rank, marked ones included
+  vtkIdType Count() const { return this->OwnCount; } ///< of this rank, marked ones included
 
   /**
    * Passes 2 to 4, on all ranks. The points are no longer here.
@@ -83,15 +83,15 @@ private:
   void KeepSample();
   void NumberPoints(const Progress& progress, SurfacePart& common);
   void Read(
-    vtkPointSet* points, const std::string& nameOfIds, vtkIdType first, const Progress& progress);
+    vtkPointSet* points, const std::string& idsName, vtkIdType first, const Progress& progress);
   std::vector<double> SampleAtOnce(vtkIdType parts) const;
   Cuts CutPlane(int parts);
   void SendSlice(const Cuts& plane, Engine& engine, int box, const Progress& progress,
     std::vector<vtkIdType>& counts);
 
   const Ranks& AllRanks;
-  vtkIdType CountOfOwn = 0, First = 0; // the number of the first
-  int TypeOfPoints = VTK_FLOAT;        // where all are float
+  vtkIdType OwnCount = 0, First = 0;   // the number of the first
+  int PointType = VTK_FLOAT;           // where all are float
   bool AreGiven = false;               // their global ids
   // Points that come at once:
   vtkPointSet* Input = nullptr; // nullptr: no points

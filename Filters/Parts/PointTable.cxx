@@ -157,11 +157,11 @@ bool HaveSameArrays(const Ranks& ranks, vtkPointSet* own)
   vtkDataSetAttributes* const ofPoints = own->GetPointData();
   vtkDataSetAttributes* const ofCells = own->GetCellData();
   const std::vector<ArrayKind> kinds = CommonArrays(ranks, hasPoints ? ofPoints : nullptr, others);
-  const std::vector<ArrayKind> kindsOfCells =
+  const std::vector<ArrayKind> cellKinds =
     CommonArrays(ranks, hasCells ? ofCells : nullptr, others);
   return CanAll(ranks, [&]() {
     return others.empty() && (!hasPoints || HasSame(ofPoints, kinds)) &&
-      (!hasCells || HasSame(ofCells, kindsOfCells));
+      (!hasCells || HasSame(ofCells, cellKinds));
   });
 }
 

@@ -25,7 +25,7 @@ namespace elevation
 
 namespace
 {
-constexpr int TagOfBytes = 20200; // of no other message
+constexpr int BytesTag = 20200; // of no other message
 
 bool AreEqual(vtkPoints* one, vtkPoints* other)
 {
@@ -316,7 +316,7 @@ void Ranks::Send(const void* bytes, std::size_t size, int rank) const
   if (size > 0)
   {
     this->Controller->Send(
-      static_cast<const char*>(bytes), static_cast<vtkIdType>(size), rank, TagOfBytes);
+      static_cast<const char*>(bytes), static_cast<vtkIdType>(size), rank, BytesTag);
   }
 }
 
@@ -325,7 +325,7 @@ void Ranks::Receive(void* bytes, std::size_t size, int rank) const
   if (size > 0)
   {
     this->Controller->Receive(
-      static_cast<char*>(bytes), static_cast<vtkIdType>(size), rank, TagOfBytes);
+      static_cast<char*>(bytes), static_cast<vtkIdType>(size), rank, BytesTag);
   }
 }
 

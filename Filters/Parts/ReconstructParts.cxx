@@ -190,7 +190,7 @@ void ReconstructParts::CheckPart(int part, int count) const
 void ReconstructParts::Begin(int count)
 {
   const vtkMTimeType time = this->Source->GetMTime();
-  if (this->Refusal && this->TimeOfRefusal == time && this->RefusedParts == count)
+  if (this->Refusal && this->RefusalTime == time && this->RefusedParts == count)
   {
     throw CodedError(*this->Refusal);
   }
@@ -216,7 +216,7 @@ void ReconstructParts::Begin(int count)
   catch (const Error& error)
   {
     this->Refusal = std::make_unique<CodedError>(MessageOf(error));
-    this->TimeOfRefusal = time;
+    this->RefusalTime = time;
     this->RefusedParts = count;
     throw;
   }
@@ -290,16 +290,16 @@ void ReconstructParts::WorkOnAll(const Progress& progress)
   const double filling = this->Set.FillHoles ? 0.7 : 1.0; // where it begins
   const double trimming = this->IsTrimmed() ? 0.6 * filling : filling;
   this->Source->SetProgressText("triangulating");
-  this->Triangulate(SubProgress(progress, 0.0, trimming));
+  this->Triangulate(progress.Between(0.0, trimming));
   if (this->IsTrimmed())
   {
     this->Source->SetProgressText("trimming");
-    this->Trim(SubProgress(progress, trimming, filling));
+    this->Trim(progress.Between(trimming, filling));
   }
   if (this->Set.FillHoles)
   {
     this->Source->SetProgressText("filling holes");
-    this->Fill(SubProgress(progress, filling, 1.0));
+    this->Fill(progress.Between(filling, 1.0));
   }
 }
 
@@ -445,9 +445,9 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
     {
       this->Set = settings;
       this->Begin(count);
-      this->WorkOnAll(SubProgress(progress, 0.0, 0.9));
+      this->WorkOnAll(progress.Between(0.0, 0.9));
     }
-    this->Pass(part, SubProgress(progress, 0.9, 1.0), output, rims);
+    this->Pass(part, progress.Between(0.9, 1.0), output, rims);
     if (!settings.KeepFiles)
     {
       this->Work->Forget(part);
@@ -472,7 +472,7 @@ ReconstructParts::Counts ReconstructParts::GetCounts() const
   if (this->Work)
   {
     const TriangulateParts::Totals& all = this->Work->GetTotals();
-    counts.Points = this->Work->CountOfParts() > 0 ? all.Points : this->Work->CountOfPoints();
+    counts.Points = this->Work->PartCount() > 0 ? all.Points : this->Work->PointCount();
     counts.Triangles = all.Triangles;
     counts.Duplicates = all.Duplicates;
     counts.NotFinite = all.NotFinite;
@@ -483,14 +483,14 @@ ReconstructParts::Counts ReconstructParts::GetCounts() const
   if (this->Trimmed)
   {
     counts.Trim = this->Trimmed->GetTotalCounts();
-    counts.TrimmedTriangles = this->Trimmed->CountOfKept();
-    counts.BoundaryRings = this->Trimmed->CountOfRings();
+    counts.TrimmedTriangles = this->Trimmed->KeptCount();
+    counts.BoundaryRings = this->Trimmed->RingCount();
   }
   if (this->Filled)
   {
     counts.Holes = this->Filled->Result().Found.Count();
     counts.FilledHoles = CountFilled(this->Filled->Result());
-    counts.FilledTriangles = this->Filled->CountOfNewTriangles() +
+    counts.FilledTriangles = this->Filled->NewTriangleCount() +
       (this->Trimmed ? counts.TrimmedTriangles : counts.Triangles);
   }
   return counts;

@@ -149,7 +149,7 @@ private:
   bool IsLost = false;                 // whether points are
   bool IsOnAllRanks = false;           // whether all ranks have thrown what was thrown last
   std::unique_ptr<CodedError> Refusal; // to begin
-  vtkMTimeType TimeOfRefusal = 0;
+  vtkMTimeType RefusalTime = 0;
   int RefusedParts = 0;
 };
 

@@ -84,7 +84,7 @@ public:
 private:
   Progress Fraction(double begin, double end) const
   {
-    return SubProgress(this->Options.Monitor, begin, end);
+    return this->Options.Monitor.Between(begin, end);
   }
   DelaunayOptions OptionsWith(const Progress& progress) const
   {
@@ -170,7 +170,7 @@ void Settling::SettleOnGiven(const Progress& progress)
 /** Whether so few points may fit a lattice by chance, or are all on one line of it. */
 bool Settling::IsByChance(const SharedLattice& lattice) const
 {
-  std::vector<vtkIdType> sums = { this->Store.CountOfOwn() - this->Found.Duplicates -
+  std::vector<vtkIdType> sums = { this->Store.OwnCount() - this->Found.Duplicates -
       this->Found.NotFinite - this->Found.Hidden,
     this->Found.Triangles + static_cast<vtkIdType>(this->Found.OfSeams.size()) };
   this->AllRanks.Sum(sums);
@@ -222,7 +222,7 @@ void Settling::WatchLattice(const Step& step)
  */
 void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress& progress)
 {
-  const Progress reading = SubProgress(progress, 0.0, 0.0);
+  const Progress reading = progress.Between(0.0, 0.0);
   this->Store.WithOwn(part, reading, [&](const SurfacePart& own) {
     SettledCell settled = SettleCell(ViewOf(own.OwnPoints).View, this->Store.FirstOf(part),
       this->Plane.CellOf(part, part + 1), this->OptionsWith(progress), lattice);
@@ -235,8 +235,8 @@ void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress
     this->Store.KeepSettled(part, own, settled);
     this->Seams[part] = std::move(settled.Seam);
   });
-  const int count = this->Crew.CountOfParts();
-  const Progress last = SubProgress(progress, 1.0, 1.0);
+  const int count = this->Crew.PartCount();
+  const Progress last = progress.Between(1.0, 1.0);
   for (int level = Node::Levels(count) - 1; level >= 0; --level)
   {
     const Node node = Node::Of(part, level, count);
@@ -265,7 +265,7 @@ void Settling::SettleNode(
  */
 bool Settling::JoinSeams(const SharedLattice* lattice)
 {
-  const int count = this->Crew.CountOfParts(), levels = Node::Levels(count);
+  const int count = this->Crew.PartCount(), levels = Node::Levels(count);
   for (int level = levels - 1; level >= 0; --level)
   {
     const auto isJoined = [&](const Node& node) {

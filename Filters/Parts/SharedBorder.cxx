@@ -261,8 +261,8 @@ SharedBorder::SharedBorder(PartEdges&& edges)
       }
     }
   };
-  add(border, this->Edges, this->PartOfEdge);
-  add(edges.OfRegions, this->RegionEdges, this->PartOfRegionEdge);
+  add(border, this->Edges, this->EdgePart);
+  add(edges.OfRegions, this->RegionEdges, this->RegionEdgePart);
   this->NumberRegions(edges);
 }
 
@@ -300,7 +300,7 @@ void SharedBorder::NumberRegions(const PartEdges& edges)
   }
   for (const PartEdge& edge : edges.OfRegions)
   {
-    this->RegionOfEdge.push_back(this->Regions.at({ edge.Part, edge.Region }));
+    this->EdgeRegion.push_back(this->Regions.at({ edge.Part, edge.Region }));
   }
 }
 

@@ -70,14 +70,14 @@ struct PartEdges
 struct SharedBorder
 {
   std::vector<BorderEdge> Edges;   ///< by part and triangle
-  std::vector<int> PartOfEdge;     ///< one each
+  std::vector<int> EdgePart;       ///< one each
   std::vector<PointKey> Keys;      ///< of its points, increasing
   std::vector<double> Coordinates; ///< x, y and 0 of each
   std::vector<char> OnBoundary;    ///< one each, as in SharedPoints
   // Regions of long triangles: edges around them, their parts and regions
   std::vector<BorderEdge> RegionEdges;
-  std::vector<int> PartOfRegionEdge;
-  std::vector<Index> RegionOfEdge;
+  std::vector<int> RegionEdgePart;
+  std::vector<Index> EdgeRegion;
   std::map<PartRegion, Index> Regions; ///< those of the parts, as of all
 
   SharedBorder() = default;

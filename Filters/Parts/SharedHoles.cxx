@@ -40,8 +40,8 @@ bool SharedHoles::Find(const Progress& progress)
   this->FirstRegion = this->Result.Found.Count();
   if (!this->Border.RegionEdges.empty())
   {
-    AddRegionsOfBorder(
-      this->Border.RegionEdges, this->Border.RegionOfEdge, points, this->Result.Found, progress);
+    AddBorderRegions(
+      this->Border.RegionEdges, this->Border.EdgeRegion, points, this->Result.Found, progress);
   }
   this->Extents = ExtentsOf(this->Result.Found, points);
   this->Retries.assign(this->Extents.size(), 0);
@@ -113,15 +113,13 @@ void SurroundedHoles::Surround(const Parts& parts, const SharedHoles& all, const
 {
   std::vector<Message> warnings; // none: all have the same arrays
   this->Near = Mesh();
-  this->Surrounding =
-    elevation::Join(parts, PartKind::Mesh, SubProgress(progress, 0.0, 0.4), warnings);
+  this->Surrounding = elevation::Join(parts, PartKind::Mesh, progress.Between(0.0, 0.4), warnings);
   this->Keys = KeysOf(this->Surrounding, all.ByIds, nullptr);
-  ToMesh(this->Surrounding, this->Near, SubProgress(progress, 0.4, 0.7));
-  this->Near.ConnectTwins(0, SubProgress(progress, 0.7, 0.9));
+  ToMesh(this->Surrounding, this->Near, progress.Between(0.4, 0.7));
+  this->Near.ConnectTwins(0, progress.Between(0.7, 0.9));
   Mesh rest;
   if (all.LongestEdge > 0.0 &&
-    OpenLongTriangles(
-      this->Near, all.LongestEdge, this->Regions, rest, SubProgress(progress, 0.9, 1.0)))
+    OpenLongTriangles(this->Near, all.LongestEdge, this->Regions, rest, progress.Between(0.9, 1.0)))
   {
     this->Near = std::move(rest);
   }

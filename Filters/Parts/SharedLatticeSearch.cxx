@@ -78,7 +78,7 @@ void ForEachSlice(const PointSlices& points, const Progress& progress, const Vis
   points.ForEach([&](const PointView& slice) {
     const double begin = done / points.Count;
     done += slice.Count;
-    visit(slice, SubProgress(progress, begin, done / points.Count));
+    visit(slice, progress.Between(begin, done / points.Count));
   });
 }
 
@@ -99,10 +99,10 @@ void ForEachFinite(const PointSlices& points, const Progress& progress, const Vi
 }
 
 /** The box of the nodes of all ranks' points. */
-NodeBox NodesOfAll(const Ranks& ranks, const PointSlices& points, const Box& all,
+NodeBox AllNodes(const Ranks& ranks, const PointSlices& points, const Box& all,
   const Lattice& steps, const Progress& progress)
 {
-  const NodeOfPoint nodeOf(steps);
+  const NodeFinder nodeOf(steps);
   return FindNodeBox(nodeOf, all, steps, [&]() {
     NodeBox own;
     ranks.Agree([&]() {
@@ -129,7 +129,7 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
   std::vector<double> reals;
   ranks.Agree([&]() {
     LatticeSample own;
-    const Progress sampling = ranks.Watched(SubProgress(progress, 0.0, 0.4));
+    const Progress sampling = ranks.Watched(progress.Between(0.0, 0.4));
     ForEachSlice(points, sampling, [&](const PointView& slice, const Progress& ofSlice) {
       notFinite.emplace_back();
       own.Add(SampleForLattice(slice, all.CloudSize, threads, ofSlice, notFinite.back()));
@@ -149,7 +149,7 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
   ranks.Agree([&]() {
     const Box place = FullestPlace(all);
     auto ofSlice = notFinite.begin();
-    const Progress looking = ranks.Watched(SubProgress(progress, 0.4, 0.7));
+    const Progress looking = ranks.Watched(progress.Between(0.4, 0.7));
     ForEachSlice(points, looking, [&](const PointView& slice, const Progress& part) {
       const std::vector<Point2> some = DistinctPointsIn(place, slice, *ofSlice++, threads, part);
       there.insert(there.end(), some.begin(), some.end());
@@ -174,7 +174,7 @@ bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
   {
     return false;
   }
-  const NodeBox nodes = NodesOfAll(ranks, points, all, steps, SubProgress(progress, 0.7, 1.0));
+  const NodeBox nodes = AllNodes(ranks, points, all, steps, progress.Between(0.7, 1.0));
   return lattice.Set(steps, all, nodes, tolerance) && nodes.IsFilledEnough(all.Count);
 }
 
@@ -190,7 +190,7 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
   Point2 place;                  // of that of this one
   ranks.Agree([&]() {
     steps = CheckedSteps(options.GivenLattice);
-    const Progress looking = ranks.Watched(SubProgress(progress, 0.0, 0.0));
+    const Progress looking = ranks.Watched(progress.Between(0.0, 0.0));
     forEachRows([&](const PointTable& rows) {
       const DataSetPoints points = ViewOf(rows);
       const PointView& view = points.View;
@@ -216,7 +216,7 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
   {
     return false;
   }
-  const NodeBox nodes = NodesOfAll(ranks, points, box, steps, SubProgress(progress, 0.7, 1.0));
+  const NodeBox nodes = AllNodes(ranks, points, box, steps, progress.Between(0.7, 1.0));
   if (!lattice.Set(steps, box, nodes, tolerance))
   {
     throw GivenLatticeTooLarge();

@@ -109,7 +109,7 @@ void GatherBlock(const std::vector<Place*>& places, int home, PartKind kind, con
   {
     first->Made = whole;
     first->Input = whole;
-    first->Name = first->NameOfBlock;
+    first->Name = first->BlockName;
   }
 }
 

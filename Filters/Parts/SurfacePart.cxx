@@ -75,7 +75,7 @@ void SortOwn(SurfacePart& part)
       (p[0] != q[0] || p[1] != q[1]))
     {
       throw Error("Two points in different places have the same global id, " +
-        std::to_string(own.Ids[a]) + ". Take the array \"" + part.NameOfIds +
+        std::to_string(own.Ids[a]) + ". Take the array \"" + part.IdsName +
         "\" away, or make global ids anew.");
     }
     return own.Ids[a] == own.Ids[b];
@@ -153,7 +153,7 @@ double FindQuantile(const Ranks& ranks, const std::vector<double>& values, doubl
 {
   std::vector<vtkIdType> count = { static_cast<vtkIdType>(values.size()) };
   ranks.Sum(count);
-  const vtkIdType place = PlaceOfQuantile(part, count[0]);
+  const vtkIdType place = QuantilePlace(part, count[0]);
   // As bits, doubles that are not negative have the same order.
   const double largest = std::numeric_limits<double>::max();
   std::uint64_t low = 0, high = 0;
@@ -194,8 +194,8 @@ void MeasureAll(
   });
   effect.HasLengths = true;
   effect.Shortest = FindQuantile(ranks, lengths.Edges, 0.0);
-  effect.Median = FindQuantile(ranks, lengths.Edges, HalfOfAll);
-  effect.ForMost = FindQuantile(ranks, lengths.Limits, PartOfMost);
+  effect.Median = FindQuantile(ranks, lengths.Edges, MedianShare);
+  effect.ForMost = FindQuantile(ranks, lengths.Limits, MostShare);
 }
 void KeepCorners(SurfacePart& part)
 {
@@ -254,15 +254,15 @@ void PassPart(SurfacePart& part, int threads, vtkPolyData* output)
   const vtkIdType ownCount = static_cast<vtkIdType>(part.OwnPoints.Count());
   const vtkIdType otherCount = static_cast<vtkIdType>(part.Others.Count());
   vtkNew<vtkIdTypeArray> ids;
-  ids->SetName(part.NameOfIds.c_str());
+  ids->SetName(part.IdsName.c_str());
   TakeOver(part.OwnPoints.Ids, part.Others.Ids, ids.Get());
   vtkNew<vtkDoubleArray> coordinates;
   coordinates->SetName("Points"); // as vtkPoints does
   coordinates->SetNumberOfComponents(3);
   TakeOver(part.OwnPoints.Coordinates, part.Others.Coordinates, coordinates.Get());
   vtkNew<vtkPoints> points;
-  points->SetDataType(part.TypeOfPoints);
-  if (part.TypeOfPoints == VTK_DOUBLE)
+  points->SetDataType(part.PointType);
+  if (part.PointType == VTK_DOUBLE)
   {
     points->SetData(coordinates);
   }

@@ -28,8 +28,8 @@ struct SurfacePart
   Index AddedPoints = 0;         ///< by lines: the last ones of OwnPoints
   PointTable Others;             ///< of other parts, corners of its triangles
   std::vector<ArrayKind> Kinds;  ///< of the arrays of both
-  std::string NameOfIds;         ///< of the array of global ids
-  int TypeOfPoints = 0;          ///< VTK_FLOAT where all ranks have float, else VTK_DOUBLE
+  std::string IdsName;           ///< of the array of global ids
+  int PointType = 0;             ///< VTK_FLOAT where all ranks have float, else VTK_DOUBLE
   std::set<std::string> LeftOut; ///< arrays that not all ranks have
 
   /**

@@ -58,7 +58,7 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
 {
   this->Options = options;
   // Pass 1
-  this->Crew = std::make_unique<Engine>(this->AllRanks, ownParts, NamesOfBoxes(), this->Folder);
+  this->Crew = std::make_unique<Engine>(this->AllRanks, ownParts, BoxNames(), this->Folder);
   this->Store = std::make_unique<PartStore>(*this->Crew);
   std::vector<vtkIdType> counts;
   this->Plane = std::make_unique<Cuts>(this->Source.Distribute(
@@ -104,7 +104,7 @@ std::vector<GlobalTriangle> TriangulateParts::Settle()
   this->Total.Settled = this->Total.Triangles = settled.Triangles;
   this->Total.LatticeFound = settled.LatticeFound;
   this->Total.Steps = settled.Steps;
-  this->Work.Points = static_cast<Index>(this->Store->CountOfOwn());
+  this->Work.Points = static_cast<Index>(this->Store->OwnCount());
   this->Work.SeamPoints = settled.SeamPoints;
   return std::move(settled.OfSeams);
 }
@@ -192,10 +192,10 @@ void TriangulateParts::LimitEdges(const Progress& progress)
   std::map<int, std::vector<vtkIdType>> open; // places without a triangle yet, of each part
   std::vector<vtkIdType> sums(2, 0);          // triangles, and vertices without one
   this->Crew->ForEach(progress, [&](int part, const Progress& ofPart) {
-    const Progress reading = SubProgress(ofPart, 0.0, 0.5);
+    const Progress reading = ofPart.Between(0.0, 0.5);
     this->Store->WithWhole(part, reading, [&](const SurfacePart& whole) {
       const Buffer<Index> kept =
-        WithinLimit(this->Options.MaximumEdgeLength, whole, SubProgress(ofPart, 0.5, 1.0));
+        WithinLimit(this->Options.MaximumEdgeLength, whole, ofPart.Between(0.5, 1.0));
       const std::size_t ownCount = whole.OwnPoints.Count();
       std::vector<char> areMissing(ownCount + whole.Others.Count(), 1);
       for (const Index corner : kept)
@@ -264,11 +264,11 @@ void TriangulateParts::WarnOfMissing(std::vector<Message>& warnings) const
 // The limit of edges is applied again, which is faster than writing what it leaves.
 SurfacePart TriangulateParts::Take(int part, const Progress& progress)
 {
-  SurfacePart taken = this->Store->TakeWhole(part, SubProgress(progress, 0.0, 0.7));
+  SurfacePart taken = this->Store->TakeWhole(part, progress.Between(0.0, 0.7));
   if (this->Options.MaximumEdgeLength > 0.0)
   {
     taken.Result.Triangles =
-      WithinLimit(this->Options.MaximumEdgeLength, taken, SubProgress(progress, 0.7, 1.0));
+      WithinLimit(this->Options.MaximumEdgeLength, taken, progress.Between(0.7, 1.0));
   }
   KeepCorners(taken);
   taken.Result.LatticeFound = this->Total.LatticeFound;

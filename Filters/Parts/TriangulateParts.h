@@ -73,9 +73,9 @@ public:
     std::vector<Message>& warnings);
 
   Engine& Holders() const { return *this->Crew; } ///< of the parts, after it
-  int CountOfParts() const { return this->Crew ? this->Crew->CountOfParts() : 0; } ///< 0: before it
+  int PartCount() const { return this->Crew ? this->Crew->PartCount() : 0; } ///< 0: before it
   int FirstOwn() const { return this->Crew->FirstOwn(); }          ///< part of this rank
-  vtkIdType CountOfPoints() const { return this->Source.Count(); } ///< that this rank has added
+  vtkIdType PointCount() const { return this->Source.Count(); }    ///< that this rank has added
 
   /** Of all parts. */
   struct Totals
@@ -116,7 +116,7 @@ public:
 private:
   Progress Fraction(double begin, double end) const
   {
-    return SubProgress(this->Options.Monitor, begin, end);
+    return this->Options.Monitor.Between(begin, end);
   }
   std::vector<GlobalTriangle> Settle();
   void SendTriangles(std::vector<GlobalTriangle>&& ofSeams);

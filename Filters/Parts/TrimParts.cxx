@@ -132,7 +132,7 @@ void TrimParts::Read()
     if (!isInFiles)
     {
       this->WithPart(
-        part, progress, [this](TrimmedPart& own) { this->Triangles = own.CountOfTriangles(); });
+        part, progress, [this](TrimmedPart& own) { this->Triangles = own.TriangleCount(); });
     }
   });
   if (!isInFiles)
@@ -162,18 +162,18 @@ void TrimParts::FindNear(int margin)
   this->Crew.ForEach(this->Fraction(0.02, this->Swept), [&](int part, const Progress& progress) {
     near.push_back(-1);
     this->NearParts.emplace_back();
-    this->WithPart(part, SubProgress(progress, 0.0, 0.5), [&](TrimmedPart& own) {
-      this->Sweep(own, SubProgress(progress, 0.5, 1.0));
-      near.back() = own.CountOfNear() + (own.CountOfTriangles() > 0 ? 1 : 0);
+    this->WithPart(part, progress.Between(0.0, 0.5), [&](TrimmedPart& own) {
+      this->Sweep(own, progress.Between(0.5, 1.0));
+      near.back() = own.NearCount() + (own.TriangleCount() > 0 ? 1 : 0);
       this->NearParts.back() = PackData(own.NearPart());
-      this->Near += own.CountOfNear();
-      this->RankCounts.OutwardTriangles += own.CountOfSide(1);
-      sums[0] += own.CountOfSide(0);
+      this->Near += own.NearCount();
+      this->RankCounts.OutwardTriangles += own.SideCount(1);
+      sums[0] += own.SideCount(0);
       if (sums[0] == 0)
       {
         extent.Join(own.Extent());
       }
-      sums[1] += static_cast<vtkIdType>(own.CountOfInnerPoints());
+      sums[1] += static_cast<vtkIdType>(own.InnerPointCount());
     });
   });
   this->NearCounts = this->Crew.AllRanks().Collect(near);
@@ -232,7 +232,7 @@ void TrimParts::SendBack(const BoundaryZone& zone)
   const Progress progress = this->Crew.AllRanks().Watched(this->Fraction(0.95, 0.97));
   std::vector<TrimmedZone> backs = zone.Split(progress);
   auto back = backs.begin();
-  for (int part = 0; part < this->Crew.CountOfParts(); ++part)
+  for (int part = 0; part < this->Crew.PartCount(); ++part)
   {
     if (this->NearCounts[part] >= 0)
     {
@@ -243,7 +243,7 @@ void TrimParts::SendBack(const BoundaryZone& zone)
   this->RankCounts.RecoveredEdges = result.NumberOfRecoveredEdges;
   this->RankCounts.PointsLeftOut = result.NumberOfPointsLeftOut;
   this->RankCounts.GapTolerance = result.GapTolerance;
-  this->WarningOfAll = result.Warning;
+  this->CommonWarning = result.Warning;
   this->Outline->GetPointData()->CopyAllOn();
   PassRings(result.Boundary, this->BoundaryData ? this->BoundaryData : zone.Joined(), progress,
     this->Outline);
@@ -283,18 +283,18 @@ void TrimParts::AddUp()
 
 void TrimParts::Write(int part, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
 {
-  this->WithPart(part, SubProgress(progress, 0.0, 0.3), [&](TrimmedPart& own) {
+  this->WithPart(part, progress.Between(0.0, 0.3), [&](TrimmedPart& own) {
     if (this->Crew.IsInFiles())
     {
-      this->Sweep(own, SubProgress(progress, 0.3, 0.5));
+      this->Sweep(own, progress.Between(0.3, 0.5));
       own.NearPart();
     }
     this->Crew.At(part, Back).ForEach([&](const Bytes& bytes) {
-      own.Take(TrimmedZone(bytes), SubProgress(progress, 0.5, 0.6));
+      own.Take(TrimmedZone(bytes), progress.Between(0.5, 0.6));
     });
     own.Write(this->TotalCounts.InsertedPoints > 0, this->AreMarked,
-      this->BoundaryData ? &this->Lines : nullptr, this->Options, SubProgress(progress, 0.6, 1.0),
-      kept, outward);
+      this->BoundaryData ? &this->Lines : nullptr, this->Options, progress.Between(0.6, 1.0), kept,
+      outward);
   });
 }
 

@@ -71,17 +71,20 @@ public:
     return this->RankCounts;
   } ///< of the parts of this rank
   const TrimCounts& GetTotalCounts() const { return this->TotalCounts; } ///< of all
-  vtkIdType CountOfKept() const { return this->Kept; }     ///< triangles, of all
-  vtkIdType CountOfRings() const { return this->Rings; }   ///< of all
+  vtkIdType KeptCount() const { return this->Kept; }                     ///< triangles, of all
+  vtkIdType RingCount() const { return this->Rings; }                    ///< of all
   vtkPolyData* Boundary() const { return this->Outline; }  ///< as lines; on one rank, else empty
-  const Message& Warning() const { return this->WarningOfAll; } ///< as of Trimmed; on the same rank
-  vtkIdType CountOfOwn() const { return this->Triangles; } ///< of this rank, in memory
-  vtkIdType CountOfNear() const { return this->Near; }     ///< of them
+  const Message& Warning() const
+  {
+    return this->CommonWarning;
+  }                                                      ///< as of Trimmed; on the same rank
+  vtkIdType OwnCount() const { return this->Triangles; } ///< of this rank, in memory
+  vtkIdType NearCount() const { return this->Near; }     ///< of them
 
 private:
   Progress Fraction(double begin, double end) const
   {
-    return SubProgress(this->Options.Monitor, begin, end);
+    return this->Options.Monitor.Between(begin, end);
   }
   template <typename Step>
   void WithPart(int part, const Progress& progress, const Step& step);
@@ -114,7 +117,7 @@ private:
   vtkIdType Kept = 0, Rings = 0;
   bool AreMarked = false; // points that another part owns
   vtkNew<vtkPolyData> Outline;
-  Message WarningOfAll;
+  Message CommonWarning;
 };
 
 } // namespace elevation

@@ -163,7 +163,7 @@ void TrimmedPart::Take(TrimmedZone&& back, const Progress& progress)
   this->FindOwn(progress);
 }
 
-vtkIdType TrimmedPart::CountOfSide(int side) const
+vtkIdType TrimmedPart::SideCount(int side) const
 {
   const std::vector<char>& flags = this->Swept.IsOutward;
   return static_cast<vtkIdType>(std::count(flags.begin(), flags.end(), static_cast<char>(side)));
@@ -265,7 +265,7 @@ void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* b
   const TrimOptions& options, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
 {
   this->Points.AreMarked = areMarked;
-  PassTrimmedPoints(this->Input, this->Points, SubProgress(progress, 0.0, 0.2), kept);
+  PassTrimmedPoints(this->Input, this->Points, progress.Between(0.0, 0.2), kept);
   if (boundary)
   {
     std::vector<Index> onBoundary = this->FarOnBoundary;
@@ -287,9 +287,9 @@ void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* b
   {
     if (vtkPolyData* const output = side == 0 ? kept : outward)
     {
-      TrimmedSide written = this->SideOf(side, SubProgress(progress, 0.2, 0.6));
+      TrimmedSide written = this->SideOf(side, progress.Between(0.2, 0.6));
       PassCellData(this->Input, side == 0 ? FirstPolygon(this->Input) : 0, written, areInserted,
-        SubProgress(progress, 0.6, 1.0), output);
+        progress.Between(0.6, 1.0), output);
       output->SetPolys(
         ToCellArray(std::move(written.Corners), ResolveNumberOfThreads(options.NumberOfThreads)));
       output->GetFieldData()->PassData(this->Input->GetFieldData());

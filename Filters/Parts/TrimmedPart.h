@@ -32,7 +32,7 @@ public:
 
   /** Looks at the triangles but those that are marked as another part's. @throws Error */
   void Read();
-  Index CountOfTriangles() const { return this->List.Count; }
+  Index TriangleCount() const { return this->List.Count; }
 
   /**
    * Finds the near triangles, and the sides of the others.
@@ -44,9 +44,9 @@ public:
     const Progress& progress);
   /** The same without a boundary: the near triangles decide the outline. See FindOutlinePart() */
   bool SweepForOutline(int margin, const TrimOptions& options, const Progress& progress);
-  std::int64_t CountOfInnerPoints() const { return this->Outline.NumberOfInnerPoints; }
-  vtkIdType CountOfNear() const { return static_cast<vtkIdType>(this->Swept.Near.size()); }
-  vtkIdType CountOfSide(int side) const; ///< triangles that are not near: 0 kept, 1 outward
+  std::int64_t InnerPointCount() const { return this->Outline.NumberOfInnerPoints; }
+  vtkIdType NearCount() const { return static_cast<vtkIdType>(this->Swept.Near.size()); }
+  vtkIdType SideCount(int side) const; ///< triangles that are not near: 0 kept, 1 outward
   Box Extent() const { return BoxOf(this->List); }
 
   /** The near triangles and, as lines, the border of all: for BoundaryZone. */

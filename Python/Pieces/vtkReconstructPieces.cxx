@@ -31,7 +31,7 @@ vtkReconstructPieces::vtkReconstructPieces()
     made.Delaunay = elevation::OptionsOf(this->Delaunay);
     made.Trim = elevation::OptionsOf(this->Trim);
     made.Fill = elevation::OptionsOf(this->Fill);
-    made.Fill.MemoryOfHole = this->MemoryOfHole;
+    made.Fill.HoleMemory = this->HoleMemory;
     made.TrimOutward = this->TrimOutward;
     made.FillHoles = this->FillHoles;
     made.InterpolatePointData = this->Fill->GetInterpolatePointData() != 0;
@@ -118,12 +118,12 @@ void vtkReconstructPieces::SetFillHoles(bool fill)
   }
 }
 
-void vtkReconstructPieces::SetMemoryOfHole(double bytes)
+void vtkReconstructPieces::SetHoleMemory(double bytes)
 {
   bytes = bytes > 0.0 ? bytes : 0.0;
-  if (this->MemoryOfHole != bytes)
+  if (this->HoleMemory != bytes)
   {
-    this->MemoryOfHole = bytes;
+    this->HoleMemory = bytes;
     this->Fill->Modified(); // the same
   }
 }
@@ -198,7 +198,7 @@ void vtkReconstructPieces::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "KeepFiles: " << (this->KeepFiles ? "On" : "Off") << "\n";
   os << indent << "TrimOutward: " << (this->TrimOutward ? "On" : "Off") << "\n";
   os << indent << "FillHoles: " << (this->FillHoles ? "On" : "Off") << "\n";
-  os << indent << "MemoryOfHole: " << this->MemoryOfHole << "\n";
+  os << indent << "HoleMemory: " << this->HoleMemory << "\n";
   os << indent << "Delaunay:\n";
   this->Delaunay->PrintSelf(os, indent.GetNextIndent());
   os << indent << "Trim:\n";

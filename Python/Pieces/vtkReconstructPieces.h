@@ -153,7 +153,7 @@ public:
    * error names a Spacing that would do, before any is filled. 0 (default): no limit; negative values
    * are taken as 0.
    */
-  virtual void SetMemoryOfHole(double bytes);
+  virtual void SetHoleMemory(double bytes);
 
   /**
    * Adds points, with their point arrays; all parts need the same arrays. Of points with the same
@@ -222,7 +222,7 @@ private:
   bool KeepFiles = true;
   bool TrimOutward = false;
   bool FillHoles = false;
-  double MemoryOfHole = 0.0;
+  double HoleMemory = 0.0;
   vtkNew<vtkStringArray> Messages;
   std::unique_ptr<elevation::ReconstructParts> Parts;
 };

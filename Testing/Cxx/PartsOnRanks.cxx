@@ -440,8 +440,8 @@ FilledSurface FilledInParts(const Ranks& ranks, int partsOfRank, const std::vect
   triangulating.MaximumEdgeLength = limit;
   parts.Triangulate(std::max(1, partsOfRank), nullptr, triangulating, warnings);
   FillParts fill(PartsOf(parts), options, true, longest);
-  const int partOfRims = parts.CountOfParts() - 1;
-  fill.FindHoles(partOfRims);
+  const int rimsPart = parts.PartCount() - 1;
+  fill.FindHoles(rimsPart);
   fill.Fill();
   FilledSurface filled;
   std::vector<vtkIdType> ids;
@@ -462,7 +462,7 @@ FilledSurface FilledInParts(const Ranks& ranks, int partsOfRank, const std::vect
     }
   }
   vtkNew<vtkPolyData> rims;
-  if (parts.Holders().IsOwn(partOfRims))
+  if (parts.Holders().IsOwn(rimsPart))
   {
     fill.PassRims(Progress(), rims);
   }
@@ -475,7 +475,7 @@ FilledSurface FilledInParts(const Ranks& ranks, int partsOfRank, const std::vect
   ids = ranks.Collect(ids);
   filled.OwnPoints = static_cast<vtkIdType>(ids.size());
   Check(AreIdsComplete(std::move(ids)), "each point is one part's own, new ones after the others");
-  Check(fill.CountOfNewTriangles() + parts.GetTotals().Triangles ==
+  Check(fill.NewTriangleCount() + parts.GetTotals().Triangles ==
       static_cast<vtkIdType>(filled.Triangles.size()),
     "triangles of patches are counted");
   return filled;
@@ -724,11 +724,11 @@ void CheckTrimming(const Ranks& ranks)
       std::vector<Corners> triangles = ranks.Collect(own);
       std::sort(triangles.begin(), triangles.end());
       Check(triangles == expected, name + "the triangles of one surface");
-      Check(trimmed.Parts->CountOfKept() == static_cast<vtkIdType>(expected.size()),
+      Check(trimmed.Parts->KeptCount() == static_cast<vtkIdType>(expected.size()),
         name + "triangles are counted");
       std::vector<vtkIdType> rings = { trimmed.Parts->Boundary()->GetNumberOfLines() };
       ranks.Sum(rings);
-      Check(rings[0] == trimmed.Parts->CountOfRings() && rings[0] > (boundary ? 0 : 1),
+      Check(rings[0] == trimmed.Parts->RingCount() && rings[0] > (boundary ? 0 : 1),
         name + "one rank has the boundary");
     }
   }
@@ -805,7 +805,7 @@ void CheckOutlineOfPart()
   part.Read();
   Check(part.SweepForOutline(4, TrimOptions(), Progress()), "the part covers nothing twice");
   BoundaryZone zone({ part.NearPart() });
-  Check(zone.TrimOutline(part.CountOfInnerPoints(), part.CountOfTriangles(), TrimOptions()),
+  Check(zone.TrimOutline(part.InnerPointCount(), part.TriangleCount(), TrimOptions()),
     "the near triangles decide");
   const std::vector<TrimmedZone> back = zone.Split(Progress());
   Check(back.size() == 1 && !back[0].Parents[0].empty() && !back[0].Parents[1].empty(),
@@ -843,14 +843,14 @@ void CheckOrder(const Ranks& ranks)
   {
     Engine engine(ranks, ranks.OwnRank() % 2 == 0 ? 2 : 0, { "some" }, folder);
     engine.ForEach(Progress(), [&](int part, const Progress&) {
-      for (int to = 0; to < engine.CountOfParts(); ++to)
+      for (int to = 0; to < engine.PartCount(); ++to)
       {
         SendTo(engine, 0, std::map<int, std::vector<int>>{ { to, { part, to } } });
       }
     });
     engine.Deliver();
     std::vector<int> expected;
-    for (int part = 0; part < engine.CountOfParts(); ++part)
+    for (int part = 0; part < engine.PartCount(); ++part)
     {
       expected.insert(expected.end(), { part, -1 });
     }

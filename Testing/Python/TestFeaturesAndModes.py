@@ -156,7 +156,7 @@ def check_properties(rows):
             shown = {row.properties[one] for row in mine if one in row.properties}
             check(len(shown) == wanted, "%s: of %d values of %s, rows have %s" % (name, wanted, one, shown))
     has = outcomes.own_names(vtkReconstructPieces(), "Set")
-    known = {"Controller", "Folder", "KeepFiles", "TrimOutward", "FillHoles", "MemoryOfHole"}
+    known = {"Controller", "Folder", "KeepFiles", "TrimOutward", "FillHoles", "HoleMemory"}
     check(has == known, "modes.in_pieces() sets all of vtkReconstructPieces: %s" % has)
 
 

@@ -10,7 +10,7 @@ import tempfile
 
 import meshes
 import numpy
-from on_ranks import COUNT, RANK, RANKS, check, check_equal, end, gather
+from on_ranks import RANK, RANKS, check, check_equal, end, gather
 from vtkelevationsurface.command import main as program
 from vtkelevationsurface.ranks import packed, unpacked
 from vtkelevationsurface.reading.vtk_files import run_vtk_reader

@@ -14,7 +14,7 @@ from unittest import mock
 import in_folder
 import numpy
 from on_sheet import HOLED, SHEET, Program, text_of
-from vtkelevationsurface.picture import display
+from vtkelevationsurface import picture
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 
@@ -143,8 +143,8 @@ class VirtualDisplay(Program):
     def test_a_server_that_does_not_answer_is_started_again(self):
         # However long a busy machine takes to start it.
         with mock.patch.dict(os.environ, self.with_deaf_server(1), clear=True), \
-                mock.patch.object(display, "WAIT", None):
-            with display.screen() as reason:
+                mock.patch.object(picture.display, "WAIT", None):
+            with picture.display.screen() as reason:
                 self.assertIsNone(reason)
         self.assertEqual(self.take_starts(), 2)
 

@@ -227,7 +227,7 @@ class Properties(unittest.TestCase):
             with self.subTest(name=name, value=value):
                 with self.assertRaisesRegex(ValueError, f"^{name} takes .*, not "):
                     reconstruct(SHEET, **{name: value})
-        with self.assertRaisesRegex(ValueError, "spacing: 1e-10 is less than"):
+        with self.assertRaisesRegex(ValueError, "spacing: 1e-10 is too small"):
             reconstruct(SHEET + 1e6, spacing=1e-10)
 
         with self.assertRaisesRegex(TypeError, "no option colums; did you mean columns"):

@@ -32,13 +32,13 @@ lattice given                     | Lattice=(600000.0, 6000000.0, 2.0, 1.5, -0.9
 lattice off                       | LatticeMode=1              | lattice                      | s  s  s  s  s  s  s
 lattice within a tolerance        | LatticeTolerance=0.1       | loose lattice                | s  s  s  s  s  s  s
 edge limit                        | MaximumEdgeLength=2.0      | points                       | s  s  s  s  s  s  s
-edge limit that leaves most out   | MaximumEdgeLength=0.3      | points                       | s  s  s  s  d1 d1 d1
+edge limit that leaves out most points| MaximumEdgeLength=0.3      | points                       | s  s  s  s  d1 d1 d1
 elevation error                   | MaximumElevationError=0.03  | points                       | s  s  g  g  r  r  r
-the same, edges by their data     | MaximumElevationError=0.03, DataDependentEdges=True | points                       | s  s  g  g  r  r  r
+the same, data-dependent edges    | MaximumElevationError=0.03, DataDependentEdges=True | points                       | s  s  g  g  r  r  r
 the same, with constraints        | MaximumElevationError=0.03  | straight line                | s  s  g  g  r  r  r
 the same, constraints simplified  | MaximumElevationError=0.03, SimplifyConstraints=True | straight line                | s  s  g  g  r  r  r
 constraints                       |                            | breaklines                   | s  s  s  s  s  s  s
-constraints that one rank has     |                            | breaklines + on one          | s  s  s  s  s  s  s
+constraints on one rank only      |                            | breaklines + on one          | s  s  s  s  s  s  s
 constraints, values of points     |                            | breaklines + strings + integers | s  s  s  s  s  s  s
 constraints draped                | DrapeConstraints=True      | breaklines                   | s  s  g  g  r  r  r
 duplicates, keep the first        | DuplicatePolicy=0          | duplicates                   | s  s  s  s  s  s  s
@@ -48,7 +48,7 @@ duplicates, keep the highest      | DuplicatePolicy=3          | duplicates     
 points that are not finite        |                            | not finite                   | s  s  s  s  s  s  s
 two points                        |                            | two points                   | s  s  s  s  s  s  s
 no points                         |                            | no points                    | s  s  s  s  s  s  s
-points of another kind of data set|                            | points + unstructured        | s  s  s  s  s  s  s
+points of another type of data set|                            | points + unstructured        | s  s  s  s  s  s  s
 points in single precision        | OutputPointsPrecision=0    | breaklines                   | s  s  s  s  r  r  r
 unused points removed             | RemoveUnusedPoints=True    | not finite + global ids      | s  s  s  s  r  r  r
 point data: float                 |                            | points + float array         | s  s  s  s  s  s  s
@@ -66,18 +66,18 @@ composite: partitions             |                            | points + partit
 
 Trim
 boundary given                    |                            | coast                        | s  s  s  s  s  s  s
-boundary that one rank has        |                            | coast + on one               | s  s  s  s  s  s  s
+boundary on one rank only         |                            | coast + on one               | s  s  s  s  s  s  s
 boundary with lakes and an island |                            | coast and lakes              | s  s  s  s  s  s  s
-test exact                        | OutwardTest=0              | coast                        | s  s  s  s  s  s  s
-test by inward normals            | OutwardTest=1              | coast                        | s  s  g  g  r  r  r
-edges not recovered, they are there     | RecoverBoundary=False      | coast along edges            | s  s  s  s  s  s  s
-edges not recovered, they are missing   | RecoverBoundary=False      | coast                        | s  s  s  s  s  s  s
+exact test                        | OutwardTest=0              | coast                        | s  s  s  s  s  s  s
+inward-normal test                | OutwardTest=1              | coast                        | s  s  g  g  r  r  r
+edges not recovered, none missing | RecoverBoundary=False      | coast along edges            | s  s  s  s  s  s  s
+edges not recovered, some missing | RecoverBoundary=False      | coast                        | s  s  s  s  s  s  s
 edges follow the surface, also of a lattice | BoundaryEdges=0        | lattice and lakes            | s  s  s  s  s  s  s
 edges straight                    | BoundaryEdges=1            | coast                        | s  s  s  s  s  s  s
 edges straight, own elevations    | BoundaryEdges=2            | coast                        | s  s  s  s  s  s  s
 boundary found                    |                            | gaps                         | s  s  s  s  s  s  s
 boundary found along tracks       |                            | tracks                       | s  s  s  s  s  s  s
-boundary found by inward normals  | OutwardTest=1              | gaps                         | s  s  g  g  r  r  r
+boundary found, inward-normal test| OutwardTest=1              | gaps                         | s  s  g  g  r  r  r
 gap tolerance                     | GapTolerance=2.5           | gaps                         | s  s  s  s  s  s  s
 steps of a grid                   | GridSteps=(2.0, 1.5, -0.9, 1.2) | lattice                      | s  s  s  s  s  s  s
 points in single precision        | OutputPointsPrecision=0    | coast                        | s  s  s  s  r  r  r
@@ -106,13 +106,13 @@ on the nodes of a lattice         |                            | lattice and lak
 long triangles opened             | OpenEdgeLength=2.5         | coast and lakes              | s  s  s  s  s  s  s
 largest hole                      | MaximumHoleSize=4.0        | coast and lakes              | s  s  s  s  s  s  s
 most edges of a hole              | MaximumHoleEdges=13        | coast and lakes              | s  s  s  s  s  s  s
-what the boundary cut out, open   |                            | coast and lakes              | s  s  s  s  s  s  s
-what the boundary cut out, filled | FillCutOuts=True           | coast and lakes              | s  s  s  s  s  s  s
+cut-outs of the boundary, open    |                            | coast and lakes              | s  s  s  s  s  s  s
+cut-outs of the boundary, filled  | FillCutOuts=True           | coast and lakes              | s  s  s  s  s  s  s
 most points inserted              | MaximumNumberOfInsertedPoints=50, Trim.BoundaryEdges=1 | coast and lakes              | s  s  s  s  s  s  s
 most points expected              | MaximumNumberOfExpectedPoints=20 | coast and lakes              | s  s  s  s  s  s  s
 spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  s
 point data not interpolated       | InterpolatePointData=False | coast and lakes              | s  s  s  s  s  s  s
-holes of an edge limit            | Delaunay.MaximumEdgeLength=2.2 | points                       | s  s  s  s  s  s  s
+holes that an edge limit makes    | Delaunay.MaximumEdgeLength=2.2 | points                       | s  s  s  s  s  s  s
 points in single precision        | OutputPointsPrecision=0    | coast and lakes              | s  s  s  s  r  r  r
 points of floats, in double        | OutputPointsPrecision=1, Delaunay.MaximumEdgeLength=2.2 | points + float               | s  s  s  s  r  r  r
 unused points removed, by all filters | RemoveUnusedPoints=True, Trim.RemoveUnusedPoints=True, Delaunay.RemoveUnusedPoints=True | coast and lakes + global ids | s  s  s  d2 r  r  r

@@ -448,7 +448,7 @@ def piece_source(row, case, folder, is_alone=False):
         of["Trim"].SetBoundaryData(meshes.rings(case.rings))
     source.SetTrimOutward(row.filter == "Trim")
     source.SetFillHoles(row.filter == "Fill")
-    source.SetMemoryOfHole(1e9)
+    source.SetHoleMemory(1e9)
     set_properties(row, of.get)
     return source
 

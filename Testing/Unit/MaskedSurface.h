@@ -79,46 +79,66 @@ inline Placing TenfoldGrading()
 }
 
 /**
- * The area between the mask's outline and rings, as a share of the area within one spacing of the
+ * The area between a mask's outline and rings, as a share of the area within one spacing of the
  * mask's outline; by samples.
- * @param[in] points   of the rings
- * @param[in] spacing  of the points in the unit square
  */
-inline double ErrorOfOutline(const std::vector<elevation::Point2>& points,
-  const elevation::Rings& rings, const Mask& mask,
-  const std::function<double(double, double)>& spacing, const Placing& placing = Placing())
+class SampledMask
 {
-  const elevation::RingLocator locator(points, rings);
-  constexpr int samples = 300;
-  double between = 0.0;
-  double near = 0.0;
-  for (int j = 0; j < samples; ++j)
+public:
+  /** @param[in] spacing  of the points in the unit square */
+  SampledMask(const Mask& mask, const std::function<double(double, double)>& spacing,
+    const Placing& placing = Placing())
   {
-    for (int i = 0; i < samples; ++i)
+    constexpr int samples = 300;
+    for (int j = 0; j < samples; ++j)
     {
-      const double x = (i + 0.5) / samples;
-      const double y = (j + 0.5) / samples;
-      const bool isLand = mask(x, y);
-      const double area = placing.AreaOf(x, y);
-      const elevation::Point2 p = placing.PlaceOf(x, y);
-      const double aside = 1e-9 * std::max(std::fabs(p.X), std::fabs(p.Y));
-      const bool isInside = locator.IsInside(p, { p.X + aside, p.Y }, { p.X, p.Y + aside });
-      between += isLand != isInside ? area : 0.0;
-      const double s = spacing(x, y);
-      bool isNear = false;
-      for (int k = 0; k < 16 && !isNear; ++k)
+      for (int i = 0; i < samples; ++i)
       {
-        const double angle = k * 0.39269908169872414;
-        for (const double r : { 0.25 * s, 0.5 * s, 0.75 * s, s })
+        const double x = (i + 0.5) / samples;
+        const double y = (j + 0.5) / samples;
+        const bool isLand = mask(x, y);
+        const double area = placing.AreaOf(x, y);
+        this->Samples.push_back({ placing.PlaceOf(x, y), area, isLand });
+        const double s = spacing(x, y);
+        bool isNear = false;
+        for (int k = 0; k < 16 && !isNear; ++k)
         {
-          isNear = isNear || mask(x + r * std::cos(angle), y + r * std::sin(angle)) != isLand;
+          const double angle = k * 0.39269908169872414;
+          for (const double r : { 0.25 * s, 0.5 * s, 0.75 * s, s })
+          {
+            isNear = isNear || mask(x + r * std::cos(angle), y + r * std::sin(angle)) != isLand;
+          }
         }
+        this->Near += isNear ? area : 0.0;
       }
-      near += isNear ? area : 0.0;
     }
   }
-  return between / near;
-}
+
+  /** @param[in] points  of the rings */
+  double Error(const std::vector<elevation::Point2>& points, const elevation::Rings& rings) const
+  {
+    const elevation::RingLocator locator(points, rings);
+    double between = 0.0;
+    for (const Sample& sample : this->Samples)
+    {
+      const elevation::Point2& p = sample.Place;
+      const double aside = 1e-9 * std::max(std::fabs(p.X), std::fabs(p.Y));
+      const bool isInside = locator.IsInside(p, { p.X + aside, p.Y }, { p.X, p.Y + aside });
+      between += sample.IsLand != isInside ? sample.Area : 0.0;
+    }
+    return between / this->Near;
+  }
+
+private:
+  struct Sample
+  {
+    elevation::Point2 Place;
+    double Area;
+    bool IsLand;
+  };
+  std::vector<Sample> Samples;
+  double Near = 0.0; ///< the area within one spacing
+};
 
 } // namespace testing_surfaces
 

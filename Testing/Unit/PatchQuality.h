@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * What is promised of the shape of a patch's triangles (Patch.h), asked of each of them.
+ * What is promised of the shape of a patch's triangles (Refinement.h), asked of each of them.
  */
 #ifndef PatchQuality_h
 #define PatchQuality_h

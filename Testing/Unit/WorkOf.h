@@ -23,9 +23,9 @@ namespace testing_work
 template <typename Computation>
 std::size_t WorkOf(Computation&& compute)
 {
-  const std::size_t before = elevation::WorkOfAll();
+  const std::size_t before = elevation::TotalWork();
   compute();
-  return elevation::WorkOfAll() - before;
+  return elevation::TotalWork() - before;
 }
 
 /** What passes between the reports of a computation. */
@@ -43,7 +43,7 @@ public:
   /** The computation is done. */
   void End()
   {
-    const std::size_t now = elevation::WorkOfAll();
+    const std::size_t now = elevation::TotalWork();
     this->Longest = std::max(this->Longest, now - this->Since);
     this->Since = now;
   }
@@ -52,7 +52,7 @@ public:
   int Reports = 0;
 
 private:
-  std::size_t Since = elevation::WorkOfAll();
+  std::size_t Since = elevation::TotalWork();
 };
 
 /** The most steps that a computation, which gets a monitor, takes without a report. */

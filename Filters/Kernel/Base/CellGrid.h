@@ -95,17 +95,6 @@ private:
     std::for_each(this->Begin(cell), this->End(cell), visit);
   }
 
-  template <std::size_t Count>
-  static Box BoxOf(const std::array<Point2, Count>& corners)
-  {
-    Box box;
-    for (const Point2& corner : corners)
-    {
-      box.Add(corner);
-    }
-    return box;
-  }
-
   /** Fits columns and rows to the items' extents in x and y: parallel lines share few cells. */
   template <typename CornersOf>
   void SetExtent(std::size_t count, CornersOf& cornersOf)

@@ -50,6 +50,18 @@ struct Box
   }
 };
 
+/** The bounding box of points. */
+template <typename Points>
+Box BoxOf(const Points& points)
+{
+  Box box;
+  for (const Point2& p : points)
+  {
+    box.Add(p);
+  }
+  return box;
+}
+
 /** For messages: "x 1 to 2, y 3 to 4". */
 inline std::string NameOf(const Box& box)
 {

@@ -380,7 +380,7 @@ private:
 };
 
 /** What an exact orientation counts as work; a circle takes about ten times as long. */
-constexpr std::size_t WorkOfExpansions = 10;
+constexpr std::size_t ExpansionWork = 10;
 
 /** The exponent of a power of two of which every coordinate is a multiple. */
 int CommonExponent(std::initializer_list<Point2> points)
@@ -485,7 +485,7 @@ Sign ExactOrientation(const Point2& a, const Point2& b, const Point2& c)
   {
     return IntegerOrientation(a, b, c);
   }
-  CountWork(WorkOfExpansions);
+  CountWork(ExpansionWork);
   return OrientationOf(
     Difference(a.X, c.X), Difference(a.Y, c.Y), Difference(b.X, c.X), Difference(b.Y, c.Y));
 }
@@ -509,7 +509,7 @@ Sign ExactInCircle(const Point2& a, const Point2& b, const Point2& c, const Poin
   {
     return IntegerInCircle(a, b, c, d);
   }
-  CountWork(10 * WorkOfExpansions);
+  CountWork(10 * ExpansionWork);
   return InCircleOf(Difference(a.X, d.X), Difference(a.Y, d.Y), Difference(b.X, d.X),
     Difference(b.Y, d.Y), Difference(c.X, d.X), Difference(c.Y, d.Y));
 }

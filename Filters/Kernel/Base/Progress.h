@@ -160,11 +160,6 @@ private:
   Clock::time_point Next;
 };
 
-inline Progress SubProgress(const Progress& progress, double begin, double end)
-{
-  return progress.Between(begin, end);
-}
-
 /** std::sort of plain values with reports; after an abort the values are unusable. */
 template <typename Iterator, typename Less>
 void Sort(Iterator begin, Iterator end, Less less, const Progress& progress)

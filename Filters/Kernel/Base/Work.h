@@ -56,7 +56,7 @@ inline std::size_t CountThreadWork()
  * What the process has done since it began: exact where the calling thread did all of it; of each
  * other thread up to 65,535 steps are missing.
  */
-inline std::size_t WorkOfAll()
+inline std::size_t TotalWork()
 {
   const detail::ThreadWork& own = detail::OwnWork;
   return detail::SummedWork.load(std::memory_order_relaxed) + (own.Done - own.Summed);

@@ -9,17 +9,17 @@ namespace elevation
 
 namespace
 {
-double Coordinate(Point2 p, bool isOfY)
+double Coordinate(Point2 p, bool isY)
 {
-  return isOfY ? p.Y : p.X;
+  return isY ? p.Y : p.X;
 }
 
 struct IsLess
 {
-  bool IsOfY;
+  bool IsY;
   bool operator()(Point2 p, Point2 q) const
   {
-    return Coordinate(p, this->IsOfY) < Coordinate(q, this->IsOfY);
+    return Coordinate(p, this->IsY) < Coordinate(q, this->IsY);
   }
 };
 
@@ -29,14 +29,14 @@ struct IsLess
  *         together, let it; never the end
  */
 std::vector<Point2>::iterator CutAt(std::vector<Point2>::iterator first,
-  std::vector<Point2>::iterator place, std::vector<Point2>::iterator last, bool isOfY)
+  std::vector<Point2>::iterator place, std::vector<Point2>::iterator last, bool isY)
 {
-  std::nth_element(first, place, last, IsLess{ isOfY });
+  std::nth_element(first, place, last, IsLess{ isY });
   const Point2 at = *place;
   const auto low =
-    std::partition(first, place, [at, isOfY](Point2 p) { return IsLess{ isOfY }(p, at); });
+    std::partition(first, place, [at, isY](Point2 p) { return IsLess{ isY }(p, at); });
   const auto high =
-    std::partition(place, last, [at, isOfY](Point2 p) { return !IsLess{ isOfY }(at, p); });
+    std::partition(place, last, [at, isY](Point2 p) { return !IsLess{ isY }(at, p); });
   return high == last || place - low <= high - place ? low : high;
 }
 } // namespace
@@ -60,12 +60,12 @@ void Cuts::Cut(Iterator first, Iterator last, int begin, int end)
   {
     Box box;
     std::for_each(first, last, [&box](Point2 p) { box.Add(p); });
-    line.IsOfY = box.Height() > box.Width();
+    line.IsY = box.Height() > box.Width();
     const double ratio = static_cast<double>(middle - begin) / (end - begin);
     cut += static_cast<std::ptrdiff_t>(ratio * static_cast<double>(last - first));
-    cut = CutAt(first, cut, last, line.IsOfY);
-    const bool isOfY = line.IsOfY;
-    line.Value = Coordinate(*std::min_element(cut, last, IsLess{ isOfY }), isOfY);
+    cut = CutAt(first, cut, last, line.IsY);
+    const bool isY = line.IsY;
+    line.Value = Coordinate(*std::min_element(cut, last, IsLess{ isY }), isY);
   }
   this->Cut(first, cut, begin, middle);
   this->Cut(cut, last, middle, end);
@@ -78,7 +78,7 @@ int Cuts::OwnerOf(Point2 p) const
   {
     const int middle = MiddleOf(begin, end);
     const Line& line = this->Lines[middle];
-    (Coordinate(p, line.IsOfY) < line.Value ? end : begin) = middle;
+    (Coordinate(p, line.IsY) < line.Value ? end : begin) = middle;
   }
   return begin;
 }
@@ -93,7 +93,7 @@ Cell Cuts::CellOf(int begin, int end) const
     const Line& line = this->Lines[middle];
     const bool isLower = begin < middle;
     Point2& corner = isLower ? cell.High : cell.Low;
-    (line.IsOfY ? corner.Y : corner.X) = line.Value;
+    (line.IsY ? corner.Y : corner.X) = line.Value;
     (isLower ? last : first) = middle;
   }
   return cell;

@@ -48,7 +48,7 @@ public:
 private:
   struct Line
   {
-    bool IsOfY = false; // x or y of the points is compared
+    bool IsY = false;   // x or y of the points is compared
     double Value = 0.0; // what is less goes to the lower half
   };
   using Iterator = std::vector<Point2>::iterator;

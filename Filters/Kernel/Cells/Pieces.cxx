@@ -33,14 +33,14 @@ bool Cell::HoldsCircle(Point2 a, Point2 b, Point2 c) const
   }
   const double bx = b.X - a.X, by = b.Y - a.Y, cx = c.X - a.X, cy = c.Y - a.Y;
   const double d = 2.0 * (bx * cy - by * cx);
-  const double errorOfD = unit * (std::fabs(bx * cy) + std::fabs(by * cx));
-  if (!(std::fabs(d) > 4.0 * errorOfD && std::fabs(d) > smallest))
+  const double errorD = unit * (std::fabs(bx * cy) + std::fabs(by * cx));
+  if (!(std::fabs(d) > 4.0 * errorD && std::fabs(d) > smallest))
   {
     return false;
   }
   const double b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
   const double x = (cy * b2 - by * c2) / d, y = (bx * c2 - cx * b2) / d;
-  const double relative = 2.0 * errorOfD / std::fabs(d) + unit;
+  const double relative = 2.0 * errorD / std::fabs(d) + unit;
   const double error = relative *
     (std::fabs(cy * b2) + std::fabs(by * c2) + std::fabs(bx * c2) + std::fabs(cx * b2)) /
     std::fabs(d);
@@ -220,7 +220,7 @@ bool Has(const std::vector<Edge>& sorted, Index from, Index to)
  * The edges of settled or covered triangles that have none of these on their right.
  * @param[in] open  the edges of open triangles, sorted
  */
-std::vector<Edge> FindEdgesOfSeam(
+std::vector<Edge> FindSeamEdges(
   const std::vector<Edge>& open, const SettledMesh& mesh, const Progress& progress)
 {
   std::vector<Edge> across; // edges between vertices of the border: those of the border, and others
@@ -289,7 +289,7 @@ Piece SeamOf(const SettledMesh& mesh, const Progress& progress)
   }
   std::sort(open.begin(), open.end());
   std::for_each(open.begin(), open.end(), [&](const Edge& edge) { place(edge.first); });
-  for (const Edge& edge : FindEdgesOfSeam(open, mesh, progress))
+  for (const Edge& edge : FindSeamEdges(open, mesh, progress))
   {
     const Index first = place(edge.first);
     seam.Edges.insert(seam.Edges.end(), { first, place(edge.second) });
@@ -317,7 +317,7 @@ bool HoldsCircleOf(
     return cell.HoldsCircle(a, b, c);
   }
   const bool isHeld = cell.IsWholePlane() ||
-    cell.Holds(lattice->BoxOfCircle(lattice->NodeOf(a), lattice->NodeOf(b), lattice->NodeOf(c)));
+    cell.Holds(lattice->CircleBox(lattice->NodeOf(a), lattice->NodeOf(b), lattice->NodeOf(c)));
   if (isHeld && Orientation(a, b, c) != Positive)
   {
     throw NotOnLattice();
@@ -382,7 +382,7 @@ std::vector<char> FindNear(const SettledMesh& mesh)
  *
  * It holds for coordinates alone: on a lattice, nodes are triangulated, which are elsewhere.
  */
-void MarkSettledOfCell(const Cell& cell, const Progress& progress, SettledMesh& mesh)
+void MarkSettledInCell(const Cell& cell, const Progress& progress, SettledMesh& mesh)
 {
   constexpr int mostRounds = 8; // then all triangles are looked at; mostly two are enough
   std::vector<char> isNear = FindNear(mesh);
@@ -444,7 +444,7 @@ SettledCell SettleCell(const PointView& points, GlobalId first, const Cell& cell
   }
   else
   {
-    MarkSettledOfCell(cell, options.Monitor, mesh);
+    MarkSettledInCell(cell, options.Monitor, mesh);
   }
   Piece seam = SeamOf(mesh, options.Monitor);
   std::for_each(seam.Ids.begin(), seam.Ids.end(), [first](GlobalId& id) { id += first; });

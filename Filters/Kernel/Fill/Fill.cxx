@@ -104,14 +104,12 @@ void Elevate(const Mesh& mesh, const VertexStars* stars, const PointView& points
   std::vector<std::vector<double>>& attributes, std::vector<double>& errors)
 {
   const Values elevation = [&points](Index id) { return points.Elevation(id); };
-  const Heights heights(
-    mesh, stars, patch, options.Method, elevation, SubProgress(progress, 0.0, 0.5));
+  const Heights heights(mesh, stars, patch, options.Method, elevation, progress.Between(0.0, 0.5));
   const std::size_t count = options.Attributes.size() + 1;
-  const Progress applying = SubProgress(progress, 0.5, 1.0);
+  const Progress applying = progress.Between(0.5, 1.0);
   for (std::size_t i = 0; i < count; ++i)
   {
-    const Progress one =
-      SubProgress(applying, double(i) / double(count), double(i + 1) / double(count));
+    const Progress one = applying.Between(double(i) / double(count), double(i + 1) / double(count));
     std::vector<double> values = heights.Apply(i == 0 ? elevation : options.Attributes[i - 1], one);
     if (i > 0)
     {
@@ -208,18 +206,18 @@ public:
     this->GrantPoints();
     if (this->AllWork > 0.0 && needsStars && !this->Stars)
     {
-      this->Stars = std::make_unique<VertexStars>(this->Surface, SubProgress(monitor, 0.02, 0.06));
+      this->Stars = std::make_unique<VertexStars>(this->Surface, monitor.Between(0.02, 0.06));
     }
-    const Progress filling = SubProgress(monitor, this->Stars ? 0.06 : 0.02, 1.0);
+    const Progress filling = monitor.Between(this->Stars ? 0.06 : 0.02, 1.0);
     this->Result.Attributes.resize(this->Options.Attributes.size());
     const double all = this->AllWork > 0.0 ? this->AllWork : 1.0;
     double done = 0.0;
     for (Index begin = 0; begin < this->GivenHoles.Count();)
     {
       const double before = done;
-      const Index end = this->EndOfBatch(begin, done);
+      const Index end = this->BatchEnd(begin, done);
       const Progress ofBatch =
-        SubProgress(filling, std::min(1.0, before / all), std::min(1.0, done / all));
+        filling.Between(std::min(1.0, before / all), std::min(1.0, done / all));
       Report(ofBatch, 0.0);
       this->FillBatch(begin, end, ofBatch);
       begin = end;
@@ -266,15 +264,14 @@ private:
     if (options.UseLattice == LatticeMode::Automatic && !(options.Spacing > 0.0) &&
       this->GivenHoles.Count() > 0)
     {
-      lattice = this->Context.FoundLattice
-        ? *this->Context.FoundLattice
-        : FindLattice(
-            this->Points, LatticeTolerance, this->Threads, SubProgress(options.Monitor, 0.0, 0.02));
+      lattice = this->Context.FoundLattice ? *this->Context.FoundLattice
+                                           : FindLattice(this->Points, LatticeTolerance,
+                                               this->Threads, options.Monitor.Between(0.0, 0.02));
     }
     if (lattice.Found)
     {
       this->Stars =
-        std::make_unique<VertexStars>(this->Surface, SubProgress(options.Monitor, 0.02, 0.02));
+        std::make_unique<VertexStars>(this->Surface, options.Monitor.Between(0.02, 0.02));
     }
     this->Result.Reports.reserve(this->GivenHoles.Count());
     for (Index hole = 0; hole < this->GivenHoles.Count(); ++hole)
@@ -346,7 +343,7 @@ private:
    * A large patch is made alone and reports progress; small ones are made together, enough of them
    * that threads rarely wait for each other.
    */
-  Index EndOfBatch(Index begin, double& done) const
+  Index BatchEnd(Index begin, double& done) const
   {
     const double alone = this->Threads > 1 ? PointsAlone : PointsAlone / 4.0;
     const double before = done;
@@ -440,16 +437,16 @@ private:
       {
         patch.Surroundings = this->Context.Surroundings[hole];
       }
-      MakePatch(this->Plans[hole], SubProgress(progress, 0.0, 0.4), patch);
+      MakePatch(this->Plans[hole], progress.Between(0.0, 0.4), patch);
       if (this->GivenHoles.IsRegion(hole) && patch.NumberOfNewVertices() == 0)
       {
         this->HasRoom[hole] = 0;
         return;
       }
-      FindNeighbors(patch, SubProgress(progress, 0.4, 0.45));
-      FindNearest(patch, SubProgress(progress, 0.45, 0.5));
+      FindNeighbors(patch, progress.Between(0.4, 0.45));
+      FindNearest(patch, progress.Between(0.45, 0.5));
       Elevate(this->Surface, this->Stars.get(), this->Points, this->Options,
-        SubProgress(progress, 0.5, 1.0), patch, report, filled.Attributes, filled.Errors);
+        progress.Between(0.5, 1.0), patch, report, filled.Attributes, filled.Errors);
     }
     catch (const Error& error)
     {
@@ -562,11 +559,11 @@ void CheckEffort(
       largest = std::max(largest, need.Area);
     }
   }
-  const double room = options.MemoryOfHole / BytesPerPoint;
-  if (options.MemoryOfHole > 0.0 && ofOne > room)
+  const double room = options.HoleMemory / BytesPerPoint;
+  if (options.HoleMemory > 0.0 && ofOne > room)
   {
     throw MakeError<sentences::HoleTooLarge>(CountToText(ofOne), ToGigabytes(ofOne),
-      ToGigabytes(room), RoundedUp(SpacingOfPoints(largest, room)));
+      ToGigabytes(room), RoundedUp(PointSpacing(largest, room)));
   }
   const double chosen = static_cast<double>(options.MaximumExpectedPoints);
   const double limit =
@@ -575,7 +572,7 @@ void CheckEffort(
   {
     return;
   }
-  const double better = RoundedUp(SpacingOfPoints(area, limit));
+  const double better = RoundedUp(PointSpacing(area, limit));
   if (chosen > 0.0)
   {
     throw MakeError<sentences::TooManyPointsToFill>(

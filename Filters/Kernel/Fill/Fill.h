@@ -77,7 +77,7 @@ struct FillOptions
   Index MaximumInsertedPoints = MaximumNumberOfPoints;
   /** More new points expected of all holes together are an Error; 0: see CheckEffort(). */
   Index MaximumExpectedPoints = 0;
-  double MemoryOfHole = 0.0; ///< in bytes; more expected for one hole are an Error; 0: no limit
+  double HoleMemory = 0.0; ///< in bytes; more expected for one hole are an Error; 0: no limit
   /** Whether new points are lattice nodes where the surface's points are. */
   LatticeMode UseLattice = LatticeMode::Automatic;
   /** Threads to use; 0: all there are. The result is the same, byte for byte. */
@@ -102,7 +102,7 @@ struct HoleReport
   double Perimeter = 0.0;  ///< length of all edges
   /** Inside the rim, outside the islands; NaN when Size is above 1e150 or below 1e-150. */
   double Area = 0.0;
-  double Spacing = 0.0; ///< as given, or the mean length of the edges (Patch.h)
+  double Spacing = 0.0; ///< as given, or the mean length of the edges (PatchPlan.h)
   Index NumberOfInsertedPoints = 0;
   Interpolation Method = Interpolation::NeighborMean; ///< as used; never Adaptive
   bool NeedsMoreSurroundings = false; ///< not filled: its surroundings are too small
@@ -174,7 +174,7 @@ std::vector<HoleNeed> FindHoleNeeds(const Mesh& mesh, const PointView& points, c
  * @throws Error if more new points are expected than MaximumExpectedPoints; if this is 0, than ten
  *         times the surface's points and more than a million. It names a spacing that would do. No
  *         error if MaximumInsertedPoints is no larger: then large holes fail. The same if one hole
- *         takes more than MemoryOfHole.
+ *         takes more than HoleMemory.
  */
 void CheckEffort(
   const std::vector<HoleNeed>& needs, double numberOfPoints, const FillOptions& options);

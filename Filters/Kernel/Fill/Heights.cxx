@@ -92,7 +92,7 @@ struct SlopingEdge
 };
 
 /** For each point the number of points that edges up to a slope join it to, itself included. */
-std::vector<Index> SizesOfParts(Index count, const std::vector<SlopingEdge>& edges, double steepest)
+std::vector<Index> PartSizes(Index count, const std::vector<SlopingEdge>& edges, double steepest)
 {
   std::vector<Index> parents(count);
   std::iota(parents.begin(), parents.end(), Index(0));
@@ -140,7 +140,7 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
     this->Method = Interpolation::NeighborMean;
     return;
   }
-  const Box box = patch.BoxOfBoundary();
+  const Box box = patch.BoundaryBox();
   this->Center = box.Center();
   this->Scale = 2.0 / std::max(box.Width(), box.Height());
   if (wanted != Interpolation::Membrane)
@@ -157,12 +157,12 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
     }
   }
   this->IsByTrials = wanted == Interpolation::Adaptive;
-  this->MakeCandidates(wanted, *stars, values, SubProgress(progress, 0.0, 0.0));
+  this->MakeCandidates(wanted, *stars, values, progress.Between(0.0, 0.0));
   if (this->IsCandidate[0] || !this->AllBoundaryIsCenter)
   {
-    this->Harmonic = std::make_unique<Membrane>(patch.Neighbors, SubProgress(progress, 0.0, 0.3));
+    this->Harmonic = std::make_unique<Membrane>(patch.Neighbors, progress.Between(0.0, 0.3));
   }
-  this->Choose(*stars, values, SubProgress(progress, 0.3, 1.0));
+  this->Choose(*stars, values, progress.Between(0.3, 1.0));
 }
 
 Heights::~Heights() = default;
@@ -275,9 +275,8 @@ std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& va
     });
   }
   const double limit = SteepEdge * Median(std::move(slopes));
-  const std::vector<Index> gentle = SizesOfParts(count, edges, limit);
-  const std::vector<Index> all =
-    SizesOfParts(count, edges, std::numeric_limits<double>::infinity());
+  const std::vector<Index> gentle = PartSizes(count, edges, limit);
+  const std::vector<Index> all = PartSizes(count, edges, std::numeric_limits<double>::infinity());
   std::vector<char> isStray(count);
   for (Index i = 0; i < count; ++i)
   {
@@ -383,7 +382,7 @@ void Heights::TryBeside(Trials& trials, const Progress& progress) const
       const double done = begun + (1.0 - begun) * 0.8 * k / number;
       Report(progress, done);
       const double angle = 2.0 * 3.14159265358979323846 * Spread(k, number) / number;
-      found += trials.At(angle, size, isCounted, SubProgress(progress, done, done)) ? 1 : 0;
+      found += trials.At(angle, size, isCounted, progress.Between(done, done)) ? 1 : 0;
     }
     begun += (1.0 - begun) * 0.8;
     return found;
@@ -494,7 +493,7 @@ std::vector<double> Heights::Mean(const Values& values, const Progress& progress
 }
 
 /** The sum of the splines at each vertex; at the boundary only if the membrane needs it. */
-std::vector<double> Heights::SumOfSplines(
+std::vector<double> Heights::SplineSum(
   const std::vector<double>& known, const Progress& progress) const
 {
   std::vector<double> atCenters;
@@ -630,18 +629,18 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
   if (this->HasSpline())
   {
     const std::vector<double> sums =
-      this->SumOfSplines(known, SubProgress(progress, 0.0, this->NeedsHarmonic() ? 0.3 : 0.8));
+      this->SplineSum(known, progress.Between(0.0, this->NeedsHarmonic() ? 0.3 : 0.8));
     std::transform(rim.begin(), rim.end(), sums.begin(), missed.begin(), std::minus<double>());
     std::copy(sums.begin() + static_cast<std::ptrdiff_t>(boundary), sums.end(), result.begin());
   }
   if (this->NeedsHarmonic())
   {
     // What the splines miss at the boundary; without splines, all of it.
-    const std::vector<double> flat = this->Harmonic->Solve(
-      missed, 1e-10, SubProgress(progress, this->HasSpline() ? 0.3 : 0.0, 0.8));
+    const std::vector<double> flat =
+      this->Harmonic->Solve(missed, 1e-10, progress.Between(this->HasSpline() ? 0.3 : 0.0, 0.8));
     std::transform(result.begin(), result.end(), flat.begin(), result.begin(), std::plus<double>());
   }
-  this->Bound(rim, values, middle, unit, SubProgress(progress, 0.8, 1.0), result);
+  this->Bound(rim, values, middle, unit, progress.Between(0.8, 1.0), result);
   return result;
 }
 

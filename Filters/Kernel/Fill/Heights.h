@@ -161,8 +161,7 @@ private:
     const Progress& progress);
   void TryBeside(Trials& trials, const Progress& progress) const;
   void Choose(const VertexStars& stars, const Values& values, const Progress& progress);
-  std::vector<double> SumOfSplines(
-    const std::vector<double>& known, const Progress& progress) const;
+  std::vector<double> SplineSum(const std::vector<double>& known, const Progress& progress) const;
   /** Medians of the slopes around the hole. */
   struct RimSlopes
   {

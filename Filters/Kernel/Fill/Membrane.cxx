@@ -46,8 +46,7 @@ Multigrid::Matrix MatrixOf(const Adjacency& graph, const Progress& progress)
 
 Membrane::Membrane(const Adjacency& graph, const Progress& progress)
   : Graph(graph)
-  , Equations(
-      std::make_unique<Multigrid>(MatrixOf(graph, SubProgress(progress, 0.0, 0.0)), progress))
+  , Equations(std::make_unique<Multigrid>(MatrixOf(graph, progress.Between(0.0, 0.0)), progress))
 {
 }
 

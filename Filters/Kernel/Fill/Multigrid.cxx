@@ -24,10 +24,10 @@ using Vector = Multigrid::Vector;
 constexpr double MostUnknowns = 15000.0;
 constexpr double MostUnknownsWithoutReport = 50000.0;
 
-bool IsFactorized(double unknowns, double unknownsOfAll)
+bool IsFactorized(double unknowns, double totalUnknowns)
 {
   return unknowns <= MostUnknownsWithoutReport &&
-    unknowns * unknowns <= MostUnknowns * unknownsOfAll;
+    unknowns * unknowns <= MostUnknowns * totalUnknowns;
 }
 
 /**
@@ -158,7 +158,7 @@ Multigrid::Multigrid(Matrix matrix, const Progress& progress)
 {
   const double size = static_cast<double>(matrix.rows());
   // The number of levels is not known, so this reports without advancing.
-  const Progress here = SubProgress(progress, 0.0, 0.0);
+  const Progress here = progress.Between(0.0, 0.0);
   this->Levels.emplace_back();
   this->Levels.back().A.swap(matrix); // Eigen copies where it is asked to move
   while (!IsFactorized(static_cast<double>(this->Levels.back().A.rows()), size))
@@ -195,17 +195,17 @@ Vector Multigrid::Cycle(std::size_t level, const Vector& right, const Progress& 
   CountWork(entries / 2);
   Report(progress, 0.0);
   Vector rest = a.triangularView<Eigen::StrictlyUpper>() * x; // the negative residual
-  Vector restOfNext = Vector::Zero(next.rows());
+  Vector nextRest = Vector::Zero(next.rows());
   for (Index i = 0; i < a.rows(); ++i)
   {
-    restOfNext[aggregate[i]] -= rest[i];
+    nextRest[aggregate[i]] -= rest[i];
   }
-  Vector coarse = this->Cycle(level + 1, restOfNext, progress);
+  Vector coarse = this->Cycle(level + 1, nextRest, progress);
   if (level + 2 < this->Levels.size())
   {
     // A W-cycle: coarse levels are cheap.
-    restOfNext -= next * coarse;
-    coarse += this->Cycle(level + 1, restOfNext, progress);
+    nextRest -= next * coarse;
+    coarse += this->Cycle(level + 1, nextRest, progress);
   }
   for (Index i = 0; i < a.rows(); ++i)
   {
@@ -237,7 +237,7 @@ Vector Multigrid::Solve(Vector right, double accuracy, const Progress& progress)
   for (int step = 0; step < LargestNumberOfSteps; ++step)
   {
     Report(progress, done);
-    const Vector preconditioned = this->Cycle(0, right, SubProgress(progress, done, done));
+    const Vector preconditioned = this->Cycle(0, right, progress.Between(done, done));
     const double now = right.dot(preconditioned);
     first = step == 0 ? now : first;
     if (!(now > accuracy * accuracy * first))

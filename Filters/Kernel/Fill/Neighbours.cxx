@@ -234,9 +234,9 @@ private:
 
 void FindNeighbors(PatchMesh& patch, const Progress& progress)
 {
-  CollectNeighbors(patch, SubProgress(progress, 0.0, 0.5));
-  WeighNeighbors(patch, SubProgress(progress, 0.5, 0.7));
-  FindLayers(patch, SubProgress(progress, 0.7, 1.0));
+  CollectNeighbors(patch, progress.Between(0.0, 0.5));
+  WeighNeighbors(patch, progress.Between(0.5, 0.7));
+  FindLayers(patch, progress.Between(0.7, 1.0));
 }
 
 void FindNearest(PatchMesh& patch, const Progress& progress)

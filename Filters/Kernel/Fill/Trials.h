@@ -32,20 +32,20 @@ constexpr Index PointsPerProbe = 16;
  * Prior shares of membrane, thin plate and cubic spline, and how many observations of the error a
  * place counts as. Neighbouring places overlap, and a single rough one must not decide.
  */
-constexpr double LogarithmOfPrior[3] = { 0.0, 1.0, 0.0 };
+constexpr double LogPrior[3] = { 0.0, 1.0, 0.0 };
 constexpr double ObservationsPerPlace = 2.0;
 
 /**
  * Of the square of the least error at a place, what is taken for noise of the surface, which no
  * method can predict. It is part of all errors and would make them look alike.
  */
-constexpr double ShareOfNoise = 0.8;
+constexpr double NoiseShare = 0.8;
 
 /**
  * Added to the logarithm of an error found at half the size; half of it where moved points lie
  * anywhere in triangles. The surface is flat between its points, which favours smoother methods.
  */
-constexpr double PenaltyOfHalfSize[3] = { 0.0, 0.2, 0.4 };
+constexpr double HalfSizePenalty[3] = { 0.0, 0.2, 0.4 };
 
 /** Smaller errors, relative to the range, are rounding. */
 constexpr double LeastError = 1e-9;
@@ -91,7 +91,7 @@ public:
     , ValueOf(values)
     , Boundary(heights.Patch.BoundaryIds.size())
   {
-    std::copy_n(LogarithmOfPrior, 3, this->Scores);
+    std::copy_n(LogPrior, 3, this->Scores);
     this->CollectPoints();
   }
 
@@ -144,13 +144,13 @@ public:
       }
       least = std::min(least, squares[method]);
     }
-    const double noise = ShareOfNoise * least;
+    const double noise = NoiseShare * least;
     for (int method = 0; method < 3 && isCounted; ++method)
     {
       // A prediction that is exact up to rounding must not outweigh all other places.
       const double square = squares[method] - noise + LeastError * LeastError;
       this->Scores[method] -=
-        ObservationsPerPlace * (0.5 * std::log(square) + PenaltyOfHalfSize[method] * halvings);
+        ObservationsPerPlace * (0.5 * std::log(square) + HalfSizePenalty[method] * halvings);
     }
     return true;
   }
@@ -278,7 +278,7 @@ private:
     for (const Index place : this->Hole.Centers)
     {
       const bool isAdded = static_cast<std::size_t>(place) < this->Boundary;
-      this->PlaceOfCenter.push_back(isAdded ? place : static_cast<Index>(this->Points.size()));
+      this->CenterPlace.push_back(isAdded ? place : static_cast<Index>(this->Points.size()));
       if (!isAdded)
       {
         this->Points.push_back(this->Hole.Surface.PointOf(this->Hole.KnownVertices[place]));
@@ -409,7 +409,7 @@ private:
     }
     const Spline& spline = *this->Hole.Splines[method - 1];
     std::vector<double> atCenters;
-    for (const Index i : this->PlaceOfCenter)
+    for (const Index i : this->CenterPlace)
     {
       atCenters.push_back(this->Moved[i]);
     }
@@ -436,7 +436,7 @@ private:
   std::vector<Point2> Points;
   std::vector<Point2> Normalized;
   std::vector<std::size_t> Order;   ///< around the hole, of those that are not probes
-  std::vector<Index> PlaceOfCenter; ///< index in Points of each centre
+  std::vector<Index> CenterPlace;   ///< index in Points of each centre
   std::vector<Index> Probes;        ///< numbers of new vertices
   std::vector<double> Moved;        ///< values where the points are moved to
   std::vector<double> Misses[3];    ///< errors of each method at all probes, place by place

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ApexSearch.h"
 
+#include "BoxAround.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,7 +17,7 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double UnitRoundoff = 1.1102230246251565e-16; // 2^-53
 
 /** The cost of an exact comparison, in points looked at. */
-constexpr std::int64_t WorkOfExact = 10;
+constexpr std::int64_t ExactWork = 10;
 /** With more exact comparisons in one search, points are on one circle or line: growth ends. */
 constexpr int MostExacts = 2000;
 /** With more work in one search, there would be no report for too long: growth ends. */
@@ -48,18 +50,6 @@ __attribute__((target("avx2"), always_inline)) inline __m128i ColumnsOf(
 
 #endif
 } // namespace
-
-/** A box around an edge, relative to its origin. */
-struct ApexSearch::Box
-{
-  double LowX, HighX, LowY, HighY;
-
-  bool Holds(const Box& other) const
-  {
-    return this->LowX < other.LowX && other.HighX < this->HighX && this->LowY < other.LowY &&
-      other.HighY < this->HighY;
-  }
-};
 
 /** The bins around the origin that are searched before the tree is. */
 struct ApexSearch::Region
@@ -171,58 +161,22 @@ void ApexSearch::SetEdge(Index a, Index b)
 Index ApexSearch::FindByAngle()
 {
   double reach = std::fabs(this->EdgeX) + std::fabs(this->EdgeY);
-  Box box{ -Infinity, Infinity, -Infinity, Infinity };
+  const auto compare = [this](Index first, Index count) { this->Compare(first, count); };
+  BoxAround box{ -Infinity, Infinity, -Infinity, Infinity };
   for (; this->Best == None && reach < Infinity; reach *= 2.0)
   {
     box = { 0.5 * this->EdgeX - reach, 0.5 * this->EdgeX + reach, 0.5 * this->EdgeY - reach,
       0.5 * this->EdgeY + reach };
-    this->LookIntoBox(this->NodeAround(box), box);
+    VisitLeaves(this->Grid, this->Origin, box, this->Budget, compare);
   }
   const double radius = std::sqrt(this->RadiusSquared);
-  const Box discs{ this->CenterX - radius, this->CenterX + radius, this->CenterY - radius,
+  const BoxAround discs{ this->CenterX - radius, this->CenterX + radius, this->CenterY - radius,
     this->CenterY + radius };
   if (!(reach < Infinity) || !box.Holds(discs))
   {
-    this->LookIntoBox(this->NodeAround(discs), discs);
+    VisitLeaves(this->Grid, this->Origin, discs, this->Budget, compare);
   }
   return this->Best;
-}
-
-/** The lowest node above the origin that contains all points of a box. */
-const BoxTree::Node& ApexSearch::NodeAround(const Box& box) const
-{
-  BoxTree::Step step = this->Grid.Lowest(this->Origin);
-  while (!step.IsRoot() &&
-    !Box{
-      step.LowX - this->A.X, step.HighX - this->A.X, step.LowY - this->A.Y, step.HighY - this->A.Y }
-       .Holds(box))
-  {
-    step = this->Grid.Tree.Above(step);
-  }
-  return *step.Node;
-}
-
-void ApexSearch::LookIntoBox(const Node& node, const Box& box)
-{
-  this->Budget.Spend(Node::Places);
-  for (int place = 0; place < Node::Places; ++place)
-  {
-    // Differences round monotonically: relative to the origin, a box still contains its points. The
-    // box of an infinite disc reaches even the empty boxes, so their First is tested.
-    if (node.First[place] != None && node.LowX[place] - this->A.X <= box.HighX &&
-      node.HighX[place] - this->A.X >= box.LowX && node.LowY[place] - this->A.Y <= box.HighY &&
-      node.HighY[place] - this->A.Y >= box.LowY)
-    {
-      if (node.Count[place] > 0)
-      {
-        this->Compare(node.First[place], node.Count[place]);
-      }
-      else
-      {
-        this->LookIntoBox(this->Grid.Tree.Nodes[node.First[place]], box);
-      }
-    }
-  }
 }
 
 /**
@@ -306,7 +260,7 @@ Index ApexSearch::BestOf(std::uint64_t candidates)
     if (candidates & 1)
     {
       const Index slot = this->Around.SlotOf(i);
-      this->Budget.Spend(best == None ? 0 : WorkOfExact);
+      this->Budget.Spend(best == None ? 0 : ExactWork);
       best = best == None || this->IsBetter(slot, best) ? slot : best;
     }
   }
@@ -696,7 +650,7 @@ bool ApexSearch::CompareOne(Index slot)
 
 void ApexSearch::CountExact()
 {
-  this->Budget.Spend(WorkOfExact);
+  this->Budget.Spend(ExactWork);
   if (++this->Exacts > MostExacts)
   {
     throw CannotGrow();

@@ -66,13 +66,10 @@ public:
 
 private:
   using Node = BoxTree::Node;
-  struct Box;
   struct Region;
 
   void SetEdge(Index a, Index b);
   Index FindByAngle();
-  const Node& NodeAround(const Box& box) const;
-  void LookIntoBox(const Node& node, const Box& box);
   bool LookIntoBins();
   bool LookIntoRows(const Region& region);
   Index BestOf(std::uint64_t candidates);

@@ -323,7 +323,7 @@ private:
     {
       return InCircle(a, b, c, d);
     }
-    return InCircleOfNodes(*this->Metric, a, b, c, d);
+    return InNodeCircle(*this->Metric, a, b, c, d);
   }
 
   /** Reports within a merge, which takes long at the top level. */
@@ -361,11 +361,11 @@ Buffer<Index> DivideAndConquer(
   {
     return Buffer<Index>();
   }
-  const Progress dividing = SubProgress(progress, 0.0, 0.9);
+  const Progress dividing = progress.Between(0.0, 0.9);
   Division division(points, dividing, metric);
   const Index hullSpoke = division.Divide(0, static_cast<Index>(points.size())).FromLowest;
-  division.RemoveTies(hullSpoke, SubProgress(progress, 0.9, 0.95));
-  Buffer<Index> triangles = division.CutIntoFans(hullSpoke, SubProgress(progress, 0.95, 1.0));
+  division.RemoveTies(hullSpoke, progress.Between(0.9, 0.95));
+  Buffer<Index> triangles = division.CutIntoFans(hullSpoke, progress.Between(0.95, 1.0));
   Report(progress, 1.0);
   return triangles;
 }

@@ -243,8 +243,8 @@ std::vector<std::unique_ptr<Growth::GridStrip>> Growth::MakeStrips(const Hull& h
     return static_cast<Index>(static_cast<std::int64_t>(count) * k / number);
   };
   this->Pool.Resize(count);
-  ForEachRange(count, threads, SubProgress(this->Options.Monitor, 0.2, 0.2),
-    [this](Index, Index begin, Index end) {
+  ForEachRange(
+    count, threads, this->Options.Monitor.Between(0.2, 0.2), [this](Index, Index begin, Index end) {
       std::fill(this->Pool.begin() + begin, this->Pool.begin() + end, Ends{ None, None });
     });
   std::vector<std::unique_ptr<GridStrip>> strips;
@@ -261,7 +261,7 @@ Buffer<Index> GrowOverGrid(
 {
   Growth growth(grid, options);
   return GrowAll(growth, hull, grid.NumberOfPoints(), options, threads,
-    SubProgress(options.Monitor, 0.2, 1.0), std::move(grid.Scratch));
+    options.Monitor.Between(0.2, 1.0), std::move(grid.Scratch));
 }
 
 } // namespace elevation

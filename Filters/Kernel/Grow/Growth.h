@@ -270,9 +270,9 @@ Buffer<Index> GrowAll(Growth& growth, const Hull& hull, Index vertices,
     }
   }
   triangles = Buffer<Index>();
-  triangles = DivideAndConquer(growth.Places(SubProgress(progress, 0.0, 0.0)),
-    SubProgress(progress, 0.0, 0.95), growth.Metric);
-  const Progress naming = SubProgress(progress, 0.95, 1.0);
+  triangles = DivideAndConquer(
+    growth.Places(progress.Between(0.0, 0.0)), progress.Between(0.0, 0.95), growth.Metric);
+  const Progress naming = progress.Between(0.95, 1.0);
   std::size_t kept = 0;
   for (const std::size_t t : Counted(triangles.size() / 3))
   {

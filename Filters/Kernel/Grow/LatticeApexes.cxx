@@ -12,10 +12,10 @@ namespace
 {
 
 /** The discs through both ends of an edge, in the metric, in coordinates relative to its origin. */
-class DiscOfEdge
+class EdgeDisc
 {
 public:
-  DiscOfEdge(const LatticeMetric& metric, const Offset& e)
+  EdgeDisc(const LatticeMetric& metric, const Offset& e)
     : A(static_cast<double>(metric.A))
     , B(static_cast<double>(metric.B))
     , Determinant(A * static_cast<double>(metric.C) - B * B)
@@ -29,7 +29,7 @@ public:
     const double gx = this->A * this->EdgeX + this->B * this->EdgeY;
     const double gy = this->B * this->EdgeX + this->C * this->EdgeY;
     this->LengthSquared = gx * this->EdgeX + gy * this->EdgeY;
-    this->LengthOfStep = std::min(this->A, this->C);
+    this->StepLength = std::min(this->A, this->C);
     this->NormalX = -gy / this->Root;
     this->NormalY = gx / this->Root;
   }
@@ -40,7 +40,7 @@ public:
     return 0.5 * static_cast<double>(apex.Dot) / (this->Root * static_cast<double>(apex.Cross));
   }
   /** The same for the disc of a height over the edge. */
-  double PositionOfHeight(double height) const
+  double HeightPosition(double height) const
   {
     const double h = height / std::sqrt(this->LengthSquared);
     return 0.5 * (h - 0.25 / h);
@@ -61,7 +61,7 @@ public:
     const double halfHeight = std::sqrt(squared * this->A) / this->Root;
     const double centerX = 0.5 * this->EdgeX + bound * this->NormalX;
     const double centerY = 0.5 * this->EdgeY + bound * this->NormalY;
-    this->IsHalfPlane = !(this->RadiusSquared < 1e16 * this->LengthOfStep);
+    this->IsHalfPlane = !(this->RadiusSquared < 1e16 * this->StepLength);
     this->WidthSquared = this->RadiusSquared / this->A * (1.0 + 1e-14);
     this->Left = centerX - halfWidth * (1.0 + 1e-9);
     this->Right = centerX + halfWidth * (1.0 + 1e-9);
@@ -112,7 +112,7 @@ private:
 
   double A, B, Determinant, Root, Slant, PerRow, EdgeX, EdgeY, C;
   double LengthSquared, NormalX, NormalY;
-  double RadiusSquared = 0.0, WidthSquared = 0.0, CenterX = 0.0, CenterY = 0.0, LengthOfStep = 0.0;
+  double RadiusSquared = 0.0, WidthSquared = 0.0, CenterX = 0.0, CenterY = 0.0, StepLength = 0.0;
   bool IsHalfPlane = true;
 };
 } // namespace
@@ -199,7 +199,7 @@ const LatticeApexes::Entries* LatticeApexes::MakeList(
     [&](const Apex& p, const Apex& q) { return IsBetter(p, q, e); });
   all.resize(length);
   auto made = std::make_unique<Entries>();
-  DiscOfEdge disc(this->Metric, e);
+  EdgeDisc disc(this->Metric, e);
   for (const Apex& apex : all)
   {
     disc.Set(disc.PositionOf(apex));
@@ -250,7 +250,7 @@ public:
     double height = std::max(this->Apexes.FirstHeight, this->Disc.Length() / 8.0);
     for (;; height *= 4.0)
     {
-      const double seen = this->Disc.PositionOfHeight(height);
+      const double seen = this->Disc.HeightPosition(height);
       const double needed = this->Disc.PositionOf(this->Best);
       if (!(seen < needed))
       {
@@ -411,7 +411,7 @@ private:
   const Offset E;
   const double Slope;
   WorkBudget& Budget;
-  DiscOfEdge Disc;
+  EdgeDisc Disc;
   Apex Best;
 };
 

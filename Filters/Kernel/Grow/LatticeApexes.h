@@ -60,7 +60,7 @@ inline int CompareQuotients(const Apex& p, const Apex& q)
 }
 
 /** InCircle() in the metric, of nodes as points (column, row); a, b, c are counter-clockwise. */
-inline Sign InCircleOfNodes(
+inline Sign InNodeCircle(
   const LatticeMetric& metric, const Point2& a, const Point2& b, const Point2& c, const Point2& d)
 {
   const auto from = [&a](const Point2& p) {

@@ -253,14 +253,14 @@ std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(const Hull
   this->First.Resize(count);
   this->Last.Resize(count);
   // In units of about a nanosecond. With few gaps, most points are of full cells.
-  constexpr double perPoint = 6.0, perGap = 9.0, mostGaps = 10.0, perPointOfWalk = 500.0,
+  constexpr double perPoint = 6.0, perGap = 9.0, mostGaps = 10.0, perWalkPoint = 500.0,
                    least = 20000.0;
   const auto workOf = [&](double points, double gaps) {
     return perPoint * points + perGap * std::min(gaps, mostGaps * points);
   };
   const double gaps = static_cast<double>(this->Apexes.NumberOfGaps());
   const double all = workOf(count, gaps);
-  const double walk = perPointOfWalk * nodes.Columns / std::sqrt(1.0 + gaps / count);
+  const double walk = perWalkPoint * nodes.Columns / std::sqrt(1.0 + gaps / count);
   double perStrip = std::numeric_limits<double>::infinity();
   if (threads > 1)
   {
@@ -383,7 +383,7 @@ void Growth::LatticeStrip::GrowFan(Index row, Index node, Index rank, Index firs
   const Index lastRow = nodes.RowOf(last);
   const Offset end{ nodes.ColumnOf(last, lastRow) - column, lastRow - row };
   Index current = first;
-  Index rankOfCurrent = nodes.RankOf(first);
+  Index currentRank = nodes.RankOf(first);
   const Index id = nodes.Ids[rank];
   while (current != last)
   {
@@ -395,14 +395,14 @@ void Growth::LatticeStrip::GrowFan(Index row, Index node, Index rank, Index firs
       p = this->Shared.Apexes.Search(row, column, e, known, this->Budget);
     }
     const Index apex = node + this->StepTo(p);
-    const Index rankOfApex = nodes.RankOf(apex);
+    const Index apexRank = nodes.RankOf(apex);
     this->NeedRoom(1, id);
-    const Index b = nodes.Ids[rankOfCurrent], c = nodes.Ids[rankOfApex];
+    const Index b = nodes.Ids[currentRank], c = nodes.Ids[apexRank];
     this->Write(id, b, c, this->Shared.IsLeftIn(e, p, id, b, c));
-    apex > current ? this->Set(this->Shared.Last, rankOfCurrent, apex)
-                   : this->Set(this->Shared.First, rankOfApex, current);
+    apex > current ? this->Set(this->Shared.Last, currentRank, apex)
+                   : this->Set(this->Shared.First, apexRank, current);
     current = apex;
-    rankOfCurrent = rankOfApex;
+    currentRank = apexRank;
     e = p;
     this->Budget.Spend(30);
     this->Budget.Check();
@@ -422,7 +422,7 @@ bool GrowOnLattice(const PointView& points, LatticeNodes& nodes, const LatticeMe
   try
   {
     result.Triangles = GrowAll(growth, hull, nodes.NumberOfPoints(), options, threads,
-      SubProgress(options.Monitor, 0.4, 1.0), Buffer<Index>());
+      options.Monitor.Between(0.4, 1.0), Buffer<Index>());
   }
   catch (const IsFlat&)
   {
@@ -439,7 +439,7 @@ bool TriangulateLattice(
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
   LatticeSearch search =
-    FindLattice(points, tolerance, threads, SubProgress(options.Monitor, 0.0, 0.15));
+    FindLattice(points, tolerance, threads, options.Monitor.Between(0.0, 0.15));
   if (search.Found && TriangulateOnLattice(points, search, options, result))
   {
     return true;
@@ -456,8 +456,8 @@ bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
   LatticeNodes nodes;
   LatticeMetric metric;
   if (!metric.Set(search.Steps) ||
-    !nodes.Place(points, search, tolerance, options.Duplicates, threads,
-      SubProgress(options.Monitor, 0.15, 0.4)) ||
+    !nodes.Place(
+      points, search, tolerance, options.Duplicates, threads, options.Monitor.Between(0.15, 0.4)) ||
     IsLatticeByChance(nodes.NumberOfPoints(), tolerance) ||
     !GrowOnLattice(points, nodes, metric, options, threads, result))
   {
@@ -466,7 +466,7 @@ bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
   result.LatticeFound = true;
   result.Steps = nodes.Steps;
   SetUnusedPoints(
-    std::move(nodes.Duplicates), search.NotFinite, SubProgress(options.Monitor, 1.0, 1.0), result);
+    std::move(nodes.Duplicates), search.NotFinite, options.Monitor.Between(1.0, 1.0), result);
   Report(options.Monitor, 1.0);
   return true;
 }

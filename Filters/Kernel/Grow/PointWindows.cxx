@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PointWindows.h"
 
+#include "Packing.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -15,8 +17,6 @@ namespace elevation
 #ifdef ELEVATION_HAS_AVX2
 namespace
 {
-constexpr double PointsInBox = 18.0; // expected; halved if there are too many
-constexpr double MostSides = 4.0;    // from the middle of a leaf to the farthest point around it
 constexpr float NotANumber = std::numeric_limits<float>::quiet_NaN();
 
 /** Columns and rows of the windows of bins, the larger first. */
@@ -40,146 +40,16 @@ ELEVATION_WIDE inline std::int32_t Units(double value, double from, double perUn
   return _mm_cvtsd_si32(_mm_set_sd((value - from) * perUnit)); // to the nearest, as above
 }
 
-/** For every eight bits, the places of those that are set, then anything. */
-struct Packing
-{
-  alignas(8) std::uint8_t Places[256][8];
-
-  constexpr Packing()
-    : Places()
-  {
-    for (int bits = 0; bits < 256; ++bits)
-    {
-      for (int place = 0, count = 0; place < 8; ++place)
-      {
-        if (bits >> place & 1)
-        {
-          this->Places[bits][count++] = static_cast<std::uint8_t>(place);
-        }
-      }
-    }
-  }
-};
-constexpr Packing Packings;
-
-/** The places of the bits that are set. */
-ELEVATION_WIDE_INLINE __m256i PlacesOf(int bits)
-{
-  return _mm256_cvtepu8_epi32(
-    _mm_loadl_epi64(reinterpret_cast<const __m128i*>(Packings.Places[bits])));
-}
-
-/** A box, in vectors of four. */
-struct WideBox
-{
-  __m256d LowX, HighX, LowY, HighY;
-
-  /** Which of four children of a node touch it, as bits. */
-  ELEVATION_WIDE_INLINE int Touches(const BoxTree::Node& node, int first) const
-  {
-    const __m256d isWithinX =
-      _mm256_and_pd(_mm256_cmp_pd(_mm256_loadu_pd(node.LowX + first), this->HighX, _CMP_LE_OQ),
-        _mm256_cmp_pd(_mm256_loadu_pd(node.HighX + first), this->LowX, _CMP_GE_OQ));
-    const __m256d isWithinY =
-      _mm256_and_pd(_mm256_cmp_pd(_mm256_loadu_pd(node.LowY + first), this->HighY, _CMP_LE_OQ),
-        _mm256_cmp_pd(_mm256_loadu_pd(node.HighY + first), this->LowY, _CMP_GE_OQ));
-    return _mm256_movemask_pd(_mm256_and_pd(isWithinX, isWithinY));
-  }
-  /** Which of four points it contains, as bits. */
-  ELEVATION_WIDE_INLINE int Holds(__m256d x, __m256d y) const
-  {
-    const __m256d isInX = _mm256_and_pd(
-      _mm256_cmp_pd(x, this->LowX, _CMP_GE_OQ), _mm256_cmp_pd(x, this->HighX, _CMP_LE_OQ));
-    const __m256d isInY = _mm256_and_pd(
-      _mm256_cmp_pd(y, this->LowY, _CMP_GE_OQ), _mm256_cmp_pd(y, this->HighY, _CMP_LE_OQ));
-    return _mm256_movemask_pd(_mm256_and_pd(isInX, isInY));
-  }
-};
-
-/** Adds the points of a leaf in the box. @return false if there are too many */
-ELEVATION_WIDE_INLINE bool AddLeaf(const BinGrid& grid, Index slot, Index end, const WideBox& box,
-  PointWindows::Neighborhood& around)
-{
-  const __m256d centerX = _mm256_set1_pd(around.CenterX), centerY = _mm256_set1_pd(around.CenterY);
-  const __m256d scale = _mm256_set1_pd(around.PerSide);
-  for (; slot < end; slot += 8)
-  {
-    int in = 0;
-    __m128 x[2], y[2]; // in sides
-    for (int half = 0; half < 2; ++half)
-    {
-      const __m256d pointX = _mm256_loadu_pd(grid.X.data() + slot + 4 * half);
-      const __m256d pointY = _mm256_loadu_pd(grid.Y.data() + slot + 4 * half);
-      in |= box.Holds(pointX, pointY) << (4 * half);
-      x[half] = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(pointX, centerX), scale));
-      y[half] = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(pointY, centerY), scale));
-    }
-    in &= 255 >> std::max(slot + 8 - end, 0);
-    // Points in the box come first, the others are overwritten.
-    const __m256i which = PlacesOf(in);
-    const int count = around.Count;
-    _mm256_storeu_ps(
-      around.X + count, _mm256_permutevar8x32_ps(_mm256_set_m128(x[1], x[0]), which));
-    _mm256_storeu_ps(
-      around.Y + count, _mm256_permutevar8x32_ps(_mm256_set_m128(y[1], y[0]), which));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(around.Slots + count),
-      _mm256_add_epi32(_mm256_set1_epi32(slot), which));
-    around.Count = count + __builtin_popcount(in);
-    if (around.Count > PointWindows::MostAround)
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
-/** Adds all points of the box below a node. @return false if there are too many */
-ELEVATION_WIDE bool GatherBox(const BinGrid& grid, const BoxTree::Node& top, const Box& extent,
-  PointWindows::Neighborhood& around)
-{
-  const WideBox box{ _mm256_set1_pd(extent.Low.X), _mm256_set1_pd(extent.High.X),
-    _mm256_set1_pd(extent.Low.Y), _mm256_set1_pd(extent.High.Y) };
-  around.Count = 0;
-  const BoxTree::Node* stack[64];
-  stack[0] = &top;
-  int height = 1;
-  while (height > 0)
-  {
-    const BoxTree::Node& node = *stack[--height];
-    for (int half = 0; half < BoxTree::Node::Places; half += 4)
-    {
-      for (int within = box.Touches(node, half); within; within &= within - 1)
-      {
-        const int place = half + __builtin_ctz(within);
-        const Index first = node.First[place], count = node.Count[place];
-        if (count > 0)
-        {
-          if (!AddLeaf(grid, first, first + count, box, around))
-          {
-            return false;
-          }
-          continue;
-        }
-        if (height == 64)
-        {
-          return false;
-        }
-        stack[height++] = &grid.Tree.Nodes[first];
-      }
-    }
-  }
-  _mm256_storeu_ps(around.X + around.Count, _mm256_set1_ps(NotANumber));
-  return true;
-}
 } // namespace
 
 PointWindows::PointWindows(const BinGrid& grid, bool isWidest)
   : Grid(grid)
   , IsWidest(isWidest)
+  , Leaves(grid)
 {
   const BinGrid::Layout& bins = grid.Bins;
   // Two coordinates are rounded, then their difference.
-  this->OfBox.Set(1.1, (2.0 * MostSides + 1.2) * Roundoff, 0.002);
+  this->BoxBounds.Set(1.1, (2.0 * Neighborhoods::MostSides + 1.2) * Roundoff, 0.002);
   if (!bins.HasPlainBins)
   {
     return;
@@ -201,7 +71,7 @@ PointWindows::PointWindows(const BinGrid& grid, bool isWidest)
     const double reach = std::sqrt(across * across + up * up);
     // Two coordinates are rounded to whole units, their difference to single precision; bounds of
     // bins are known to a thousandth of a bin.
-    this->OfShapes[shape].Set(
+    this->ShapeBounds[shape].Set(
       reach, 1.1 + Roundoff * reach, 0.01 * std::max(width, height) * perUnit);
   }
   for (Row& row : this->Rows)
@@ -349,7 +219,7 @@ ELEVATION_WIDE_INLINE void PointWindows::SetBounds(Window& window, int shape, In
   window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
   window.Right = static_cast<float>(this->ColumnBounds[endColumn] - originX);
   window.Top = static_cast<float>(this->TopBounds[shape] - originY);
-  window.Errors = &this->OfShapes[shape];
+  window.Errors = &this->ShapeBounds[shape];
 }
 
 /** Gathers at most 32 points, packed into two vectors. */
@@ -560,99 +430,10 @@ ELEVATION_WIDE void PointWindows::Window::Close(int count, bool isWidest)
   }
 }
 
-/** The neighborhood of the leaf of a slot. */
-const PointWindows::Neighborhood& PointWindows::Around(Index slot)
-{
-  if (this->Neighborhoods.empty())
-  {
-    // A line of equal y runs through about as many leaves as the root of their number; the vertices
-    // of these leaves alternate.
-    const double leaves = this->Grid.NumberOfPoints() / 16.0;
-    this->Neighborhoods.resize(static_cast<std::size_t>(16.0 + 2.0 * std::sqrt(leaves)));
-    // Enough places that leaves whose vertices alternate rarely share one.
-    std::size_t places = 1024;
-    while (places < this->Neighborhoods.size() * 64)
-    {
-      places *= 2;
-    }
-    this->Known.assign(places, 0);
-  }
-  const std::size_t mask = this->Known.size() - 1;
-  const std::size_t eight = static_cast<std::size_t>(slot) / 8;
-  for (const std::size_t at : { eight, eight - 1, eight + 1 })
-  {
-    const Neighborhood& known = this->Neighborhoods[this->Known[at & mask]];
-    if (known.First <= slot && slot < known.End)
-    {
-      return known;
-    }
-  }
-  const std::size_t oldest = this->Oldest;
-  this->Oldest = (oldest + 1) % this->Neighborhoods.size();
-  Neighborhood& made = this->Neighborhoods[oldest];
-  this->GatherNeighborhood(made, slot);
-  for (Index at = made.First / 8; at < (made.End + 7) / 8; ++at)
-  {
-    this->Known[static_cast<std::size_t>(at) & mask] = static_cast<Index>(oldest);
-  }
-  return made;
-}
-
-void PointWindows::GatherNeighborhood(Neighborhood& around, Index slot)
-{
-  const BoxTree::Step last = this->Grid.Lowest(slot);
-  const BoxTree::Node& node = *last.Node;
-  int place = 0;
-  while (slot < node.First[place] || slot >= node.First[place] + node.Count[place])
-  {
-    ++place;
-  }
-  around.First = node.First[place];
-  around.End = around.First + node.Count[place];
-  const double size = node.Size, width = last.HighX - last.LowX, height = last.HighY - last.LowY;
-  const Box leaf{ { node.LowX[place], node.LowY[place] },
-    { node.HighX[place], node.HighY[place] } };
-  for (double points : { PointsInBox, 0.5 * PointsInBox })
-  {
-    // The side of a square with this many points; if they lie in a narrower strip, the length of a
-    // part with this many.
-    double side = std::sqrt(points / size * width * height);
-    if (!(side < std::min(width, height)))
-    {
-      side = points / size * std::max(width, height);
-    }
-    const Box box{ { leaf.Low.X - 0.551 * side, leaf.Low.Y },
-      { leaf.High.X + 0.551 * side, leaf.High.Y + 0.901 * side } };
-    const double greatest = std::max(std::max(std::fabs(box.Low.X), std::fabs(box.High.X)),
-      std::max(std::fabs(box.Low.Y), std::fabs(box.High.Y)));
-    around.PerSide = 1.0 / side;
-    around.CenterX = 0.5 * leaf.Low.X + 0.5 * leaf.High.X;
-    around.CenterY = 0.5 * leaf.Low.Y + 0.5 * leaf.High.Y;
-    // A box of only a few roundoffs of the coordinates would be changed by rounding.
-    if (!(around.PerSide > 1e-150 && around.PerSide < 1e150 && greatest < 1e10 * side &&
-          box.High.X - around.CenterX < MostSides * side &&
-          box.High.Y - around.CenterY < MostSides * side))
-    {
-      break;
-    }
-    BoxTree::Step top = last;
-    while (
-      !(top.LowX < box.Low.X && box.High.X < top.HighX && box.High.Y < top.HighY) && !top.IsRoot())
-    {
-      top = this->Grid.Tree.Above(top);
-    }
-    if (elevation::GatherBox(this->Grid, *top.Node, box, around))
-    {
-      return;
-    }
-  }
-  around.Count = 0;
-}
-
 /** Gathers the points of a box around the vertex, from the neighborhood of its leaf. */
 ELEVATION_WIDE bool PointWindows::GatherBox(Window& window)
 {
-  const Neighborhood& around = this->Around(window.Origin);
+  const Neighborhood& around = this->Leaves.Around(window.Origin);
   if (around.Count == 0)
   {
     return false;
@@ -690,7 +471,7 @@ ELEVATION_WIDE bool PointWindows::GatherBox(Window& window)
       window.Left = window.Right = 0.55f * size;
       window.Top = 0.9f * size;
       window.IsBox = true;
-      window.Errors = &this->OfBox;
+      window.Errors = &this->BoxBounds;
       return true;
     }
   }
@@ -717,6 +498,7 @@ ELEVATION_WIDE void PointWindows::Place(Index slot, float& x, float& y) const
 PointWindows::PointWindows(const BinGrid& grid, bool)
   : Grid(grid)
   , IsWidest(false)
+  , Leaves(grid)
 {
 }
 

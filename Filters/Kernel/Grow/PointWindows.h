@@ -10,9 +10,7 @@
  * if these are too many, of three columns and fewer rows; in full bins, of a box that is expected
  * to contain about eighteen points by the local density. For windows of bins, the coordinates of
  * the four rows are rounded to multiples of a unit that is small compared with the bins, so that
- * differences are exact. Boxes are taken from the points around a leaf of the tree, its
- * neighborhood. These are gathered once for all vertices of the leaf, and kept while the sweep
- * passes it.
+ * differences are exact. Boxes are taken from the points around a leaf (Neighborhoods.h).
  *
  * Cost: constant per vertex; memory proportional to a row of bins and to the square root of the
  * number of points.
@@ -20,7 +18,7 @@
 #ifndef elevation_Grow_PointWindows_h
 #define elevation_Grow_PointWindows_h
 
-#include "Kernel/Bins/Bins.h"
+#include "Neighborhoods.h"
 
 namespace elevation
 {
@@ -31,7 +29,6 @@ public:
   static constexpr int Capacity = 56;       ///< points of a window
   static constexpr int Room = Capacity + 8; ///< as whole vectors are written
   static constexpr int WidestVectors = 4, EvenVectors = 5, MostVectors = Capacity / 8;
-  static constexpr int MostAround = 120;      ///< points of a neighborhood
   static constexpr double Roundoff = 0x1p-24; ///< of single precision
 
   /** Error bounds for a size of windows; lengths in the window's unit. See WideApexSearch.h. */
@@ -66,19 +63,6 @@ public:
     /** The lanes of a slot, as bits. */
     template <int Vectors>
     std::uint64_t LanesOf(Index slot) const;
-  };
-
-  /**
-   * The points around a leaf of the tree: those in the boxes of all its points, relative to its
-   * middle. Vertices of a full bin come in the order of y, so several leaves alternate.
-   */
-  struct Neighborhood
-  {
-    Index First = 0, End = 0;         ///< slots of the leaf
-    int Count = 0;                    ///< 0 if they are too many
-    double CenterX, CenterY, PerSide; ///< box sides per unit of the grid
-    float X[MostAround + 8], Y[MostAround + 8];
-    Index Slots[MostAround + 8];
   };
 
   /** @param isWidest  for instructions on sixteen points at a time */
@@ -123,8 +107,6 @@ private:
   void AddBeyondEight(Window& window, Index firstColumn, const Index* counts) const;
   bool GatherBins(Window& window, Index column, int shape);
   bool GatherBox(Window& window);
-  const Neighborhood& Around(Index slot);
-  void GatherNeighborhood(Neighborhood& around, Index slot);
 
   const BinGrid& Grid;
   const bool IsWidest;
@@ -133,7 +115,7 @@ private:
 
   // Windows of bins; none when PerUnit is 0.
   double PerUnit = 0.0; ///< units of windows per unit of the grid
-  Bounds OfShapes[NumberOfShapes];
+  Bounds ShapeBounds[NumberOfShapes];
   std::vector<std::int32_t> ColumnBounds; ///< left bounds of the columns
   std::vector<Index> Nothing;             ///< the starts of a row beyond the last
   Row Rows[MostRows];                     ///< by their number modulo MostRows
@@ -141,11 +123,8 @@ private:
   Index CurrentRow = None;
   bool AreNearRead = false;
   std::int32_t TopBounds[NumberOfShapes]; ///< of windows of vertices in the current row
-  Bounds OfBox;                           ///< of all boxes; their unit is their side
-  std::vector<Neighborhood> Neighborhoods;
-  /** A cache: for slot / 8, modulo the size, the index of a neighborhood. */
-  std::vector<Index> Known;
-  std::size_t Oldest = 0;
+  Bounds BoxBounds;                       ///< of all boxes; their unit is their side
+  Neighborhoods Leaves;
 };
 
 #ifdef ELEVATION_HAS_AVX2

@@ -84,9 +84,8 @@ Triangulation TriangulateSparse(
   Triangulation result;
   std::vector<Index> notFinite, duplicates;
   std::vector<PlacedNode> placed =
-    FindNodes(points, lattice, notFinite, SubProgress(options.Monitor, 0.0, 0.1));
-  KeepOneOnEach(
-    points, options.Duplicates, placed, duplicates, SubProgress(options.Monitor, 0.1, 0.2));
+    FindNodes(points, lattice, notFinite, options.Monitor.Between(0.0, 0.1));
+  KeepOneOnEach(points, options.Duplicates, placed, duplicates, options.Monitor.Between(0.1, 0.2));
   result.LatticeFound = true;
   result.Steps = lattice.Steps();
   SetUnusedPoints(std::move(duplicates), notFinite, Progress(), result);
@@ -104,8 +103,7 @@ Triangulation TriangulateSparse(
     nodes.Append(
       { static_cast<double>(one.Node.I - lowest.I), static_cast<double>(one.Node.J - lowest.J) });
   }
-  result.Triangles =
-    DivideAndConquer(nodes, SubProgress(options.Monitor, 0.2, 1.0), &lattice.Metric());
+  result.Triangles = DivideAndConquer(nodes, options.Monitor.Between(0.2, 1.0), &lattice.Metric());
   const Index triangles = static_cast<Index>(result.Triangles.size() / 3);
   if (triangles > 0)
   {
@@ -174,8 +172,8 @@ Triangulation TriangulateOnGivenLattice(const PointView& points, const DelaunayO
 {
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
   const LatticeSearch search = GivenLattice(points, options.GivenLattice, tolerance,
-    ThreadsAtOnce(options.NumberOfThreads), SubProgress(options.Monitor, 0.0, 0.15));
-  const NodeOfPoint nodeOf(search.Steps);
+    ThreadsAtOnce(options.NumberOfThreads), options.Monitor.Between(0.0, 0.15));
+  const NodeFinder nodeOf(search.Steps);
   const NodeBox nodes = FindNodeBox(nodeOf, search, search.Steps, [&]() {
     NodeBox box;
     ForEachPoint(points, 0, points.Count, search.NotFinite,

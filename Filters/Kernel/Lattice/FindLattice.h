@@ -7,13 +7,12 @@
  * In: points in any order, on a lattice that may be rotated, sheared, of unequal steps, with most
  * nodes missing, with coordinates rounded to decimals. Out: the lattice, or the answer that there
  * is none. The passes:
- *   1. Bounding box, and a sample of the whole cloud, chosen by a hash of the coordinates.
- *   2. The fullest place of the sample (by a coarse histogram), and all points there.
+ *   1. Bounding box, and a sample of the whole cloud (LatticeSample.h).
+ *   2. The fullest place of the sample, and all points there (LatticeSample.h).
  *   3. The shortest differences between these points generate the lattice, by Euclid's algorithm on
- *      vectors, which treats small remainders as zero.
+ *      vectors (LatticeBasis.h).
  *   4. From there outwards, the steps are fitted by least squares to more and more points of the
- *      sample, so that rounding errors never add up to a notable part of a step. A point between
- *      nodes refines the lattice.
+ *      sample; a point between nodes refines the lattice (OutwardFit.h).
  *   5. The steps are reduced [Lagrange], directed along the axes as far as possible, and rounded to
  *      the fewest decimals that move no node noticeably, so that round steps stay round.
  * Each pass depends on the set of points alone, not on their order. Nodes.h checks every point.
@@ -24,7 +23,7 @@
 #ifndef elevation_Lattice_FindLattice_h
 #define elevation_Lattice_FindLattice_h
 
-#include "Kernel/Base/Base.h"
+#include "LatticeSample.h"
 
 #include <vector>
 
@@ -43,6 +42,13 @@ struct Lattice
     return this->StepU != Point2{ 0.0, 0.0 } || this->StepV != Point2{ 0.0, 0.0 };
   }
   double Area() const { return this->StepU.X * this->StepV.Y - this->StepU.Y * this->StepV.X; }
+  /** The coordinates of a place in steps: those of node (i, j) are i and j. */
+  Point2 InSteps(const Point2& p) const
+  {
+    const double x = p.X - this->Origin.X, y = p.Y - this->Origin.Y, area = this->Area();
+    return { (x * this->StepV.Y - y * this->StepV.X) / area,
+      (this->StepU.X * y - this->StepU.Y * x) / area };
+  }
   Point2 Node(double i, double j) const
   {
     return { this->Origin.X + i * this->StepU.X + j * this->StepV.X,
@@ -52,19 +58,6 @@ struct Lattice
 
 /** The most nodes a point that a lattice may have in a parallelogram around the cloud. */
 constexpr double MaximumNodesPerPoint = 64.0;
-
-/** What the search needs of a cloud, or of a part of it; the box is that of its finite points. */
-struct LatticeSample : Box
-{
-  double CloudSize = 0.0;     ///< points of the whole cloud, also those that are not finite
-  double Count = 0.0;         ///< finite points
-  std::vector<Point2> Points; ///< the sample, distinct and sorted
-
-  /** Whether the search has any prospect. */
-  bool MayFitLattice() const;
-  /** Adds another part of the same cloud. */
-  void Add(LatticeSample&& part);
-};
 
 /** The result of FindLattice(). */
 struct LatticeSearch : Extent
@@ -82,49 +75,15 @@ LatticeSearch FindLattice(
   const PointView& points, double tolerance, int threads, const Progress& progress);
 
 /**
- * The search, when the lattice is known.
- * @throws Error if the steps are parallel or not finite, or the lattice does not fit: it names the
- *         first point that is too far from its node
- */
-LatticeSearch GivenLattice(const PointView& points, const Lattice& given, double tolerance,
-  int threads, const Progress& progress);
-
-/** @name The same for a cloud in parts, which share the steps, and the errors. @{ */
-/** @throws Error if the steps are parallel or not finite */
-Lattice CheckedSteps(const Lattice& given);
-/** The first point that is too far from its node, or None. */
-Index FirstOffLattice(const PointView& points, const std::vector<Index>& notFinite,
-  const Lattice& steps, double tolerance, const Progress& progress);
-Error BesideGivenLattice(std::int64_t id, const Point2& p, const Lattice& steps, double tolerance);
-Error GivenLatticeTooLarge();
-Error GivenLatticeUnfit();
-/** @} */
-
-/**
- * @name The steps of the search, for a cloud in parts.
- * Each part is sampled; the samples are added up; each part lists its points in the fullest place
- * of the sum, and the lattice is fitted to these, if MayFitLattice(). It is that of the whole
- * cloud.
- * @{
- */
-/** @param[out] notFinite  ids of points with a non-finite coordinate, increasing */
-LatticeSample SampleForLattice(const PointView& points, double countOfAll, int threads,
-  const Progress& progress, std::vector<Index>& notFinite);
-
-/** A place with some hundred points where they are densest: where a sample has most, repeatedly. */
-Box FullestPlace(const LatticeSample& ofAll);
-
-std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
-  const std::vector<Index>& notFinite, int threads, const Progress& progress);
-
-/**
+ * Passes 3 to 5, for a cloud in parts: each part is sampled; the samples are added up; each part
+ * lists its points in the fullest place of the sum, and the lattice is fitted to these, if
+ * MayFitLattice(). It is that of the whole cloud.
  * @param[in] inFullestPlace  the distinct points there, of all parts, sorted by IsLower()
  * @param[out] lattice  if there is one
  * @return whether there is one
  */
-bool FitLattice(const LatticeSample& ofAll, std::vector<Point2>&& inFullestPlace, double tolerance,
+bool FitLattice(const LatticeSample& sample, std::vector<Point2>&& inFullestPlace, double tolerance,
   const Progress& progress, Lattice& lattice);
-/** @} */
 
 } // namespace elevation
 

@@ -8,6 +8,7 @@
 #define elevation_Lattice_Lattice_h
 
 #include "FindLattice.h"
+#include "GivenLattice.h"
 #include "Metric.h"
 #include "Nodes.h"
 #include "SharedLattice.h"

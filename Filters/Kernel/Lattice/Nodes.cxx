@@ -20,7 +20,7 @@ constexpr Index Few = 32;
  * along paths, most points repeat the step of the point before, or take a short one.
  */
 bool AreScattered(
-  const PointView& points, const std::vector<Index>& notFinite, const NodeOfPoint& nodeOf)
+  const PointView& points, const std::vector<Index>& notFinite, const NodeFinder& nodeOf)
 {
   constexpr Index fewest = 1 << 20, samples = 1024, shortStep = 256;
   Index scattered = 0;
@@ -60,27 +60,26 @@ public:
 
   bool Run(double tolerance, const Progress& progress)
   {
-    if (!this->MakeBitmap(
-          this->FindBox(SubProgress(progress, 0.0, 0.2)), SubProgress(progress, 0.2, 0.2)))
+    if (!this->MakeBitmap(this->FindBox(progress.Between(0.0, 0.2)), progress.Between(0.2, 0.2)))
     {
       return false;
     }
     this->IsScattered = AreScattered(this->Points, this->Search.NotFinite, this->NodeOf);
-    if (!this->FindNodes(tolerance, SubProgress(progress, 0.2, 0.5)))
+    if (!this->FindNodes(tolerance, progress.Between(0.2, 0.5)))
     {
       return false;
     }
     IdSet duplicates(this->Points.Count);
     Buckets sorted;
     const bool isSorted =
-      this->IsScattered && this->SortIntoBuckets(sorted, SubProgress(progress, 0.5, 0.7));
-    const Progress placing = SubProgress(progress, 0.7, 0.99);
+      this->IsScattered && this->SortIntoBuckets(sorted, progress.Between(0.5, 0.7));
+    const Progress placing = progress.Between(0.7, 0.99);
     if (!(isSorted ? this->PlaceSorted(sorted, duplicates, placing)
                    : this->PlaceInOrder(duplicates, placing)))
     {
       return false;
     }
-    this->Nodes.Duplicates = duplicates.List(SubProgress(progress, 0.99, 1.0));
+    this->Nodes.Duplicates = duplicates.List(progress.Between(0.99, 1.0));
     this->FindOrigin();
     return true;
   }
@@ -197,12 +196,12 @@ private:
 
   bool PlaceSorted(Buckets& sorted, IdSet& duplicates, const Progress& progress)
   {
-    ForEachPiece(sorted.Count(), this->Threads, SubProgress(progress, 0.0, 0.35),
+    ForEachPiece(sorted.Count(), this->Threads, progress.Between(0.0, 0.35),
       [&](Index bucket) { this->OccupyBucket(sorted, bucket); });
     this->CountBefore();
-    ForEachPiece(sorted.Count(), this->Threads, SubProgress(progress, 0.35, 0.85),
+    ForEachPiece(sorted.Count(), this->Threads, progress.Between(0.35, 0.85),
       [&](Index bucket) { this->PlaceBucket(sorted, bucket); });
-    const Progress settling = SubProgress(progress, 0.85, 1.0);
+    const Progress settling = progress.Between(0.85, 1.0);
     const Index placed = sorted.Begins.back();
     for (const Index i : Counted(this->Nodes.NumberOfPoints() < placed ? placed : 0))
     {
@@ -220,17 +219,16 @@ private:
   {
     if (this->IsScattered)
     {
-      this->ForEachRange(
-        SubProgress(progress, 0.0, 0.35), [&](Index piece, Index begin, Index end) {
-          std::vector<Index> second;
-          this->Occupy(begin, end, second);
-          this->Second[piece] = std::move(second);
-        });
+      this->ForEachRange(progress.Between(0.0, 0.35), [&](Index piece, Index begin, Index end) {
+        std::vector<Index> second;
+        this->Occupy(begin, end, second);
+        this->Second[piece] = std::move(second);
+      });
     }
     this->CountBefore();
-    this->ForEachRange(SubProgress(progress, 0.35, 0.85),
+    this->ForEachRange(progress.Between(0.35, 0.85),
       [&](Index, Index begin, Index end) { this->PlaceIds(begin, end); });
-    const Progress settling = SubProgress(progress, 0.85, 1.0);
+    const Progress settling = progress.Between(0.85, 1.0);
     std::size_t steps = 0;
     for (const std::vector<Index>& second : this->Second)
     {
@@ -289,7 +287,7 @@ private:
   const LatticeSearch& Search;
   const DuplicatePolicy Policy;
   const int Threads;
-  NodeOfPoint NodeOf;
+  NodeFinder NodeOf;
   bool IsScattered = false;               ///< the points come in no order, and are many
   std::vector<std::vector<Index>> Second; ///< by range: the points whose node was taken
 };
@@ -330,7 +328,7 @@ bool LatticeNodes::Placement::SortIntoBuckets(Buckets& sorted, const Progress& p
   };
   sorted.Nodes.Resize(static_cast<std::size_t>(count));
   sorted.Ids.Resize(static_cast<std::size_t>(count));
-  this->ForEachRange(SubProgress(progress, 0.0, 0.5), [&](Index range, Index begin, Index end) {
+  this->ForEachRange(progress.Between(0.0, 0.5), [&](Index range, Index begin, Index end) {
     TouchPages(sorted.Nodes, begin, end);
     TouchPages(sorted.Ids, begin, end);
     forEachNode(range, begin, end, [](Index, Index) {});
@@ -352,7 +350,7 @@ bool LatticeNodes::Placement::SortIntoBuckets(Buckets& sorted, const Progress& p
     sorted = Buckets(); // gives its memory back
     return false;
   }
-  this->ForEachRange(SubProgress(progress, 0.5, 1.0), [&](Index range, Index begin, Index end) {
+  this->ForEachRange(progress.Between(0.5, 1.0), [&](Index range, Index begin, Index end) {
     forEachNode(range, begin, end, [&](Index place, Index id) {
       sorted.Nodes[place] = this->Nodes.Scratch[id];
       sorted.Ids[place] = id;

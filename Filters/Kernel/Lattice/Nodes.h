@@ -21,7 +21,7 @@
 #ifndef elevation_Lattice_Nodes_h
 #define elevation_Lattice_Nodes_h
 
-#include "NodeOfPoint.h"
+#include "NodeFinder.h"
 
 #include <atomic>
 

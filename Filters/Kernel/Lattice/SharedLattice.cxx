@@ -50,7 +50,7 @@ bool SharedLattice::Set(
   this->Search.Found = true;
   this->Search.Steps = steps;
   this->ToleranceInSteps = tolerance;
-  this->ToNode = NodeOfPoint(steps);
+  this->ToNode = NodeFinder(steps);
   const Point2 &u = steps.StepU, &v = steps.StepV;
   const double off = tolerance + NodeRoundoff + this->ToNode.Roundoff(cloud.Low, cloud.High);
   // Besides, nodes are rounded when they are computed from steps.
@@ -76,8 +76,7 @@ LatticeNode SharedLattice::NodeOf(const Point2& p) const
   return { static_cast<std::int64_t>(column), static_cast<std::int64_t>(row) };
 }
 
-Box SharedLattice::BoxOfCircle(
-  const LatticeNode& a, const LatticeNode& b, const LatticeNode& c) const
+Box SharedLattice::CircleBox(const LatticeNode& a, const LatticeNode& b, const LatticeNode& c) const
 {
   // In the metric M, with nodes relative to a: the centre m has b M m = b M b / 2, and likewise for
   // c. So w = M m is known from a linear system; then m = inverse(M) w, and the radius squared is

@@ -9,7 +9,7 @@
 #define elevation_Lattice_SharedLattice_h
 
 #include "Metric.h"
-#include "NodeOfPoint.h"
+#include "NodeFinder.h"
 
 #include <array>
 #include <cstdint>
@@ -59,12 +59,12 @@ public:
    * A box that holds all points whose nodes are in or on the circle of three nodes, in the metric;
    * rounding errors make it larger, never smaller.
    */
-  Box BoxOfCircle(const LatticeNode& a, const LatticeNode& b, const LatticeNode& c) const;
+  Box CircleBox(const LatticeNode& a, const LatticeNode& b, const LatticeNode& c) const;
 
 private:
   LatticeSearch Search;
   LatticeMetric StepMetric;
-  NodeOfPoint ToNode{ Lattice{ { 0.0, 0.0 }, { 1.0, 0.0 }, { 0.0, 1.0 } } };
+  NodeFinder ToNode{ Lattice{ { 0.0, 0.0 }, { 1.0, 0.0 }, { 0.0, 1.0 } } };
   double ToleranceInSteps = 0.0;
   Point2 Reach{ 0.0, 0.0 }; ///< how far a point may lie from its node, along x and y
 };

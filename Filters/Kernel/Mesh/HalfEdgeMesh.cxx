@@ -98,11 +98,11 @@ public:
   /** @return false when two half-edges that run the same way were found; borders not checked */
   bool Run(const Progress& progress)
   {
-    this->NumberVertices(SubProgress(progress, 0.0, 0.2));
-    this->CountRising(SubProgress(progress, 0.2, 0.3));
-    this->ListRising(SubProgress(progress, 0.3, 0.5));
-    this->SortWhereMany(SubProgress(progress, 0.5, 0.5));
-    return this->ConnectFalling(SubProgress(progress, 0.5, 0.9));
+    this->NumberVertices(progress.Between(0.0, 0.2));
+    this->CountRising(progress.Between(0.2, 0.3));
+    this->ListRising(progress.Between(0.3, 0.5));
+    this->SortWhereMany(progress.Between(0.5, 0.5));
+    return this->ConnectFalling(progress.Between(0.5, 0.9));
   }
 
 private:
@@ -292,18 +292,17 @@ private:
 bool HasDistinctBorders(const Mesh& mesh, const Progress& progress)
 {
   std::vector<std::pair<Index, Index>> borders;
-  ForEachStretch(
-    mesh.NumberOfTriangles(), SubProgress(progress, 0.0, 0.5), [&](Index begin, Index end) {
-      for (Index h = 3 * begin; h < 3 * end; ++h)
+  ForEachStretch(mesh.NumberOfTriangles(), progress.Between(0.0, 0.5), [&](Index begin, Index end) {
+    for (Index h = 3 * begin; h < 3 * end; ++h)
+    {
+      if (mesh.IsBorder(h))
       {
-        if (mesh.IsBorder(h))
-        {
-          borders.emplace_back(mesh.Origin(h), mesh.Destination(h));
-        }
+        borders.emplace_back(mesh.Origin(h), mesh.Destination(h));
       }
-    });
+    }
+  });
   Sort(borders.begin(), borders.end(), std::less<std::pair<Index, Index>>(),
-    SubProgress(progress, 0.5, 1.0));
+    progress.Between(0.5, 1.0));
   return std::adjacent_find(borders.begin(), borders.end()) == borders.end();
 }
 } // namespace
@@ -311,10 +310,9 @@ bool HasDistinctBorders(const Mesh& mesh, const Progress& progress)
 void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
 {
   this->Twins.assign(this->Triangles.size(), Border);
-  if (!TwinFinder(*this).Run(progress) ||
-    !HasDistinctBorders(*this, SubProgress(progress, 0.9, 1.0)))
+  if (!TwinFinder(*this).Run(progress) || !HasDistinctBorders(*this, progress.Between(0.9, 1.0)))
   {
-    ThrowNotManifold(*this, firstCell, SubProgress(progress, 1.0, 1.0));
+    ThrowNotManifold(*this, firstCell, progress.Between(1.0, 1.0));
   }
 }
 
@@ -356,11 +354,11 @@ public:
 
   Rings Run(const Progress& progress)
   {
-    this->FindBorders(SubProgress(progress, 0.0, 0.95));
-    const Progress sorting = SubProgress(progress, 0.95, 0.95);
+    this->FindBorders(progress.Between(0.0, 0.95));
+    const Progress sorting = progress.Between(0.95, 0.95);
     this->ListLeaving(sorting);
     this->SortWhereMany(sorting);
-    return this->Walk(SubProgress(progress, 0.95, 1.0));
+    return this->Walk(progress.Between(0.95, 1.0));
   }
 
 private:

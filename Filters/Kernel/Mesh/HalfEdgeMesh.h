@@ -231,7 +231,7 @@ Components FindComponents(const Mesh& mesh, const Progress& progress, Relation&&
   Components components;
   components.Labels.Resize(count);
   LabelSets joined;
-  ForEachStretch(count, SubProgress(progress, 0.0, 0.8), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.0, 0.8), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       Index label = None;
@@ -256,7 +256,7 @@ Components FindComponents(const Mesh& mesh, const Progress& progress, Relation&&
     }
   });
   joined.Renumber(components.Lowest);
-  ForEachStretch(count, SubProgress(progress, 0.8, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.8, 1.0), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       components.Labels[t] = joined(components.Labels[t]);

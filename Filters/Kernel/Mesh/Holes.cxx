@@ -124,16 +124,16 @@ public:
   /** @return whether no place is covered twice; if not, Fault() is the error message */
   bool Run(const Progress& progress)
   {
-    this->MakeSegments(SubProgress(progress, 0.0, 0.05));
-    this->FindRims(SubProgress(progress, 0.05, 0.1));
+    this->MakeSegments(progress.Between(0.0, 0.05));
+    this->FindRims(progress.Between(0.05, 0.1));
     Sort(
       this->Events.begin(), this->Events.end(),
       [](const Event& a, const Event& b) {
         return a.At != b.At ? IsLower(a.At, b.At)
                             : (a.IsStart != b.IsStart ? b.IsStart : a.Segment < b.Segment);
       },
-      SubProgress(progress, 0.1, 0.4));
-    const Progress sweeping = SubProgress(progress, 0.4, 1.0);
+      progress.Between(0.1, 0.4));
+    const Progress sweeping = progress.Between(0.4, 1.0);
     std::size_t nextReport = 0;
     for (std::size_t first = 0; first < this->Events.size();)
     {
@@ -502,10 +502,10 @@ Mesh MakeBorderMesh(const std::vector<BorderEdge>& border, const PointView& poin
 Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
 {
   Holes holes;
-  holes.Walks = TraceBorder(mesh, SubProgress(progress, 0.0, 0.5));
+  holes.Walks = TraceBorder(mesh, progress.Between(0.0, 0.5));
   StartAtLowest(mesh, holes.Walks);
   BorderSweep sweep(mesh, firstCell, holes);
-  if (!sweep.Run(SubProgress(progress, 0.5, 1.0)))
+  if (!sweep.Run(progress.Between(0.5, 1.0)))
   {
     throw Error(sweep.Fault());
   }
@@ -520,8 +520,8 @@ Holes FindBorderHoles(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
 {
   std::vector<Index> ids;
-  const Mesh mesh = MakeBorderMesh(border, points, SubProgress(progress, 0.0, 0.2), ids);
-  Holes holes = FindHoles(mesh, 0, SubProgress(progress, 0.2, 1.0));
+  const Mesh mesh = MakeBorderMesh(border, points, progress.Between(0.0, 0.2), ids);
+  Holes holes = FindHoles(mesh, 0, progress.Between(0.2, 1.0));
   for (Index& vertex : holes.Walks.Vertices)
   {
     vertex = ids[vertex];
@@ -533,11 +533,11 @@ bool CoversOnce(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
 {
   std::vector<Index> ids;
-  const Mesh mesh = MakeBorderMesh(border, points, SubProgress(progress, 0.0, 0.5), ids);
+  const Mesh mesh = MakeBorderMesh(border, points, progress.Between(0.0, 0.5), ids);
   Holes holes;
-  holes.Walks = TraceBorder(mesh, SubProgress(progress, 0.5, 0.75));
+  holes.Walks = TraceBorder(mesh, progress.Between(0.5, 0.75));
   StartAtLowest(mesh, holes.Walks);
-  return BorderSweep(mesh, 0, holes).Run(SubProgress(progress, 0.75, 1.0));
+  return BorderSweep(mesh, 0, holes).Run(progress.Between(0.75, 1.0));
 }
 
 } // namespace elevation

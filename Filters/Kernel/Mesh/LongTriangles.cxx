@@ -18,9 +18,9 @@ namespace elevation
 namespace
 {
 /**
- * Of a gap, per distance from the point that has it: ten times the growth of spacings (Patch.h).
+ * Of a gap, per distance from the point that has it: ten times SpacingGrowth (Fill/PatchPlan.h).
  */
-constexpr double DecayOfGaps = 2.0;
+constexpr double GapDecay = 2.0;
 
 /** One run; the members carry data between its passes. */
 class RegionFinder
@@ -38,14 +38,14 @@ public:
   /** @return whether there are regions */
   bool Run(const Progress& progress)
   {
-    if (!this->FindRegions(SubProgress(progress, 0.0, 0.5)))
+    if (!this->FindRegions(progress.Between(0.0, 0.5)))
     {
       return false;
     }
-    this->TraceBorders(SubProgress(progress, 0.5, 0.7));
+    this->TraceBorders(progress.Between(0.5, 0.7));
     this->FindRims();
-    this->CollectInnerEdges(SubProgress(progress, 0.7, 0.9));
-    this->MeasureGaps(SubProgress(progress, 0.9, 1.0));
+    this->CollectInnerEdges(progress.Between(0.7, 0.9));
+    this->MeasureGaps(progress.Between(0.9, 1.0));
     return true;
   }
 
@@ -209,7 +209,7 @@ private:
     const IsLowerPoint isLower{ mesh };
     std::vector<InnerEdge> edges;
     std::vector<char> isJoined(mesh.NumberOfPoints(), 0);
-    const Progress collecting = SubProgress(progress, 0.0, 0.5);
+    const Progress collecting = progress.Between(0.0, 0.5);
     for (const Index h : Counted(mesh.NumberOfHalfEdges()))
     {
       ReportStep(collecting, h, mesh.NumberOfHalfEdges());
@@ -237,7 +237,7 @@ private:
         return s.Region != t.Region ? s.Region < t.Region
                                     : this->IsLowerEdge(s.Low, s.High, t.Low, t.High);
       },
-      SubProgress(progress, 0.5, 1.0));
+      progress.Between(0.5, 1.0));
     std::size_t i = 0;
     for (Index region = 0; region < this->NumberOfRegions; ++region)
     {
@@ -301,7 +301,7 @@ private:
       queue.pop();
       const auto spread = [&, from = gap, p = mesh.PointOf(v)](Index w) {
         const Point2& q = mesh.PointOf(w);
-        const double left = from - DecayOfGaps * std::hypot(q.X - p.X, q.Y - p.Y);
+        const double left = from - GapDecay * std::hypot(q.X - p.X, q.Y - p.Y);
         if (left > gaps[w])
         {
           gaps[w] = left;
@@ -336,7 +336,7 @@ std::vector<Index> NumberRegions(const Mesh& mesh, double longest, const Progres
   const EdgeLimit limit(longest);
   const Index count = mesh.NumberOfTriangles();
   std::vector<char> isLong(count);
-  ForEachStretch(count, SubProgress(progress, 0.0, 0.5), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.0, 0.5), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       isLong[t] = !limit.Admits([&](Index v) -> const Point2& { return mesh.PointOf(v); },
@@ -348,7 +348,7 @@ std::vector<Index> NumberRegions(const Mesh& mesh, double longest, const Progres
   {
     return regionOf;
   }
-  const Components parts = FindComponents(mesh, SubProgress(progress, 0.5, 1.0), [&](Index h) {
+  const Components parts = FindComponents(mesh, progress.Between(0.5, 1.0), [&](Index h) {
     return isLong[Mesh::Triangle(h)] && isLong[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
   });
   std::vector<Index> numbers(parts.Count(), None);
@@ -380,7 +380,7 @@ double LargestHeight(const Mesh& mesh, Index triangle)
   return height;
 }
 
-void AddRegionsOfBorder(const std::vector<BorderEdge>& border, const std::vector<Index>& regionOf,
+void AddBorderRegions(const std::vector<BorderEdge>& border, const std::vector<Index>& regionOf,
   const PointView& points, Holes& holes, const Progress& progress)
 {
   std::vector<BorderEdge> reversed;
@@ -390,9 +390,8 @@ void AddRegionsOfBorder(const std::vector<BorderEdge>& border, const std::vector
   }
   std::vector<Index> ids;
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(holes.Walks.Vertices.size());
-  const Mesh mesh = MakeBorderMesh(reversed, points, SubProgress(progress, 0.0, 0.3), ids);
-  RegionFinder(mesh, holes.LongestEdge, holes)
-    .RunOnBorder(regionOf, SubProgress(progress, 0.3, 1.0));
+  const Mesh mesh = MakeBorderMesh(reversed, points, progress.Between(0.0, 0.3), ids);
+  RegionFinder(mesh, holes.LongestEdge, holes).RunOnBorder(regionOf, progress.Between(0.3, 1.0));
   std::for_each(holes.Walks.Vertices.begin() + first, holes.Walks.Vertices.end(),
     [&ids](Index& vertex) { vertex = ids[vertex]; });
 }
@@ -401,7 +400,7 @@ bool OpenLongTriangles(
   const Mesh& mesh, double longest, Holes& holes, Mesh& rest, const Progress& progress)
 {
   RegionFinder finder(mesh, longest, holes);
-  if (!finder.Run(SubProgress(progress, 0.0, 0.9)))
+  if (!finder.Run(progress.Between(0.0, 0.9)))
   {
     return false;
   }

@@ -62,7 +62,7 @@ double LargestHeight(const Mesh& mesh, Index triangle);
  * @param[in]     regionOf  of each edge, counted from 0
  * @param[in,out] holes     from FindBorderHoles()
  */
-void AddRegionsOfBorder(const std::vector<BorderEdge>& border, const std::vector<Index>& regionOf,
+void AddBorderRegions(const std::vector<BorderEdge>& border, const std::vector<Index>& regionOf,
   const PointView& points, Holes& holes, const Progress& progress = Progress());
 
 /**

@@ -14,7 +14,7 @@ namespace elevation
 namespace
 {
 
-std::string NameOfSegment(const Mesh& mesh, const Segment& segment)
+std::string SegmentName(const Mesh& mesh, const Segment& segment)
 {
   return "The segment from " + NameOf(mesh, segment.A) + " to " + NameOf(mesh, segment.B);
 }
@@ -130,18 +130,9 @@ private:
 
   bool IsToFlip(const Mesh& mesh, Index a, Index b) const
   {
-    const Point2& from = mesh.PointOf(this->Triangles[a]);
-    const Point2& to = mesh.PointOf(this->Triangles[b]);
-    const Point2& p = mesh.PointOf(this->Triangles[Mesh::Previous(a)]);
-    const Point2& q = mesh.PointOf(this->Triangles[Mesh::Previous(b)]);
-    const Sign side = InCircle(from, to, p, q);
-    if (side != Zero)
-    {
-      return side == Positive;
-    }
-    const Point2& lowestOn = IsLower(from, to) ? from : to;
-    const Point2& lowestOff = IsLower(p, q) ? p : q;
-    return IsLower(lowestOff, lowestOn);
+    return ShouldFlip(mesh.PointOf(this->Triangles[a]), mesh.PointOf(this->Triangles[b]),
+      mesh.PointOf(this->Triangles[Mesh::Previous(a)]),
+      mesh.PointOf(this->Triangles[Mesh::Previous(b)]));
   }
 
   struct Entry
@@ -216,7 +207,7 @@ private:
     if (this->Constrained[crossed])
     {
       const Mesh& mesh = this->Surface;
-      throw Error(NameOfSegment(mesh, segment) + " crosses the fixed edge from " +
+      throw Error(SegmentName(mesh, segment) + " crosses the fixed edge from " +
         NameOf(mesh, mesh.Origin(crossed)) + " to " + NameOf(mesh, mesh.Destination(crossed)) +
         ". Segments may not cross; they may meet in a vertex.");
     }
@@ -389,7 +380,7 @@ private:
 
   [[noreturn]] void ThrowLeaves(Index from, const Segment& segment) const
   {
-    throw Error(NameOfSegment(this->Surface, segment) +
+    throw Error(SegmentName(this->Surface, segment) +
       " leaves the mesh: it crosses a hole or the outside" +
       (from == segment.A ? "." : " after " + NameOf(this->Surface, from) + "."));
   }
@@ -454,8 +445,8 @@ Index FirstCrossed(const Mesh& mesh, VertexStars& stars, Index from, Index to)
 Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
   std::vector<char>& constrained, const Progress& progress)
 {
-  VertexStars stars(mesh, SubProgress(progress, 0.0, 0.5));
-  return RecoverSegments(mesh, stars, segments, constrained, SubProgress(progress, 0.5, 1.0));
+  VertexStars stars(mesh, progress.Between(0.0, 0.5));
+  return RecoverSegments(mesh, stars, segments, constrained, progress.Between(0.5, 1.0));
 }
 
 Index RecoverSegments(Mesh& mesh, VertexStars& stars, const std::vector<Segment>& segments,

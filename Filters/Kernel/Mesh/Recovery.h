@@ -44,6 +44,17 @@ struct Segment
   Index B;
 };
 
+/**
+ * Whether the edge from a to b of two triangles with the apexes p and q is not locally Delaunay; of
+ * cocircular points, the lowest is on all edges between them.
+ */
+inline bool ShouldFlip(const Point2& a, const Point2& b, const Point2& p, const Point2& q)
+{
+  const Sign side = InCircle(a, b, p, q);
+  return side == Positive ||
+    (side == Zero && IsLower(IsLower(p, q) ? p : q, IsLower(a, b) ? a : b));
+}
+
 /** A step along a segment: a half-edge that is on it, and the vertex it leads to. */
 struct SegmentStep
 {

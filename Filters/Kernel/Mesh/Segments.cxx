@@ -41,15 +41,15 @@ public:
       [](const Ends& s, const Ends& t) {
         return s[0] != t[0] ? IsLower(s[0], t[0]) : IsLower(s[1], t[1]);
       },
-      SubProgress(progress, 0.0, 0.3));
+      progress.Between(0.0, 0.3));
     all.erase(std::unique(all.begin(), all.end()), all.end());
     std::vector<Index> byEnd(all.size());
     std::iota(byEnd.begin(), byEnd.end(), 0);
     Sort(
       byEnd.begin(), byEnd.end(), [&](Index s, Index t) { return IsLower(all[s][1], all[t][1]); },
-      SubProgress(progress, 0.3, 0.5));
+      progress.Between(0.3, 0.5));
 
-    const Progress sweeping = SubProgress(progress, 0.5, 1.0);
+    const Progress sweeping = progress.Between(0.5, 1.0);
     const auto isBefore = [this](Index s, Index t) { return this->IsLeftOf(s, t); };
     std::set<Index, decltype(isBefore)> across(isBefore);
     std::vector<decltype(across.begin())> places(all.size());
@@ -229,7 +229,7 @@ void VisitCrossings(const std::vector<Ends>& segments, const CellGrid& grid,
     if (work.Count() > many && !isSwept)
     {
       const double done = static_cast<double>(i) / static_cast<double>(segments.size());
-      if (!CrossingSweep(segments).FindsCrossing(SubProgress(progress, done, done)))
+      if (!CrossingSweep(segments).FindsCrossing(progress.Between(done, done)))
       {
         return;
       }
@@ -263,9 +263,9 @@ std::vector<Passage> JoinOverlaps(
     [&](const LinePiece& p, const LinePiece& q) {
       return p.Line != q.Line ? p.Line < q.Line : IsLower(places[p.Piece.A], places[q.Piece.A]);
     },
-    SubProgress(progress, 0.25, 0.75));
+    progress.Between(0.25, 0.75));
 
-  const Progress joining = SubProgress(progress, 0.75, 1.0);
+  const Progress joining = progress.Between(0.75, 1.0);
   WorkReporter work(joining);
   std::vector<Passage> passages;
   pieces.clear();

@@ -85,8 +85,7 @@ std::vector<Index> AllTriangles(const TriangleList& list)
 Mesh MeshOf(const TriangleList& list, int threads, const Progress& progress)
 {
   Mesh mesh;
-  const bool areFinite =
-    CopyPoints(list.Points, threads, SubProgress(progress, 0.0, 0.2), mesh.Points);
+  const bool areFinite = CopyPoints(list.Points, threads, progress.Between(0.0, 0.2), mesh.Points);
   mesh.Triangles.resize(3 * static_cast<std::size_t>(list.Count));
   const auto read = [&](Index, Index begin, Index end) {
     // Few at a time, so that their points can be prefetched.
@@ -111,7 +110,7 @@ Mesh MeshOf(const TriangleList& list, int threads, const Progress& progress)
       }
     }
   };
-  ForEachRange(list.Count, threads, SubProgress(progress, 0.2, 1.0), read, AtOnce);
+  ForEachRange(list.Count, threads, progress.Between(0.2, 1.0), read, AtOnce);
   return mesh;
 }
 
@@ -121,7 +120,7 @@ Mesh SubMesh(
   Mesh mesh;
   const Index count = static_cast<Index>(triangles.size());
   IdSet corners(list.Points.Count);
-  ForEachStretch(count, SubProgress(progress, 0.0, 0.4), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.0, 0.4), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
     {
       Prefetch(list.CornersOf(triangles[std::min(i + 16, count - 1)]));
@@ -137,7 +136,7 @@ Mesh SubMesh(
     mesh.Points.push_back(list.Points.At(mesh.Ids[i]));
   }
   mesh.Triangles.reserve(3 * triangles.size());
-  ForEachStretch(count, SubProgress(progress, 0.5, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.5, 1.0), [&](Index begin, Index end) {
     for (Index i = 3 * begin; i < 3 * end; ++i)
     {
       mesh.Triangles.push_back(corners.RankOf(list.CornersOf(triangles[i / 3])[i % 3]));

@@ -44,8 +44,8 @@ struct SweptVertex
 /** A half-edge: its lower and upper end, and whether it leads down (1) or up (0). */
 struct SweptEdge
 {
-  SweptEdge(Index a, Point2 placeOfA, Index b, Point2 placeOfB)
-    : IsDown(IsLower(placeOfB, placeOfA))
+  SweptEdge(Index a, Point2 placeA, Index b, Point2 placeB)
+    : IsDown(IsLower(placeB, placeA))
     , Lower(a ^ ((a ^ b) & -this->IsDown)) // without branches: the direction is by chance
     , Upper(a ^ b ^ this->Lower)
   {
@@ -246,7 +246,7 @@ public:
         OpenEdges<Vertex>(this->Vertices, 1024 + static_cast<std::size_t>(this->List.Count) / 64),
         visitor, IdSet(number > 1 ? this->List.Points.Count : 0), {} });
     }
-    if (!this->Read(SubProgress(progress, 0.0, 0.3)))
+    if (!this->Read(progress.Between(0.0, 0.3)))
     {
       return false;
     }
@@ -254,7 +254,7 @@ public:
     if (number > 1)
     {
       isRight = this->InRanges(
-        SubProgress(progress, 0.3, 0.4), [this](Range& range) { return this->Mark(range); });
+        progress.Between(0.3, 0.4), [this](Range& range) { return this->Mark(range); });
       IdSet all(this->List.Points.Count);
       for (Range& range : this->Ranges)
       {
@@ -262,10 +262,10 @@ public:
         range.Corners = IdSet(0);
       }
     }
-    isRight = isRight && this->InRanges(SubProgress(progress, 0.4, 0.95), [this](Range& range) {
+    isRight = isRight && this->InRanges(progress.Between(0.4, 0.95), [this](Range& range) {
       return this->Sweep(range);
     });
-    return isRight && this->SweepDeferred(SubProgress(progress, 0.95, 1.0));
+    return isRight && this->SweepDeferred(progress.Between(0.95, 1.0));
   }
 
   /** The visitors, by range; the first one may have visited triangles out of order. */

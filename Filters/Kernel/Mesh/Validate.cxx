@@ -237,7 +237,7 @@ constexpr Widest WidestUnit = LongUnit;
 #endif
 
 /** IsWithin() for a point on an edge: its triangles may be too thin for a plane. */
-bool IsWithinOfEdge(double most, const PointView& points, Index from, Index to, Index point)
+bool IsNearEdge(double most, const PointView& points, Index from, Index to, Index point)
 {
   const Point2 a = points.At(from), b = points.At(to), p = points.At(point);
   const long double x = static_cast<long double>(b.X) - a.X,
@@ -265,7 +265,7 @@ bool IsWithin(double most, Real unit, const PointView& points, const Index* corn
   };
   const auto size = [](Real value) { return value < 0.0 ? -value : value; };
   const auto p = at(point);
-  std::array<Real, 3> area, sizeOfArea, z;
+  std::array<Real, 3> area, areaSize, z;
   for (int k = 0; k < 3; ++k)
   {
     const auto a = at(corners[k]);
@@ -276,20 +276,20 @@ bool IsWithin(double most, Real unit, const PointView& points, const Index* corn
     const auto b = at(corners[(k + 1) % 3]), c = at(corners[(k + 2) % 3]);
     const Real left = (b[0] - p[0]) * (c[1] - p[1]), right = (b[1] - p[1]) * (c[0] - p[0]);
     area[k] = left - right;
-    sizeOfArea[k] = size(left) + size(right);
+    areaSize[k] = size(left) + size(right);
     z[k] = a[2];
   }
   // The distance is the sum of area k times (z of k less z of p), through the sum of areas.
-  Real sum = 0.0, sizeOfSum = 0.0, whole = 0.0, sizeOfWhole = 0.0;
+  Real sum = 0.0, sumSize = 0.0, whole = 0.0, wholeSize = 0.0;
   for (int k = 0; k < 3; ++k)
   {
     sum += area[k] * (z[k] - p[2]);
-    sizeOfSum += sizeOfArea[k] * size(z[k] - p[2]);
+    sumSize += areaSize[k] * size(z[k] - p[2]);
     whole += area[k];
-    sizeOfWhole += sizeOfArea[k];
+    wholeSize += areaSize[k];
   }
-  const Real least = whole - unit * sizeOfWhole;
-  return least > 0.0 && (size(sum) + unit * sizeOfSum) / least <= most;
+  const Real least = whole - unit * wholeSize;
+  return least > 0.0 && (size(sum) + unit * sumSize) / least <= most;
 }
 } // namespace
 
@@ -331,7 +331,7 @@ std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points,
         {
           const Index from = c[k], to = c[(k + 1) % 3];
           isNear = Orientation(mesh.PointOf(from), mesh.PointOf(to), p) == Zero &&
-            IsWithinOfEdge(most, points, from, to, point);
+            IsNearEdge(most, points, from, to, point);
         }
       }
     };

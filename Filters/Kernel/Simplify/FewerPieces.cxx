@@ -55,8 +55,7 @@ public:
     std::vector<std::vector<Index>> chains;
     for (const bool areOpen : { true, false })
     {
-      const Progress half =
-        areOpen ? SubProgress(progress, 0.0, 0.5) : SubProgress(progress, 0.5, 1.0);
+      const Progress half = areOpen ? progress.Between(0.0, 0.5) : progress.Between(0.5, 1.0);
       WorkReporter reporter(half);
       for (std::size_t way = 0; way < this->Ways.size(); ++way)
       {
@@ -252,11 +251,11 @@ std::vector<char> FindHindered(
       own.emplace_back((*one.Chain)[at], i);
     }
   }
-  Sort(own.begin(), own.end(), std::less<std::pair<Index, std::size_t>>(),
-    SubProgress(progress, 0.0, 0.2));
+  Sort(
+    own.begin(), own.end(), std::less<std::pair<Index, std::size_t>>(), progress.Between(0.0, 0.2));
   std::vector<char> isHindered(stretches.size(), 0);
   const CellGrid grid(stretches.size(), endsOf);
-  const Progress looking = SubProgress(progress, 0.2, 1.0);
+  const Progress looking = progress.Between(0.2, 1.0);
   for (const Index place : Counted(placed.Count()))
   {
     ReportStep(looking, place, placed.Count());
@@ -279,11 +278,10 @@ std::vector<Segment> FewerPieces(const PlacedPoints& placed, const std::vector<S
 {
   std::vector<Segment> fewer;
   const std::vector<std::vector<Index>> chains =
-    Network(placed, pieces, SubProgress(progress, 0.0, 0.2))
-      .Chains(SubProgress(progress, 0.2, 0.5));
+    Network(placed, pieces, progress.Between(0.0, 0.2)).Chains(progress.Between(0.2, 0.5));
   const Straightening straightening(placed, error);
   std::vector<Stretch> bent; // not exactly straight
-  const Progress straight = SubProgress(progress, 0.5, 0.6);
+  const Progress straight = progress.Between(0.5, 0.6);
   for (const std::vector<Index>& chain : chains)
   {
     for (std::size_t first = 0; first + 1 < chain.size();)
@@ -302,9 +300,8 @@ std::vector<Segment> FewerPieces(const PlacedPoints& placed, const std::vector<S
       }
     }
   }
-  const std::vector<char> isHindered = bent.empty()
-    ? std::vector<char>()
-    : FindHindered(placed, bent, SubProgress(progress, 0.6, 1.0));
+  const std::vector<char> isHindered =
+    bent.empty() ? std::vector<char>() : FindHindered(placed, bent, progress.Between(0.6, 1.0));
   for (std::size_t i = 0; i < bent.size(); ++i)
   {
     const Stretch& one = bent[i];

@@ -159,21 +159,21 @@ void GreedyInsertion::Run(double error, int threads, const Progress& progress)
   for (double begin = 0.0; every > 0; every /= SampleFactor)
   {
     const double end = every == 1 ? 1.0 : begin + 0.1;
-    this->AddSample(every - 1, threads, SubProgress(progress, begin, begin + 0.3 * (end - begin)));
+    this->AddSample(every - 1, threads, progress.Between(begin, begin + 0.3 * (end - begin)));
     const double density = every == 1 ? count : 1.0 / (PointsPerVertex * every);
     const double rows = std::sqrt(0.5 * static_cast<double>(this->Ordered.size()));
     const Index strips =
       static_cast<Index>(std::min(rows / VertexRowsPerStrip, static_cast<double>(MostStrips)));
-    const Progress refining = SubProgress(progress, begin + 0.3 * (end - begin), end);
+    const Progress refining = progress.Between(begin + 0.3 * (end - begin), end);
     if (strips > 1)
     {
       this->Refine(
-        error, density, this->MakeStrips(strips, false), threads, SubProgress(refining, 0.0, 0.6));
+        error, density, this->MakeStrips(strips, false), threads, refining.Between(0.0, 0.6));
       this->Refine(
-        error, density, this->MakeStrips(strips, true), threads, SubProgress(refining, 0.6, 0.8));
+        error, density, this->MakeStrips(strips, true), threads, refining.Between(0.6, 0.8));
     }
     this->Refine(error, density, this->MakeStrips(1, false), threads,
-      SubProgress(refining, strips > 1 ? 0.8 : 0.0, 1.0));
+      refining.Between(strips > 1 ? 0.8 : 0.0, 1.0));
     begin = end;
   }
 }

@@ -72,7 +72,7 @@ Sign InsertionMesh::IsInCircle(const Face& face, Index place) const
   }
   if (!this->HasSmallProducts)
   {
-    return InCircleOfNodes(*this->Metric, a, b, c, p);
+    return InNodeCircle(*this->Metric, a, b, c, p);
   }
   struct Offset
   {

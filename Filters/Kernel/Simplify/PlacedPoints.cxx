@@ -139,14 +139,13 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
 {
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
   LatticeSearch search = options.GivenLattice.IsSet()
-    ? GivenLattice(
-        points, options.GivenLattice, tolerance, threads, SubProgress(progress, 0.0, 0.4))
-    : FindLattice(points, tolerance, threads, SubProgress(progress, 0.0, 0.4));
+    ? GivenLattice(points, options.GivenLattice, tolerance, threads, progress.Between(0.0, 0.4))
+    : FindLattice(points, tolerance, threads, progress.Between(0.0, 0.4));
   LatticeNodes nodes;
   LatticeMetric metric;
   if (!search.Found || !metric.Set(search.Steps) ||
     !nodes.Place(
-      points, search, tolerance, options.Duplicates, threads, SubProgress(progress, 0.4, 0.8)) ||
+      points, search, tolerance, options.Duplicates, threads, progress.Between(0.4, 0.8)) ||
     (!options.GivenLattice.IsSet() && IsLatticeByChance(nodes.NumberOfPoints(), tolerance)))
   {
     return false;
@@ -155,7 +154,7 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
     return row < nodes.Rows ? nodes.RankOf(nodes.NodeAt(row, 0)) : nodes.NumberOfPoints();
   };
   placed.Places.Resize(static_cast<std::size_t>(nodes.NumberOfPoints()));
-  ForEachPiece(nodes.Rows, threads, SubProgress(progress, 0.8, 1.0), [&](Index row) {
+  ForEachPiece(nodes.Rows, threads, progress.Between(0.8, 1.0), [&](Index row) {
     Index place = placesBefore(row);
     const Index first = nodes.NodeAt(row, 0) / 64;
     const Index words = (nodes.Columns + 63) / 64;
@@ -196,7 +195,7 @@ PlacedPoints PlaceInBins(
   const PointView& points, const DelaunayOptions& options, int threads, const Progress& progress)
 {
   PlacedPoints placed;
-  BinGrid grid(points, options.Duplicates, SubProgress(progress, 0.0, 0.7), threads);
+  BinGrid grid(points, options.Duplicates, progress.Between(0.0, 0.7), threads);
   placed.Duplicates = std::move(grid.Duplicates);
   placed.NotFinite = std::move(grid.NotFinite);
   if (grid.NumberOfPoints() == 0)
@@ -206,8 +205,7 @@ PlacedPoints PlaceInBins(
   // As much memory as all places need.
   grid.Scratch = Buffer<Index>();
   grid.Tree = BoxTree();
-  const Buffer<Index> candidates =
-    SortedCandidates(grid, threads, SubProgress(progress, 0.7, 0.85));
+  const Buffer<Index> candidates = SortedCandidates(grid, threads, progress.Between(0.7, 0.85));
   grid.Order = Buffer<Index>();
   grid.X = Buffer<double>();
   grid.Y = Buffer<double>();
@@ -218,7 +216,7 @@ PlacedPoints PlaceInBins(
   placed.Ids = std::move(grid.Ids);
   placed.Places.Resize(placed.Ids.size());
   ForEachRange(
-    placed.Count(), threads, SubProgress(progress, 0.85, 1.0), [&](Index, Index begin, Index end) {
+    placed.Count(), threads, progress.Between(0.85, 1.0), [&](Index, Index begin, Index end) {
       for (Index place = begin; place < end; ++place)
       {
         const Index id = placed.Ids[place];
@@ -238,10 +236,10 @@ std::vector<Segment> PiecesByPlaces(
   {
     ids.insert(ids.end(), { piece.A, piece.B });
   }
-  Sort(ids.begin(), ids.end(), std::less<Index>(), SubProgress(progress, 0.0, 0.3));
+  Sort(ids.begin(), ids.end(), std::less<Index>(), progress.Between(0.0, 0.3));
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   std::vector<Index> placeOf(ids.size(), None);
-  const Progress finding = SubProgress(progress, 0.3, 0.8);
+  const Progress finding = progress.Between(0.3, 0.8);
   for (const Index place : Counted(ids.empty() ? 0 : placed.Count()))
   {
     ReportStep(finding, place, placed.Ids.size());
@@ -254,7 +252,7 @@ std::vector<Segment> PiecesByPlaces(
   const auto find = [&](Index id) {
     return placeOf[std::lower_bound(ids.begin(), ids.end(), id) - ids.begin()];
   };
-  return Renumbered(pieces, find, SubProgress(progress, 0.8, 1.0));
+  return Renumbered(pieces, find, progress.Between(0.8, 1.0));
 }
 
 std::vector<Segment> AddEnds(
@@ -266,13 +264,13 @@ std::vector<Segment> AddEnds(
     corners.insert(corners.end(), { piece.A, piece.B });
   }
   const auto isLower = [&placed](Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); };
-  Sort(corners.begin(), corners.end(), isLower, SubProgress(progress, 0.0, 0.6));
+  Sort(corners.begin(), corners.end(), isLower, progress.Between(0.0, 0.6));
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   const auto cornerOf = [&](Index place) {
     return static_cast<Index>(
       std::lower_bound(corners.begin(), corners.end(), place, isLower) - corners.begin());
   };
-  return Renumbered(pieces, cornerOf, SubProgress(progress, 0.6, 1.0));
+  return Renumbered(pieces, cornerOf, progress.Between(0.6, 1.0));
 }
 
 } // namespace elevation

@@ -35,13 +35,13 @@ Mesh FirstMesh(const PlacedPoints& placed, const std::vector<Segment>& pieces,
     corners.Append(placed.At(place));
   }
   const Buffer<Index> triangles = DivideAndConquer(
-    corners, SubProgress(progress, 0.0, 0.5), placed.Metric ? &*placed.Metric : nullptr);
+    corners, progress.Between(0.0, 0.5), placed.Metric ? &*placed.Metric : nullptr);
   mesh.Triangles.assign(triangles.begin(), triangles.end());
   mesh.Points.assign(corners.begin(), corners.end());
-  mesh.ConnectTwins(0, SubProgress(progress, 0.5, 0.6));
+  mesh.ConnectTwins(0, progress.Between(0.5, 0.6));
   if (!pieces.empty() && mesh.NumberOfTriangles() > 0)
   {
-    RecoverSegments(mesh, pieces, fixed, SubProgress(progress, 0.6, 1.0));
+    RecoverSegments(mesh, pieces, fixed, progress.Between(0.6, 1.0));
   }
   for (Index& corner : mesh.Triangles)
   {
@@ -166,7 +166,7 @@ Buffer<Index> RanksOf(
   const PlacedPoints& placed, const GreedyInsertion& mesh, const Progress& progress)
 {
   std::vector<Index> vertices;
-  ForEachStretch(placed.Count(), SubProgress(progress, 0.0, 0.2), [&](Index begin, Index end) {
+  ForEachStretch(placed.Count(), progress.Between(0.0, 0.2), [&](Index begin, Index end) {
     for (Index place = begin; place < end; ++place)
     {
       if (mesh.IsVertex(place))
@@ -179,12 +179,12 @@ Buffer<Index> RanksOf(
   {
     const auto isLower = [&placed](
                            Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); };
-    Sort(vertices.begin(), vertices.end(), isLower, SubProgress(progress, 0.2, 0.8));
+    Sort(vertices.begin(), vertices.end(), isLower, progress.Between(0.2, 0.8));
   }
   Buffer<Index> ranks;
   ranks.Resize(placed.Ids.size());
   const Index count = static_cast<Index>(vertices.size());
-  ForEachStretch(count, SubProgress(progress, 0.8, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.8, 1.0), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
     {
       ranks[vertices[i]] = i;
@@ -201,9 +201,8 @@ Buffer<Index> TrianglesOf(
   {
     Index Corners[3]; // from the lowest on
   };
-  const Buffer<Index> ranks = RanksOf(placed, mesh, SubProgress(progress, 0.0, 0.4));
-  const Progress turning = SubProgress(progress, 0.4, 0.6),
-                 sorting = SubProgress(progress, 0.6, 1.0);
+  const Buffer<Index> ranks = RanksOf(placed, mesh, progress.Between(0.0, 0.4));
+  const Progress turning = progress.Between(0.4, 0.6), sorting = progress.Between(0.6, 1.0);
   std::vector<Turned> faces;
   std::vector<Index> begins(1, 0); // of fans
   for (const Index number : Counted(mesh.Order()))
@@ -262,7 +261,7 @@ void ListUnused(Index count, const PlacedPoints& placed, const GreedyInsertion* 
     set(id, UnusedReason::NotFinite);
   }
   const Index candidates = mesh ? placed.Count() : 0;
-  ForEachStretch(candidates, SubProgress(progress, 0.0, 0.5), [&](Index begin, Index end) {
+  ForEachStretch(candidates, progress.Between(0.0, 0.5), [&](Index begin, Index end) {
     for (Index place = begin; place < end; ++place)
     {
       if (!mesh->IsVertex(place))
@@ -278,7 +277,7 @@ void ListUnused(Index count, const PlacedPoints& placed, const GreedyInsertion* 
     placed.Duplicates.size() + placed.NotFinite.size() + result.NumberOfRedundant;
   result.UnusedPoints.reserve(unused);
   result.UnusedReasons.reserve(unused);
-  ForEachStretch(count, SubProgress(progress, 0.5, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.5, 1.0), [&](Index begin, Index end) {
     for (Index id = begin; id < end; ++id)
     {
       if (reasons[id] != 0)
@@ -297,39 +296,38 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   Triangulation result;
   result.LatticeFound = placed.Metric.has_value();
   result.Steps = placed.Steps;
-  std::vector<Segment> lines = PiecesByPlaces(pieces, placed, SubProgress(progress, 0.0, 0.01));
+  std::vector<Segment> lines = PiecesByPlaces(pieces, placed, progress.Between(0.0, 0.01));
   if (options.SimplifyConstraints && !lines.empty())
   {
-    lines =
-      FewerPieces(placed, lines, options.MaximumElevationError, SubProgress(progress, 0.01, 0.02));
+    lines = FewerPieces(placed, lines, options.MaximumElevationError, progress.Between(0.01, 0.02));
   }
-  const std::vector<Segment> byCorners = AddEnds(lines, placed, SubProgress(progress, 0.02, 0.03));
+  const std::vector<Segment> byCorners = AddEnds(lines, placed, progress.Between(0.02, 0.03));
   std::vector<char> fixed;
-  const Mesh first = FirstMesh(placed, byCorners, fixed, SubProgress(progress, 0.03, 0.05));
+  const Mesh first = FirstMesh(placed, byCorners, fixed, progress.Between(0.03, 0.05));
   if (first.NumberOfTriangles() == 0)
   {
-    ListUnused(points.Count, placed, nullptr, SubProgress(progress, 0.05, 1.0), result);
+    ListUnused(points.Count, placed, nullptr, progress.Between(0.05, 1.0), result);
     return result;
   }
   GreedyInsertion mesh(placed.Places, placed.Rows, placed.Metric ? &*placed.Metric : nullptr, first,
     fixed, options.Edges);
   const Measurement measurement(points, placed, mesh);
   std::vector<Index> beyond;
-  Progress ofRound = SubProgress(progress, 0.05, 0.8);
+  Progress ofRound = progress.Between(0.05, 0.8);
   do
   {
     if (!beyond.empty())
     {
       mesh.Insert(beyond);
       beyond.clear();
-      ofRound = SubProgress(progress, 0.8, 0.8);
+      ofRound = progress.Between(0.8, 0.8);
     }
     mesh.Run(options.MaximumElevationError, threads, ofRound);
-    result.LargestElevationError = measurement.Run(
-      options.MaximumElevationError, threads, SubProgress(progress, 0.8, 0.9), beyond);
+    result.LargestElevationError =
+      measurement.Run(options.MaximumElevationError, threads, progress.Between(0.8, 0.9), beyond);
   } while (!beyond.empty());
-  result.Triangles = TrianglesOf(placed, mesh, SubProgress(progress, 0.9, 0.98));
-  ListUnused(points.Count, placed, &mesh, SubProgress(progress, 0.98, 1.0), result);
+  result.Triangles = TrianglesOf(placed, mesh, progress.Between(0.9, 0.98));
+  ListUnused(points.Count, placed, &mesh, progress.Between(0.98, 1.0), result);
   result.NumberOfHullPoints = 2 * (placed.Count() - result.NumberOfRedundant) - 2 -
     static_cast<Index>(result.Triangles.size() / 3);
   Report(progress, 1.0);
@@ -341,8 +339,8 @@ Triangulation TriangulateFew(
   const PointView& points, const DelaunayOptions& options, const std::vector<Segment>& pieces)
 {
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
-  const Progress placing = SubProgress(options.Monitor, 0.0, 0.2),
-                 working = SubProgress(options.Monitor, 0.2, 1.0);
+  const Progress placing = options.Monitor.Between(0.0, 0.2),
+                 working = options.Monitor.Between(0.2, 1.0);
   if (options.UseLattice == LatticeMode::Automatic && pieces.empty())
   {
     PlacedPoints placed;

@@ -45,16 +45,16 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
     return result;
   }
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
-  BinGrid grid(points, options.Duplicates, SubProgress(options.Monitor, 0.0, 0.2), threads,
+  BinGrid grid(points, options.Duplicates, options.Monitor.Between(0.0, 0.2), threads,
     isLatticeAsked ? &extent : nullptr);
   SetUnusedPoints(
-    std::move(grid.Duplicates), grid.NotFinite, SubProgress(options.Monitor, 0.2, 0.2), result);
+    std::move(grid.Duplicates), grid.NotFinite, options.Monitor.Between(0.2, 0.2), result);
   if (grid.NumberOfPoints() < 3)
   {
     return result;
   }
 
-  const Hull hull = FindHull(grid, SubProgress(options.Monitor, 0.2, 0.2));
+  const Hull hull = FindHull(grid, options.Monitor.Between(0.2, 0.2));
   if (hull.IsLine())
   {
     return result;

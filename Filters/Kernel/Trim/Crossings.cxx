@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Crossings.h"
 
-#include "Rings.h"
 #include "Kernel/Base/Base.h"
+#include "Rings.h"
 
 #include <algorithm>
 #include <unordered_set>
@@ -27,8 +27,8 @@ public:
     const CellGrid& grid, const Progress& progress)
   {
     const std::vector<PieceCut> cuts =
-      FindCuts(points, rings, edges, grid, SubProgress(progress, 0.0, 0.9));
-    const Progress walking = SubProgress(progress, 0.9, 1.0);
+      FindCuts(points, rings, edges, grid, progress.Between(0.0, 0.9));
+    const Progress walking = progress.Between(0.9, 1.0);
     auto cut = cuts.begin();
     for (Index ring = 0; ring < rings.Count(); ++ring)
     {
@@ -67,7 +67,7 @@ public:
   {
     Index First; ///< the point where two walks meet
     Index Last;  ///< the point where they separate; First if they share no edge
-    bool IsOfOneRing;
+    bool IsOneRing;
   };
 
   /**
@@ -91,8 +91,8 @@ public:
       [&](Index p, Index q) {
         return this->At(p) != this->At(q) ? IsLower(this->At(p), this->At(q)) : p < q;
       },
-      SubProgress(progress, 0.0, 0.5));
-    const Progress looking = SubProgress(progress, 0.5, 1.0);
+      progress.Between(0.0, 0.5));
+    const Progress looking = progress.Between(0.5, 1.0);
     WorkReporter work(looking);
     for (std::size_t i = 0, end = 0; i < order.size(); i = end)
     {
@@ -118,7 +118,7 @@ private:
     // In a crowded cell, a place that occurs many times is looked up only once.
     constexpr std::ptrdiff_t many = 64;
     std::unordered_set<Point2, PointHash> known;
-    const Progress cutting = SubProgress(progress, 0.0, 0.6);
+    const Progress cutting = progress.Between(0.0, 0.6);
     WorkReporter work(cutting);
     for (std::size_t i = 0; i < edges.size(); ++i)
     {
@@ -141,7 +141,7 @@ private:
     }
     SortAlong(
       cuts, [&](Index edge) { return edges[edge]; }, [&](Index point) { return points[point]; },
-      SubProgress(progress, 0.6, 1.0));
+      progress.Between(0.6, 1.0));
     return cuts;
   }
 
@@ -185,10 +185,9 @@ private:
     }
   }
 
-  bool FindCrossingAt(
-    const Index* begin, const Index* end, Meeting& crossing, WorkReporter& work) const
+  /** All strands at a place, sorted by angle, with their directions. */
+  std::vector<Strand> SortedStrands(const Index* begin, const Index* end, WorkReporter& work) const
   {
-    // All strands at this place, sorted by angle.
     const Point2& at = this->At(*begin);
     std::vector<Strand> strands;
     for (const Index* node = begin; node < end; ++node)
@@ -207,29 +206,31 @@ private:
       const Sign turn = to(s) == to(t) ? Zero : Orientation(at, to(s), to(t));
       return turn != Zero ? turn == Positive : s.Node < t.Node;
     });
-    // The directions of both strands of each node.
-    std::vector<std::array<Index, 2>> passages(end - begin);
-    const auto passageOf = [&](Index node) -> std::array<Index, 2>& {
-      return passages[std::lower_bound(begin, end, node) - begin];
-    };
-    for (std::size_t i = 0; i < strands.size(); ++i)
+    for (std::size_t i = 1; i < strands.size(); ++i)
     {
-      const bool isSame = i > 0 && to(strands[i]) == to(strands[i - 1]);
-      strands[i].Direction = i == 0 ? 0 : strands[i - 1].Direction + (isSame ? 0 : 1);
-      passageOf(strands[i].Node)[strands[i].Way] = strands[i].Direction;
+      const bool isSame = to(strands[i]) == to(strands[i - 1]);
+      strands[i].Direction = strands[i - 1].Direction + (isSame ? 0 : 1);
     }
+    return strands;
+  }
 
-    // Walks that meet only at this place: like brackets, they must be disjoint or nested.
+  /** The directions of both strands of a node. */
+  using Passage = std::array<Index, 2>;
+
+  /** Tests walks that meet only at a place: like brackets, they must be disjoint or nested. */
+  bool FindCrossingSpans(
+    const Index* nodes, const std::vector<Passage>& passages, Meeting& crossing) const
+  {
     struct Span
     {
       Index From, To;
       Index Node;
     };
     std::vector<Span> spans, open;
-    for (const Index* node = begin; node < end; ++node)
+    for (std::size_t i = 0; i < passages.size(); ++i)
     {
-      const auto [from, last] = std::minmax(passageOf(*node)[Before], passageOf(*node)[After]);
-      spans.push_back({ from, last, *node });
+      const auto [from, last] = std::minmax(passages[i][Before], passages[i][After]);
+      spans.push_back({ from, last, nodes[i] });
     }
     std::sort(spans.begin(), spans.end(), [](const Span& s, const Span& t) {
       return s.From != t.From ? s.From < t.From : s.To != t.To ? s.To > t.To : s.Node < t.Node;
@@ -248,7 +249,26 @@ private:
       }
       open.push_back(span);
     }
+    return false;
+  }
 
+  /** @param[in] begin, end  all nodes at one place; increasing */
+  bool FindCrossingAt(
+    const Index* begin, const Index* end, Meeting& crossing, WorkReporter& work) const
+  {
+    std::vector<Strand> strands = this->SortedStrands(begin, end, work);
+    std::vector<Passage> passages(end - begin);
+    const auto passageOf = [&](Index node) -> Passage& {
+      return passages[std::lower_bound(begin, end, node) - begin];
+    };
+    for (const Strand& strand : strands)
+    {
+      passageOf(strand.Node)[strand.Way] = strand.Direction;
+    }
+    if (this->FindCrossingSpans(begin, passages, crossing))
+    {
+      return true;
+    }
     // Walks that share an edge from here on.
     for (Strand& strand : strands)
     {
@@ -278,12 +298,12 @@ private:
       {
         work.Tick();
         const Node &first = this->Nodes[p->Node], &second = this->Nodes[q->Node];
-        const bool isOfOneRing = first.Ring == second.Ring;
+        const bool isOneRing = first.Ring == second.Ring;
         Index last = None;
-        if (p->Other != q->Other && !(isOfOneRing && q->Way == Before) &&
+        if (p->Other != q->Other && !(isOneRing && q->Way == Before) &&
           this->ChangeSides(*p, *q, work, last))
         {
-          crossing = { first.Point, this->Nodes[last].Point, isOfOneRing };
+          crossing = { first.Point, this->Nodes[last].Point, isOneRing };
           return true;
         }
       }
@@ -348,7 +368,7 @@ private:
 
 } // namespace
 
-std::string NameOfEdge(const NamedPoints& points, const Rings& rings, std::size_t edge)
+std::string EdgeName(const NamedPoints& points, const Rings& rings, std::size_t edge)
 {
   const Index from = static_cast<Index>(edge);
   return "from " + NameOf(points, rings.Vertices[from]) + " to " +
@@ -359,19 +379,19 @@ void CheckCrossings(const NamedPoints& points, const Rings& rings, const Progres
 {
   const std::vector<Ends> edges = EdgesOf(points.Places, rings);
   const CellGrid grid = GridOf(edges);
-  VisitCrossings(edges, grid, SubProgress(progress, 0.0, 0.5), [&](std::size_t i, std::size_t j) {
-    throw Error("The boundary's edge " + NameOfEdge(points, rings, i) + " crosses its edge " +
-      NameOfEdge(points, rings, j) + ". Rings may touch and nest, but not cross.");
+  VisitCrossings(edges, grid, progress.Between(0.0, 0.5), [&](std::size_t i, std::size_t j) {
+    throw Error("The boundary's edge " + EdgeName(points, rings, i) + " crosses its edge " +
+      EdgeName(points, rings, j) + ". Rings may touch and nest, but not cross.");
   });
 
-  const RingWalks walks(points.Places, rings, edges, grid, SubProgress(progress, 0.5, 0.75));
+  const RingWalks walks(points.Places, rings, edges, grid, progress.Between(0.5, 0.75));
   RingWalks::Meeting crossing;
-  if (!walks.FindCrossing(crossing, SubProgress(progress, 0.75, 1.0)))
+  if (!walks.FindCrossing(crossing, progress.Between(0.75, 1.0)))
   {
     return;
   }
-  throw Error((crossing.IsOfOneRing ? "A ring of the boundary crosses itself "
-                                    : "Two rings of the boundary cross ") +
+  throw Error((crossing.IsOneRing ? "A ring of the boundary crosses itself "
+                                  : "Two rings of the boundary cross ") +
     (crossing.First == crossing.Last ? "in " + NameOf(points, crossing.First)
                                      : "where they run together from " +
           NameOf(points, crossing.First) + " to " + NameOf(points, crossing.Last)) +

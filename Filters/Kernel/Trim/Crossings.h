@@ -24,7 +24,7 @@ namespace elevation
 {
 
 /** The name in messages of the edge that starts at rings.Vertices[edge]. */
-std::string NameOfEdge(const NamedPoints& points, const Rings& rings, std::size_t edge);
+std::string EdgeName(const NamedPoints& points, const Rings& rings, std::size_t edge);
 
 /** @throws Error naming the edges, or the points, where rings cross; Aborted; std::bad_alloc */
 void CheckCrossings(

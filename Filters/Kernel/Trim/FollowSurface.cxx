@@ -45,7 +45,7 @@ public:
   Following(Mesh& mesh, MeshCutter& cutter, const Progress& progress)
     : Surface(mesh)
     , Cutter(cutter)
-    , Stars(mesh, SubProgress(progress, 0.0, 0.3))
+    , Stars(mesh, progress.Between(0.0, 0.3))
     , Fixed(mesh.Triangles.size(), 0)
   {
   }
@@ -372,7 +372,7 @@ void FollowSurface(
   Mesh& mesh, MeshCutter& cutter, std::vector<FollowedSegment>& segments, const Progress& progress)
 {
   Following following(mesh, cutter, progress);
-  const Progress walking = SubProgress(progress, 0.3, 1.0);
+  const Progress walking = progress.Between(0.3, 1.0);
   WorkReporter work(walking);
   for (std::size_t i = 0; i < segments.size(); ++i)
   {

@@ -5,10 +5,10 @@
 #include "Crossings.h"
 #include "FollowSurface.h"
 #include "Kernel/Base/Base.h"
+#include "RingPoints.h"
 #include "Rings.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <tuple>
@@ -20,16 +20,6 @@ namespace elevation
 namespace
 {
 
-/** The order of edges by the places of their ends. */
-bool IsLowerEdge(const Mesh& mesh, Index h, Index k)
-{
-  const auto segmentOf = [&](Index half) {
-    const Index a = mesh.Origin(half), b = mesh.Destination(half);
-    return IsLower(mesh.PointOf(b), mesh.PointOf(a)) ? Segment{ b, a } : Segment{ a, b };
-  };
-  return IsLower(mesh, segmentOf(h), segmentOf(k));
-}
-
 class Insertion
 {
 public:
@@ -37,7 +27,7 @@ public:
     Following follow, InsertedRings& result)
     : Surface(mesh)
     , Points(points)
-    , Given(rings)
+    , Drawn(rings)
     , MayInsert(insert)
     , Follow(insert ? follow : Following::None)
     , Result(result)
@@ -49,41 +39,35 @@ public:
   {
     if (this->Follow != Following::Lines)
     {
-      CheckCrossings(this->Points, this->Given, SubProgress(progress, 0.0, 0.1));
+      CheckCrossings(this->Points, this->Drawn, progress.Between(0.0, 0.1));
     }
-    this->MatchCorners(SubProgress(progress, 0.1, 0.5));
-    this->LocateOthers(SubProgress(progress, 0.5, 0.75));
-    this->InsertLocated(SubProgress(progress, 0.75, 0.8));
+    this->VertexAt = InsertPoints(this->Surface, this->Points, this->Drawn, this->MayInsert,
+      this->Follow != Following::None, this->Cutter, progress.Between(0.1, 0.8));
     this->StartRings();
     // An edge or a border that is cut at a rounded place moves slightly: all are tested again. As
     // the move rarely causes a crossing, one more round is usually enough.
     constexpr int mostRounds = 100;
     const double end = this->Follow != Following::None ? 0.9 : 1.0;
-    bool isCut = this->CutAtBorder(SubProgress(progress, 0.8, end));
+    bool isCut = this->CutAtBorder(progress.Between(0.8, end));
     for (int round = 1; isCut; ++round)
     {
       if (round == mostRounds)
       {
-        throw Error("The boundary's edge " + this->NameOfEdge(this->EdgeOfCut) +
+        throw Error("The boundary's edge " + this->EdgeName(this->EdgeOfCut) +
           " runs so near the border of the mesh that rounding does not let it be cut there. Let it "
           "pass through points of the mesh.");
       }
-      const Progress again = SubProgress(progress, end, end);
+      const Progress again = progress.Between(end, end);
       isCut = this->CutAtEachOther(again) || this->CutAtBorder(again);
     }
     if (this->Follow != Following::None)
     {
-      this->FollowSurface(SubProgress(progress, 0.9, 1.0));
+      this->FollowSurface(progress.Between(0.9, 1.0));
     }
     this->FinishRings();
   }
 
 private:
-  struct Place
-  {
-    Index Triangle;
-    Index Point;
-  };
   /** A piece of an edge of the rings; it ends where the next piece begins. */
   struct Piece
   {
@@ -108,281 +92,16 @@ private:
     bool IsBeyond; ///< whether it is past the foot of the triangle's apex, along the border
   };
 
-  std::string NameOfEdge(std::size_t edge) const
+  std::string EdgeName(std::size_t edge) const
   {
-    return elevation::NameOfEdge(this->Points, this->Given, edge);
+    return elevation::EdgeName(this->Points, this->Drawn, edge);
   }
 
-  std::string NameOfVertex(Index vertex) const
+  std::string VertexName(Index vertex) const
   {
     return this->Cutter.IsGiven(vertex)
       ? NameOf(this->Surface, vertex) + " of the mesh"
       : "where the boundary has cut it already " + NameOf(this->Surface.PointOf(vertex));
-  }
-
-  /** Finds the corners of the mesh at points of the rings. */
-  void MatchCorners(const Progress& progress)
-  {
-    const Mesh& mesh = this->Surface;
-    for (const Index point : this->Given.Vertices)
-    {
-      this->VertexAt.emplace(this->Points[point], None);
-    }
-    // Look-ups in a map are slow; at a hundred or more bits per point, few are made in vain.
-    int bits = 6;
-    while (bits < 30 && std::size_t(1) << bits < 128 * this->VertexAt.size())
-    {
-      ++bits;
-    }
-    const auto bitOf = [=](const Point2& p) {
-      return static_cast<Index>(PointHash()(p) >> (64 - bits));
-    };
-    IdSet sieve(Index(1) << bits);
-    for (const auto& entry : this->VertexAt)
-    {
-      sieve.Add(bitOf(entry.first));
-    }
-    std::vector<char> isToMatch(mesh.Points.size());
-    ForEachStretch(
-      mesh.NumberOfPoints(), SubProgress(progress, 0.0, 0.3), [&](Index begin, Index end) {
-        for (Index v = begin; v < end; ++v)
-        {
-          const Point2& p = mesh.PointOf(v);
-          isToMatch[v] = sieve.Has(bitOf(p)) && this->VertexAt.count(p) > 0;
-        }
-      });
-    const Progress matching = SubProgress(progress, 0.3, 1.0);
-    for (const Index h : Counted(mesh.NumberOfHalfEdges()))
-    {
-      ReportStep(matching, h, mesh.Triangles.size());
-      const Index vertex = mesh.Origin(h);
-      if (!isToMatch[vertex])
-      {
-        continue;
-      }
-      isToMatch[vertex] = 0;
-      Index& found = this->VertexAt.at(mesh.PointOf(vertex));
-      if (found != None)
-      {
-        throw Error("Points " + std::to_string(mesh.IdOf(std::min(found, vertex))) + " and " +
-          std::to_string(mesh.IdOf(std::max(found, vertex))) +
-          " of the mesh have the same x,y and both are corners of triangles, so that the "
-          "boundary's point there is not one place of the mesh. Merge them, as "
-          "vtkStaticCleanPolyData does.");
-      }
-      found = vertex;
-    }
-  }
-
-  /** Finds the triangle that contains each point that is not a corner. */
-  void LocateOthers(const Progress& progress)
-  {
-    const Mesh& mesh = this->Surface;
-    std::vector<Index> open; // ids of Points
-    for (const Index point : this->Given.Vertices)
-    {
-      Index& vertex = this->VertexAt.at(this->Points[point]);
-      if (vertex == None)
-      {
-        vertex = Outside;
-        open.push_back(point);
-      }
-    }
-    if (!open.empty() && this->MayInsert)
-    {
-      this->SnapBorderToPoints(open, SubProgress(progress, 0.0, 0.2));
-    }
-    if (open.empty())
-    {
-      return;
-    }
-    const Index count = static_cast<Index>(open.size());
-    const auto pointOf = [&](Index i) { return this->Points[open[i]]; };
-    const CellGrid grid(open.size(),
-      [&](std::size_t i) { return std::array<Point2, 1>{ { this->Points[open[i]] } }; });
-    std::vector<Index> triangles(open.size(), None);
-    const Progress looking = SubProgress(progress, 0.2, 1.0);
-    ForEachStretch(mesh.NumberOfTriangles(), looking, [&](Index begin, Index end) {
-      for (Index t = begin; t < end; ++t)
-      {
-        const std::size_t ahead = 3 * static_cast<std::size_t>(t) + HalfEdgesAhead;
-        if (ahead + 2 < mesh.Triangles.size())
-        {
-          Prefetch(&mesh.Points[mesh.Triangles[ahead]]);
-          Prefetch(&mesh.Points[mesh.Triangles[ahead + 1]]);
-          Prefetch(&mesh.Points[mesh.Triangles[ahead + 2]]);
-        }
-        const std::array<Point2, 3> corners = this->Cutter.CornersOf(t);
-        grid.Visit(corners, [&](Index i) {
-          if (triangles[i] == None && this->Cutter.Holds(t, pointOf(i)))
-          {
-            triangles[i] = t;
-          }
-        });
-      }
-    });
-    for (Index i = 0; i < count; ++i)
-    {
-      if (triangles[i] != None)
-      {
-        this->Located.push_back({ triangles[i], open[i] });
-      }
-    }
-    if (!this->Located.empty() && !this->MayInsert)
-    {
-      throw Error("The boundary's " + NameOf(this->Points, this->Located.front().Point) +
-        " is not a corner of the mesh: no triangle has a point with exactly the same x,y. Turn "
-        "RecoverBoundary on, or add the boundary's points to the points before triangulating "
-        "them.");
-    }
-    this->Reserve(this->Located.size());
-  }
-
-  /** Reserves memory for more vertices. @throws Error when the mesh would exceed the limit */
-  void Reserve(std::size_t vertices)
-  {
-    constexpr std::size_t most = MaximumNumberOfPoints;
-    const std::size_t before = this->Surface.IdOf(this->Surface.NumberOfPoints());
-    if (before + this->VertexAt.size() + vertices > most ||
-      this->Surface.Triangles.size() / 3 + 2 * vertices > 2 * most)
-    {
-      throw Error("The mesh has no room for " + std::to_string(vertices) +
-        " points of the boundary: at most " + std::to_string(most) +
-        " points can be handled at once. Cut it into parts.");
-    }
-    if (vertices > 0)
-    {
-      // Exactly as much as needed: growth would take more. VertexAt counts the points outside too.
-      this->Surface.Points.reserve(this->Surface.Points.size() + this->VertexAt.size() + vertices);
-      this->Surface.Triangles.reserve(this->Surface.Triangles.size() + 6 * vertices);
-      this->Surface.Twins.reserve(this->Surface.Twins.size() + 6 * vertices);
-    }
-  }
-
-  void InsertLocated(const Progress& progress)
-  {
-    // In an order that depends only on the places, not on the numbers of triangles, and is random:
-    // each cut then divides the points that wait in a triangle about evenly.
-    std::sort(this->Located.begin(), this->Located.end(), [&](const Place& a, const Place& b) {
-      const Point2& p = this->Points[a.Point];
-      const Point2& q = this->Points[b.Point];
-      const std::uint64_t mixedP = PointHash()(p);
-      const std::uint64_t mixedQ = PointHash()(q);
-      return std::tie(mixedP, p.X, p.Y) < std::tie(mixedQ, q.X, q.Y);
-    });
-    // Weights in the triangles before they are cut.
-    std::vector<InsertedVertex> weights;
-    for (const Place& place : this->Located)
-    {
-      weights.push_back(this->Cutter.WeightsIn(place.Triangle, this->Points[place.Point]));
-      this->Waiting[place.Triangle].push_back(static_cast<Index>(weights.size()) - 1);
-    }
-    for (std::size_t i = 0; i < this->Located.size(); ++i)
-    {
-      ReportStep(progress, i, this->Located.size(), 1024);
-      const Point2& p = this->Points[this->Located[i].Point];
-      const Index t = this->Located[i].Triangle;
-      const Index on = this->EdgeAt(t, p);
-      const Index vertex =
-        this->Cutter.AddVertex(p, this->IsThin(t, on) ? this->WeightsOn(on, p) : weights[i]);
-      this->VertexAt.at(p) = vertex;
-      this->Redistribute(static_cast<Index>(i), this->CutAt(t, on, vertex));
-    }
-  }
-
-  /** The edge of a triangle that a point in it is on, or close enough to for a cut; or None. */
-  Index EdgeAt(Index t, const Point2& p) const
-  {
-    const Mesh& mesh = this->Surface;
-    Index on = None;
-    Index inReach = None;
-    for (Index h = 3 * t; h < 3 * t + 3; ++h)
-    {
-      const Point2 &a = mesh.PointOf(mesh.Origin(h)), &b = mesh.PointOf(mesh.Destination(h));
-      on = Orientation(a, b, p) == Zero ? h : on;
-      // What follows the surface could not be split in the needle beside an edge in reach.
-      if (this->Follow != Following::None && !mesh.IsBorder(h) &&
-        IsInReach(a, b, UnitsOf(a, b), SnappingReach, p) && this->Cutter.CanCut(h, p) &&
-        (inReach == None || IsLowerEdge(mesh, h, inReach)))
-      {
-        inReach = h;
-      }
-    }
-    return on == None ? inReach : on;
-  }
-
-  /**
-   * Whether a triangle is so thin that within reach of an edge its elevations differ from those of
-   * the edge by more than rounding. A point that the edge is moved to then takes those of the edge.
-   */
-  bool IsThin(Index t, Index on) const
-  {
-    constexpr double reach = 0x1p20 * SnappingReach;
-    const Mesh& mesh = this->Surface;
-    if (on == None)
-    {
-      return false;
-    }
-    const RoundingUnits units =
-      UnitsOf(mesh.PointOf(mesh.Origin(on)), mesh.PointOf(mesh.Destination(on)));
-    return this->Cutter.TwiceArea(t) <
-      reach * std::max(units.X, units.Y) * std::sqrt(mesh.SquaredLengthOf(on));
-  }
-
-  InsertedVertex WeightsOn(Index h, const Point2& p) const
-  {
-    return this->Cutter.WeightsBetween(this->Surface.Origin(h), this->Surface.Destination(h), p);
-  }
-
-  /** Cuts a triangle at a vertex inside, or on an edge, with its neighbour. @return the parts */
-  std::vector<Index> CutAt(Index t, Index on, Index vertex)
-  {
-    const Mesh& mesh = this->Surface;
-    std::vector<Index> parts{ t };
-    Index next = mesh.NumberOfTriangles();
-    if (on == None)
-    {
-      this->Cutter.CutTriangle(t, vertex);
-    }
-    else
-    {
-      if (!mesh.IsBorder(on))
-      {
-        parts.push_back(Mesh::Triangle(mesh.Twin(on)));
-      }
-      this->Cutter.CutEdge(on, vertex);
-    }
-    for (; next < mesh.NumberOfTriangles(); ++next)
-    {
-      parts.push_back(next);
-    }
-    return parts;
-  }
-
-  /**
-   * After a cut at a located point, hands the points that wait in the parts to those that hold
-   * them.
-   */
-  void Redistribute(Index done, const std::vector<Index>& parts)
-  {
-    std::vector<Index> moving;
-    for (const Index part : parts)
-    {
-      std::vector<Index>& waiting = this->Waiting[part];
-      moving.insert(moving.end(), waiting.begin(), waiting.end());
-      waiting.clear();
-    }
-    CountWork(1 + moving.size());
-    for (const Index i : moving)
-    {
-      if (i != done)
-      {
-        Place& place = this->Located[i];
-        place.Triangle = *std::find_if(parts.begin(), parts.end(),
-          [&](Index part) { return this->Cutter.Holds(part, this->Points[place.Point]); });
-        this->Waiting[place.Triangle].push_back(i);
-      }
-    }
   }
 
   Point2 PlaceOf(Index vertex) const
@@ -393,108 +112,17 @@ private:
   /** The given rings as vertices; points outside the mesh get numbers from FirstOutside down. */
   void StartRings()
   {
-    for (const Index point : this->Given.Vertices)
+    for (const Index point : this->Drawn.Vertices)
     {
       Index& vertex = this->VertexAt.at(this->Points[point]);
-      if (vertex == Outside)
+      if (vertex == OutsideMesh)
       {
         vertex = FirstOutside - static_cast<Index>(this->OutsidePoints.size());
         this->OutsidePoints.push_back(this->Points[point]);
       }
       this->Pieces.push_back({ vertex, this->Pieces.size() });
     }
-    this->Result.Vertices.Offsets = this->Given.Offsets;
-  }
-
-  /** The half-edges of the border, as segments in a grid. */
-  struct BorderEdges
-  {
-    std::vector<Index> HalfEdges;
-    std::vector<Ends> Segments;
-    CellGrid Grid;
-  };
-  BorderEdges FindBorder(const Progress& progress) const
-  {
-    const Mesh& mesh = this->Surface;
-    std::vector<Index> halfEdges;
-    std::vector<Ends> segments;
-    ForEachStretch(mesh.NumberOfHalfEdges(), progress, [&](Index begin, Index end) {
-      for (Index h = begin; h < end; ++h)
-      {
-        if (mesh.IsBorder(h))
-        {
-          halfEdges.push_back(h);
-          segments.push_back({ mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)) });
-        }
-      }
-    });
-    CellGrid grid = GridOf(segments);
-    return { std::move(halfEdges), std::move(segments), std::move(grid) };
-  }
-
-  /**
-   * Makes the rings' points within rounding of the border vertices of it. The border moves to the
-   * points; else a ring would cross it right beside them.
-   */
-  void SnapBorderToPoints(std::vector<Index>& open, const Progress& progress)
-  {
-    const BorderEdges border = this->FindBorder(progress);
-    double reach = 0.0; // the largest of any border edge
-    for (const Ends& segment : border.Segments)
-    {
-      const RoundingUnits units = UnitsOf(segment[0], segment[1]);
-      reach = std::max({ reach, 2.0 * SnappingReach * units.X, 2.0 * SnappingReach * units.Y });
-    }
-    std::vector<PieceCut> taken; // pieces are border edges
-    std::vector<Index> others;
-    for (const Index point : open)
-    {
-      const Point2 p = this->Points[point];
-      Index nearest = None;
-      bool isAlone = true; // of two borders in reach, one would move into the other
-      border.Grid.Visit(
-        Ends{ { { p.X - reach, p.Y - reach }, { p.X + reach, p.Y + reach } } }, [&](Index i) {
-          const Ends& segment = border.Segments[i];
-          if (i != nearest &&
-            IsInReach(segment[0], segment[1], UnitsOf(segment[0], segment[1]), SnappingReach, p))
-          {
-            isAlone = isAlone && nearest == None;
-            nearest = i;
-          }
-        });
-      if (nearest != None && isAlone)
-      {
-        taken.push_back({ nearest, point });
-      }
-      else
-      {
-        others.push_back(point);
-      }
-    }
-    this->Reserve(taken.size());
-    SortAlong(
-      taken, [&](Index piece) { return border.Segments[piece]; },
-      [&](Index point) { return this->Points[point]; }, Progress());
-    const Mesh& mesh = this->Surface;
-    Index h = None;
-    for (std::size_t i = 0; i < taken.size(); ++i)
-    {
-      if (i == 0 || taken[i - 1].Piece != taken[i].Piece)
-      {
-        h = this->Cutter.CurrentHalfEdge(border.HalfEdges[taken[i].Piece]);
-      }
-      const Point2 p = this->Points[taken[i].Vertex];
-      if (!this->Cutter.CanCut(h, p))
-      {
-        others.push_back(taken[i].Vertex);
-        continue;
-      }
-      const Index vertex = this->Cutter.AddVertex(
-        p, this->Cutter.WeightsBetween(mesh.Origin(h), mesh.Destination(h), p));
-      this->VertexAt.at(p) = vertex;
-      h = this->Cutter.CutEdge(h, vertex);
-    }
-    open = std::move(others);
+    this->Result.Vertices.Offsets = this->Drawn.Offsets;
   }
 
   /**
@@ -503,21 +131,21 @@ private:
    */
   bool CutAtBorder(const Progress& progress)
   {
-    const std::vector<Ends> pieces = this->EndsOfPieces();
+    const std::vector<Ends> pieces = this->PieceEnds();
     this->Stops.clear();
     this->IsCut.clear();
     this->Cutter.ForgetMoves();
-    const BorderEdges border = this->FindBorder(SubProgress(progress, 0.0, 0.3));
+    const BorderEdges border = FindBorder(this->Surface, progress.Between(0.0, 0.3));
     std::vector<BorderCrossing> crossings =
-      this->FindBorderCrossings(pieces, border, SubProgress(progress, 0.3, 0.5));
+      this->FindBorderCrossings(pieces, border, progress.Between(0.3, 0.5));
     if (!crossings.empty() && !this->MayInsert)
     {
       throw Error("The boundary's edge " +
-        this->NameOfEdge(this->Pieces[crossings.front().Piece].Edge) +
+        this->EdgeName(this->Pieces[crossings.front().Piece].Edge) +
         " leaves the mesh where it has no corner. Turn RecoverBoundary on.");
     }
     this->CutBorder(crossings, pieces, border);
-    this->FindStops(pieces, SubProgress(progress, 0.5, 1.0));
+    this->FindStops(pieces, progress.Between(0.5, 1.0));
     this->CutPieces(pieces);
     return !this->IsCut.empty();
   }
@@ -575,7 +203,7 @@ private:
   void CutBorder(std::vector<BorderCrossing>& crossings, const std::vector<Ends>& pieces,
     const BorderEdges& border)
   {
-    this->Reserve(crossings.size());
+    ReserveVertices(this->Surface, this->VertexAt.size(), crossings.size());
     // Along each border edge from both ends towards the foot of the apex. The part that is cut next
     // is then at the foot, where a place can move outwards however thin the triangle is.
     std::sort(
@@ -606,9 +234,9 @@ private:
       Point2 place = crossing.Place;
       if (vertex == None && !this->Cutter.MoveToCut(h, place))
       {
-        throw Error("The boundary's edge " + this->NameOfEdge(this->Pieces[crossing.Piece].Edge) +
+        throw Error("The boundary's edge " + this->EdgeName(this->Pieces[crossing.Piece].Edge) +
           " leaves the mesh across a triangle too thin to be cut there, between " +
-          this->NameOfVertex(from) + " and " + this->NameOfVertex(to) +
+          this->VertexName(from) + " and " + this->VertexName(to) +
           ". Let the boundary pass through one of them.");
       }
       if (vertex == None)
@@ -629,7 +257,7 @@ private:
    */
   bool CutAtEachOther(const Progress& progress)
   {
-    const std::vector<Ends> pieces = this->EndsOfPieces();
+    const std::vector<Ends> pieces = this->PieceEnds();
     this->Stops.clear();
     const auto cut = [&](std::size_t i, std::size_t j) {
       const RoundingUnits units = UnitsOf(pieces[i][0], pieces[i][1]);
@@ -671,7 +299,7 @@ private:
   }
 
   /** The ends of each piece. */
-  std::vector<Ends> EndsOfPieces() const
+  std::vector<Ends> PieceEnds() const
   {
     std::vector<Ends> ends;
     ends.reserve(this->Pieces.size());
@@ -705,7 +333,7 @@ private:
     std::unordered_map<Index, std::vector<Index>> segmentsThrough;
     std::vector<char> isOn(mesh.Points.size(), 0);
     ForEachStretch(
-      mesh.NumberOfPoints(), SubProgress(progress, 0.0, 0.5), [&](Index begin, Index end) {
+      mesh.NumberOfPoints(), progress.Between(0.0, 0.5), [&](Index begin, Index end) {
         for (Index v = begin; v < end; ++v)
         {
           const Point2& p = mesh.PointOf(v);
@@ -724,7 +352,7 @@ private:
     }
     // Only vertices that a triangle uses become stops.
     ForEachStretch(
-      mesh.NumberOfHalfEdges(), SubProgress(progress, 0.5, 1.0), [&](Index begin, Index end) {
+      mesh.NumberOfHalfEdges(), progress.Between(0.5, 1.0), [&](Index begin, Index end) {
         for (Index h = begin; h < end; ++h)
         {
           const Index v = mesh.Origin(h);
@@ -823,14 +451,13 @@ private:
         segments.emplace_back(segment);
       }
     }
-    Sort(segments.begin(), segments.end(), isBefore, SubProgress(progress, 0.0, 0.1));
+    Sort(segments.begin(), segments.end(), isBefore, progress.Between(0.0, 0.1));
     segments.erase(std::unique(segments.begin(), segments.end(),
                      [](const FollowedSegment& s, const FollowedSegment& t) {
                        return s.Ends.A == t.Ends.A && s.Ends.B == t.Ends.B;
                      }),
       segments.end());
-    elevation::FollowSurface(
-      this->Surface, this->Cutter, segments, SubProgress(progress, 0.1, 0.95));
+    elevation::FollowSurface(this->Surface, this->Cutter, segments, progress.Between(0.1, 0.95));
     std::vector<Piece> followed;
     std::vector<Index> offsets{ 0 };
     for (Index i = 0; i < count; ++i)
@@ -866,7 +493,7 @@ private:
 
   [[noreturn]] void RefuseDoubleBorder(std::size_t edge, const Point2& p) const
   {
-    throw Error("The boundary's edge " + this->NameOfEdge(edge) + " passes " + NameOf(p) +
+    throw Error("The boundary's edge " + this->EdgeName(edge) + " passes " + NameOf(p) +
       ", where borders of the mesh lie on each other without points in common. Merge the points, "
       "as vtkStaticCleanPolyData does.");
   }
@@ -884,19 +511,16 @@ private:
     }
   }
 
-  static constexpr Index Outside = -2;      ///< in place of a vertex: the point is outside the mesh
-  static constexpr Index FirstOutside = -3; ///< the first number of points outside
+  static constexpr Index FirstOutside = OutsideMesh - 1; ///< the first number of points outside
 
   Mesh& Surface;
   const NamedPoints& Points;
-  const Rings& Given;
+  const Rings& Drawn;
   const bool MayInsert;
   const Following Follow;
   InsertedRings& Result;
   MeshCutter Cutter;
-  std::unordered_map<Point2, Index, PointHash> VertexAt;
-  std::vector<Place> Located;
-  std::unordered_map<Index, std::vector<Index>> Waiting; ///< by triangle: indices in Located
+  RingVertices VertexAt;
   std::vector<Point2> OutsidePoints;
   std::vector<Piece> Pieces; ///< along each ring
   std::vector<Stop> Stops;

@@ -136,7 +136,7 @@ bool MeasureBySweep(
     static_cast<std::size_t>(sweep.NumberOfRanges()) * Measurer::AtOnce);
   std::atomic<Index> numbers{ 0 };
   if (!sweep.Run(Measurer{ &sweep.At(0), &measured, measured.Longest.data(), &numbers },
-        SubProgress(progress, 0.0, 0.85)))
+        progress.Between(0.0, 0.85)))
   {
     return false;
   }
@@ -151,13 +151,13 @@ bool MeasureBySweep(
   measured.List.Count = count;
   measured.List.Points.Double = measured.Coordinates.data();
   measured.List.Points.Count = numbers;
-  TakeVertices(sweep, SubProgress(progress, 0.85, 0.96), measured);
+  TakeVertices(sweep, progress.Between(0.85, 0.96), measured);
   if (largest > LargestUnscaled || largest < LeastUnscaled ||
-    !CoversOnce(measured.Border, list.Points, SubProgress(progress, 0.96, 0.98)))
+    !CoversOnce(measured.Border, list.Points, progress.Between(0.96, 0.98)))
   {
     return false;
   }
-  AddBorder(sweep, SubProgress(progress, 0.98, 1.0), measured);
+  AddBorder(sweep, progress.Between(0.98, 1.0), measured);
   return true;
 }
 

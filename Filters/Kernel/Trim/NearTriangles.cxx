@@ -271,12 +271,12 @@ std::optional<SweptAlongRings> SweepAlongRings(const TriangleList& list,
   TriangleSweep<Classifier> sweep(list, threads);
   const Classifier classifier{ raster, swept.IsOutward.data(), {}, raster.Reach(), 0.0,
     RingRaster::Near };
-  if (!sweep.Run(classifier, SubProgress(progress, 0.0, 0.9)))
+  if (!sweep.Run(classifier, progress.Between(0.0, 0.9)))
   {
     return std::nullopt;
   }
   swept.Border = sweep.Border(
-    list.Points.Count, SubProgress(progress, 0.9, 1.0), [](Index id) { return id; },
+    list.Points.Count, progress.Between(0.9, 1.0), [](Index id) { return id; },
     [](Index, const SweptVertex*) {});
   for (const Classifier* visitor : sweep.Visitors())
   {
@@ -290,8 +290,8 @@ std::optional<SweptAlongRings> FindNearTriangles(const TriangleList& list,
   const std::vector<Point2>& points, const Rings& rings, int threads, const Progress& progress)
 {
   std::optional<SweptAlongRings> swept =
-    SweepAlongRings(list, points, rings, list.Count, threads, SubProgress(progress, 0.0, 0.9));
-  return swept && CoversOnce(swept->Border, list.Points, SubProgress(progress, 0.9, 1.0))
+    SweepAlongRings(list, points, rings, list.Count, threads, progress.Between(0.0, 0.9));
+  return swept && CoversOnce(swept->Border, list.Points, progress.Between(0.9, 1.0))
     ? std::move(swept)
     : std::nullopt;
 }

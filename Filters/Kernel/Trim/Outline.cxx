@@ -1,15 +1,47 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The rule: one local scale, one tolerance. A triangle is surface if its longest edge is at most
+// the tolerance times the spacing of its corners (and their scale, Scales.h). The other constants
+// guard against what that alone gets wrong; ExtractBoundary() in Outline.h has the rule to the
+// letter.
+//
+// The trial that fixes them is BenchmarkOutline (Utilities/Benchmarks, Findings.md has its table):
+// the area between the outline and the true one, in parts of the area within one spacing of it.
+// Figures are as it is -> with another value.
+//
+//   DefaultTolerance 4.5: below, surface tears; above, channels and lakes close. With 4, random
+//     points with channels 0.15 -> 0.51; with 6, scan lines 0.11 -> 0.41, and two of three lakes
+//     with a radius of three spacings close.
+//   LargestSpacingInTriangle 2 (Spacings.h): two lone points, whose spacing is the distance to all
+//     others. Without it triangles with both are surface; with 1, random points 0.10 -> 0.23. From
+//     1.5 on, no figure depends on it.
+//   LongestInBay 1.6: an outline that follows each point inwards. Without bays, random points 0.10
+//     -> 0.18; with 3.2, survey lines 0.07 -> 0.12; without a limit, random points 0.16.
+//   The least lake, the tolerance squared (Openings.h): speckle. With half of it random points 0.10
+//     -> 0.13; with twice, half of the lakes with a radius of three close.
+//   Half of a bay's border along surface (Openings.h): channels that close. If small bays always
+//     close, of necks three spacings wide 0.02 -> 0.18 are cut; if surface must be along two
+//     thirds, none closes.
+//   LeastHeight 0.1 (Slivers.cxx): whiskers. Without it, of a line of 40 points that leads away 2
+//     -> 21 are at the outline; twice and half are as good.
+//   CertainSurface 0.52: time. Without it extraction from random points takes 13 times as long, and
+//     no figure changes by more than 0.01. With 0.6 gaps between lines and a swath may close; with
+//     1.04, random points with channels 0.15 -> 0.18.
+//   SmallGroup 0.7: time. Without it, extraction from random points takes 1.7 times as long, and no
+//     figure changes. With 1.4, seven of ten lakes with a radius of three close.
 #include "Outline.h"
 
 #include "Kernel/Base/Base.h"
+#include "MissingNodes.h"
+#include "Openings.h"
 #include "PartialMesh.h"
 #include "Scales.h"
+#include "TraceSurface.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace elevation
 {
@@ -17,373 +49,10 @@ namespace elevation
 namespace
 {
 
-// The constants of the rule (Outline.h), found by trials: lattices, lattices thinned to a tenth,
-// random points, points graded tenfold and scan lines eight times denser along than across, all cut
-// out by outlines with lakes, a fjord, a neck and islands, wider than the tolerance.
 constexpr double DefaultTolerance = 4.5;
-constexpr double LargestSpacingInTriangle = 2.0;
-// The longest edge in a bay, in tolerances. From 1.5 to 2, outlines are nearest to the true ones.
-constexpr double LongestInBay = 1.6;
-// Smaller lakes, in least lakes, have no bays.
-constexpr std::int64_t LakeWithBays = 4;
-// The cheaper test: fractions of the tolerance, in short spacings. In the same trials, and with
-// clusters and real surveys, spacings alone would leave out at most one triangle in 10,000 more, in
-// lattices none. With 0.55 the outlines of scan lines are a little worse; without the limit by the
-// second edge, gaps between scan lines are taken for surface.
-constexpr double CertainSurface = 0.52;
-constexpr double SmallGroup = 0.7;
-// A line of points wavers by up to a tenth of a spacing; the narrow triangles between scan lines
-// eight times denser along than across are seven times as high.
-constexpr double LeastHeight = 0.1;
-
-/** The parts of triangles with equal values of flagOf(t), connected by edges. */
-template <typename FlagOf>
-Components FindFlagParts(const Mesh& mesh, FlagOf&& flagOf, const Progress& progress)
-{
-  return FindComponents(mesh, progress, [&](Index h) {
-    return flagOf(Mesh::Triangle(h)) == flagOf(Mesh::Triangle(mesh.Twin(h))) ? 0 : -1;
-  });
-}
-
-/** Flags of triangles while the outline is sought. */
-enum Flag : char
-{
-  Outside = 0,
-  Surface = 1,
-  Bay = 2,   ///< surface if it belongs to a small bay
-  Sliver = 3 ///< while DropSlivers() runs
-};
-
-/**
- * In whole numbers, so that a sum does not depend on the order. Shares above 1 count as 1, and
- * those below 0, of needles whose area rounding has turned, as 0.
- */
-constexpr std::int64_t Whole = std::int64_t(1) << 30;
-std::int64_t ToWhole(double share)
-{
-  return static_cast<std::int64_t>(std::max(0.0, std::min(1.0, share)) * static_cast<double>(Whole));
-}
-
-/** What is known of connected triangles that are not surface. */
-struct Opening
-{
-  std::int64_t Share = 0; ///< the area as a fraction of the least lake's
-  std::int64_t Open = 0;  ///< length of the border, less twice that along surface
-  double Longest = 0.0;   ///< square of its longest edge
-  bool ReachesBorder = false;
-};
-
-/** Calls look(t, opening) for each triangle that has a place in an opening. */
-template <typename IsOpen, typename Look>
-void VisitOpenings(const Components& parts, std::vector<Opening>& openings, IsOpen&& isOpen,
-  const Progress& progress, Look&& look)
-{
-  ForEachStretch(static_cast<Index>(parts.Labels.size()), progress, [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      if (isOpen(t))
-      {
-        look(t, openings[parts.ComponentOf(t)]);
-      }
-    }
-  });
-}
-
-/**
- * Closes openings smaller than the least lake that do not reach the border of the mesh. Small lakes
- * have no bays, as these would fill them.
- * @param[in] shareOf  shareOf(t): the area of a triangle as a fraction of the least lake's
- */
-template <typename ShareOf>
-void CloseSmallLakes(
-  const Mesh& mesh, ShareOf&& shareOf, std::vector<char>& keep, const Progress& progress)
-{
-  const Components parts = FindFlagParts(
-    mesh, [&](Index t) { return keep[t] == Surface; }, SubProgress(progress, 0.0, 0.6));
-  std::vector<Opening> openings(parts.Count());
-  const auto isOpen = [&](Index t) { return keep[t] != Surface; };
-  VisitOpenings(
-    parts, openings, isOpen, SubProgress(progress, 0.6, 0.8), [&](Index t, Opening& opening) {
-      opening.Share += ToWhole(shareOf(t));
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
-      {
-        opening.ReachesBorder |= mesh.IsBorder(h);
-      }
-    });
-  VisitOpenings(
-    parts, openings, isOpen, SubProgress(progress, 0.8, 1.0), [&](Index t, Opening& opening) {
-      if (!opening.ReachesBorder && opening.Share < LakeWithBays * Whole)
-      {
-        keep[t] = opening.Share < Whole ? Surface : Outside;
-      }
-    });
-}
-
-/** Closes bays smaller than the least lake, with surface along at least half of their border. */
-template <typename ShareOf>
-void CloseSmallBays(
-  const Mesh& mesh, ShareOf&& shareOf, std::vector<char>& keep, const Progress& progress)
-{
-  const Components parts = FindFlagParts(
-    mesh, [&](Index t) { return keep[t]; }, SubProgress(progress, 0.0, 0.5));
-  std::vector<Opening> openings(parts.Count());
-  const auto isOpen = [&](Index t) { return keep[t] == Bay; };
-  VisitOpenings(
-    parts, openings, isOpen, SubProgress(progress, 0.5, 0.7), [&](Index t, Opening& opening) {
-      opening.Share += ToWhole(shareOf(t));
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
-      {
-        opening.Longest = std::max(opening.Longest, mesh.SquaredLengthOf(h));
-      }
-    });
-  VisitOpenings(
-    parts, openings, isOpen, SubProgress(progress, 0.7, 0.9), [&](Index t, Opening& opening) {
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
-      {
-        const char beside =
-          mesh.IsBorder(h) ? static_cast<char>(Outside) : keep[Mesh::Triangle(mesh.Twin(h))];
-        const std::int64_t length =
-          beside == Bay ? 0 : ToWhole(std::sqrt(mesh.SquaredLengthOf(h) / opening.Longest)) >> 8;
-        opening.Open += beside == Surface ? -length : length;
-      }
-    });
-  VisitOpenings(
-    parts, openings, isOpen, SubProgress(progress, 0.9, 1.0), [&](Index t, Opening& opening) {
-      keep[t] = opening.Share < Whole && opening.Open <= 0 ? Surface : Outside;
-    });
-}
-
-/** The longest edge of a triangle; of equal ones the first. */
-Index LongestEdge(const Mesh& mesh, Index t)
-{
-  Index longest = 3 * t;
-  for (const Index h : { 3 * t + 1, 3 * t + 2 })
-  {
-    longest = mesh.SquaredLengthOf(h) > mesh.SquaredLengthOf(longest) ? h : longest;
-  }
-  return longest;
-}
-
-/**
- * Makes slivers surface that lean with their longest edge on it, and those that then do. Linear.
- */
-void RestoreSlivers(const Mesh& mesh, const std::vector<Index>& slivers, std::vector<char>& keep,
-  const Progress& progress)
-{
-  std::vector<Index> queue = slivers;
-  StepCount steps;
-  for (std::size_t i = 0; i < queue.size(); ++i)
-  {
-    steps.Add();
-    ReportStep(progress, i, 4 * slivers.size()); // each adds at most its three neighbours
-    const Index t = queue[i];
-    const Index h = LongestEdge(mesh, t);
-    if (keep[t] == Sliver && !mesh.IsBorder(h) && keep[Mesh::Triangle(mesh.Twin(h))] == Surface)
-    {
-      keep[t] = Surface;
-      for (Index side = 3 * t; side < 3 * t + 3; ++side)
-      {
-        if (!mesh.IsBorder(side) && keep[Mesh::Triangle(mesh.Twin(side))] == Sliver)
-        {
-          queue.push_back(Mesh::Triangle(mesh.Twin(side)));
-        }
-      }
-    }
-  }
-}
-
-/**
- * Makes slivers parts of bays, from the border inwards, as long as there are any. Those that lean
- * with their longest edge on surface come back.
- * @param[in] isSliver  isSliver(h): whether the triangle of h is very flat over that edge
- */
-template <typename IsSliver>
-void DropSlivers(
-  const Mesh& mesh, IsSliver&& isSliver, std::vector<char>& keep, const Progress& progress)
-{
-  std::vector<Index> dropped;
-  std::size_t next = 0; // of the dropped ones, whose neighbours are looked at
-  const auto look = [&](Index t) {
-    for (Index h = 3 * t; h < 3 * t + 3 && keep[t] == Surface; ++h)
-    {
-      if ((mesh.IsBorder(h) || keep[Mesh::Triangle(mesh.Twin(h))] != Surface) && isSliver(h))
-      {
-        keep[t] = Sliver;
-        dropped.push_back(t);
-      }
-    }
-  };
-  ForEachStretch(
-    mesh.NumberOfTriangles(), SubProgress(progress, 0.0, 0.8), [&](Index begin, Index end) {
-      for (Index t = begin; t < end; ++t)
-      {
-        look(t);
-        for (; next < dropped.size(); ++next)
-        {
-          for (Index h = 3 * dropped[next]; h < 3 * dropped[next] + 3; ++h)
-          {
-            if (!mesh.IsBorder(h))
-            {
-              look(Mesh::Triangle(mesh.Twin(h)));
-            }
-          }
-        }
-      }
-    });
-  RestoreSlivers(mesh, dropped, keep, SubProgress(progress, 0.8, 1.0));
-  for (const Index t : dropped)
-  {
-    keep[t] = keep[t] == Sliver ? static_cast<char>(Bay) : keep[t];
-  }
-}
-
-/**
- * Drops pieces with too few vertices for spacings of their own, if others have more.
- * @return vertices of pieces that look small but continue beyond the mesh; if any, nothing is done
- */
-std::vector<Index> DropSmallPieces(
-  const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
-{
-  const Components parts = FindFlagParts(
-    mesh, [&](Index t) { return keep[t]; }, SubProgress(progress, 0.0, 0.5));
-  // More triangles than so few vertices can form.
-  constexpr Index many = 3 * SpacingNeighbor + 1;
-  std::vector<Index> sizes(parts.Count(), 0);
-  std::vector<char> goesOn(parts.Count(), 0);
-  const Index count = mesh.NumberOfTriangles();
-  ForEachStretch(count, SubProgress(progress, 0.5, 0.7), [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      sizes[parts.ComponentOf(t)] += keep[t];
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
-      {
-        goesOn[parts.ComponentOf(t)] |= mesh.Twin(h) == h;
-      }
-    }
-  });
-  std::vector<std::pair<Index, Index>> corners; // (part, vertex)
-  bool anyLarge = std::any_of(sizes.begin(), sizes.end(), [](Index size) { return size >= many; });
-  ForEachStretch(count, SubProgress(progress, 0.7, 0.9), [&](Index begin, Index end) {
-    for (Index h = 3 * begin; h < 3 * end; ++h)
-    {
-      if (keep[Mesh::Triangle(h)] && sizes[parts.ComponentOf(Mesh::Triangle(h))] < many)
-      {
-        corners.emplace_back(parts.ComponentOf(Mesh::Triangle(h)), mesh.Origin(h));
-      }
-    }
-  });
-  Sort(corners.begin(), corners.end(), std::less<std::pair<Index, Index>>(),
-    SubProgress(progress, 0.9, 1.0));
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-  std::vector<char> isSmall(parts.Count(), 0);
-  std::vector<Index> unknown;
-  for (auto first = corners.begin(); first != corners.end();)
-  {
-    const auto last = std::find_if(first, corners.end(),
-      [&](const std::pair<Index, Index>& corner) { return corner.first != first->first; });
-    const bool isFew = last - first <= SpacingNeighbor;
-    for (auto corner = first; isFew && goesOn[first->first] && corner != last; ++corner)
-    {
-      unknown.push_back(corner->second);
-    }
-    isSmall[first->first] = isFew;
-    anyLarge = anyLarge || !isFew;
-    first = last;
-  }
-  for (Index t = 0; anyLarge && unknown.empty() && t < count; ++t)
-  {
-    keep[t] = keep[t] && !isSmall[parts.ComponentOf(t)];
-  }
-  return unknown;
-}
-
-/**
- * The border of the triangles to keep, as simple rings of vertices, sorted by their positions.
- */
-Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& progress)
-{
-  const Progress cutting = SubProgress(progress, 0.6, 0.8);
-
-  // A walk that returns to a vertex on its path closes a ring.
-  const Rings walks = TraceBorder(mesh, SubProgress(progress, 0.0, 0.6), keep);
-  Rings rings;
-  rings.Vertices.reserve(walks.Vertices.size());
-  std::vector<Index> path;
-  std::vector<char> isOnPath(mesh.Points.size(), 0);
-  for (Index walk = 0; walk < walks.Count(); ++walk)
-  {
-    auto cutRing = [&](std::size_t first) {
-      auto lowest = path.begin() + first;
-      for (auto v = lowest + 1; v != path.end(); ++v)
-      {
-        // Of two vertices at the same place, the next ones decide.
-        const auto nextTo = [&](const auto& w) {
-          return mesh.PointOf(w + 1 == path.end() ? path[first] : w[1]);
-        };
-        const Point2& p = mesh.PointOf(*v);
-        const Point2& q = mesh.PointOf(*lowest);
-        if (IsLower(p, q) || (p == q && IsLower(nextTo(v), nextTo(lowest))))
-        {
-          lowest = v;
-        }
-      }
-      std::rotate(path.begin() + first, lowest, path.end());
-      rings.Vertices.insert(rings.Vertices.end(), path.begin() + first, path.end());
-      rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
-    };
-    for (const Index* h : Counted(walks.Begin(walk), walks.End(walk)))
-    {
-      ReportStep(cutting, h - walks.Vertices.data(), walks.Vertices.size());
-      const Index vertex = mesh.Origin(*h);
-      if (isOnPath[vertex])
-      {
-        std::size_t first = path.size() - 1; // backwards, as most rings are small
-        while (path[first] != vertex)
-        {
-          --first;
-        }
-        for (std::size_t i = first; i < path.size(); ++i)
-        {
-          isOnPath[path[i]] = 0;
-        }
-        cutRing(first);
-        path.resize(first);
-      }
-      isOnPath[vertex] = 1;
-      path.push_back(vertex);
-    }
-    for (const Index vertex : path)
-    {
-      isOnPath[vertex] = 0;
-    }
-    cutRing(0);
-    path.clear();
-  }
-  const auto isBefore = [&](Index r, Index s) {
-    for (Index i = 0; i < std::min(rings.Size(r), rings.Size(s)); ++i)
-    {
-      const Point2& p = mesh.PointOf(rings.Begin(r)[i]);
-      const Point2& q = mesh.PointOf(rings.Begin(s)[i]);
-      if (p != q)
-      {
-        return IsLower(p, q);
-      }
-    }
-    return rings.Size(r) < rings.Size(s);
-  };
-  std::vector<Index> order(rings.Count());
-  std::iota(order.begin(), order.end(), 0);
-  Sort(order.begin(), order.end(), isBefore, SubProgress(progress, 0.8, 0.95));
-  Rings result;
-  result.Vertices.reserve(rings.Vertices.size());
-  for (const Index ring : Counted(order))
-  {
-    ReportStep(progress, 19 * order.size() + result.Count(), 20 * order.size());
-    result.Vertices.insert(result.Vertices.end(), rings.Begin(ring), rings.End(ring));
-    result.Offsets.push_back(static_cast<Index>(result.Vertices.size()));
-  }
-  return result;
-}
+constexpr double LongestInBay = 1.6;    // tolerances
+constexpr double CertainSurface = 0.52; // tolerances, by short spacings
+constexpr double SmallGroup = 0.7;      // the same, the side of a square
 
 /** The corners of outward triangles that no triangle of the surface has. */
 IdSet CornersLeftOut(const TriangleList& list, const std::vector<Index>& outward,
@@ -420,176 +89,6 @@ double AreaOf(const TriangleList& list, const std::vector<BorderEdge>& border)
   return sum;
 }
 
-/**
- * The spacing of a triangle: the median of its corners', which ignores the large spacing of an
- * isolated corner, but not far above the least, in case two corners are isolated.
- */
-template <typename Real>
-double SpacingOf(const Buffer<Real>& spacings, const Index* corners)
-{
-  const Real a = spacings[corners[0]];
-  const Real b = spacings[corners[1]];
-  const Real c = spacings[corners[2]];
-  const Real least = std::min({ a, b, c });
-  const Real middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
-  return std::max<double>(LeastSpacing, std::min<double>(middle, LargestSpacingInTriangle * least));
-}
-
-/**
- * Removes triangles that are surface in any case from a list: groups, connected by corners and away
- * from the border, without room for a lake.
- * @param[in]     shareOf  shareOf(t): the area of a triangle as a fraction of the least lake's
- * @param[in,out] keep     set for the triangles removed
- * @return the others
- */
-template <typename ShareOf>
-std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBorder,
-  const std::vector<Index>& triangles, ShareOf&& shareOf, std::vector<char>& keep,
-  const Progress& progress)
-{
-  Buffer<Index> parents; // of vertices, UnionFind.h
-  parents.Resize(list.Points.Count);
-  std::iota(parents.begin(), parents.end(), 0);
-  Buffer<std::int64_t> sums;
-  sums.Resize(list.Points.Count);
-  std::fill(sums.begin(), sums.end(), 0);
-  const Index count = static_cast<Index>(triangles.size());
-  ForEachStretch(count, SubProgress(progress, 0.0, 0.7), [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i)
-    {
-      const Index* ahead = list.CornersOf(triangles[std::min(i + 16, count - 1)]);
-      const Index* corners = list.CornersOf(triangles[i]);
-      const bool isAtBorder = atBorder.HasAny(corners);
-      const double share = isAtBorder ? 1.0 : shareOf(triangles[i]);
-      Index root = RootOf(parents, corners[0]);
-      sums[root] += ToWhole(share);
-      for (int k = 0; k < 3; ++k)
-      {
-        list.PrefetchPoint(ahead[k]);
-        Prefetch(&parents[ahead[k]]);
-        Prefetch(&sums[ahead[k]]);
-        const Index other = RootOf(parents, corners[k]);
-        if (other != root)
-        {
-          parents[std::max(root, other)] = std::min(root, other);
-          sums[std::min(root, other)] += sums[std::max(root, other)];
-          root = std::min(root, other);
-        }
-      }
-    }
-  });
-  std::vector<Index> others;
-  ForEachStretch(count, SubProgress(progress, 0.7, 1.0), [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i)
-    {
-      const Index t = triangles[i];
-      keep[t] = sums[RootOf(parents, list.CornersOf(t)[0])] < Whole;
-      if (!keep[t])
-      {
-        others.push_back(t);
-      }
-    }
-  });
-  return others;
-}
-
-/** The border of a mesh that the measured triangles are, or are a part of. */
-struct BorderOfMesh
-{
-  std::vector<BorderEdge> Edges; ///< sorted
-  IdSet Vertices;
-  bool IsPart; ///< whether the triangles are only a part
-};
-
-/**
- * The last steps: drops slivers, closes small bays and lakes, drops small pieces, and traces the
- * border of the rest.
- * @param[in]     spacingOf  spacingOf(t): of triangles that are not yet surface
- * @param[in]     near       the corners at the border of the surface found so far
- * @param[in]     dropSmall  whether to drop small pieces
- * @param[in,out] result     in: a Flag for each triangle; out: Outside or Surface, and the rings
- * @return false if the triangles are a part of a mesh, too small to decide which pieces are small
- */
-template <typename SpacingOfTriangle>
-bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
-  SpacingOfTriangle&& spacingOf, IdSet near, bool dropSmall, const Progress& progress,
-  ExtractedBoundary& result)
-{
-  const TriangleList& list = measured.List;
-  std::vector<char>& keep = result.IsSurface;
-  const auto isSliverOver = [&](Index t, double length) {
-    const double spacing = SpacingOf(measured.ShortSpacings, list.CornersOf(t));
-    return 2.0 * list.SquareShare(t, spacing) * spacing < LeastHeight * length;
-  };
-  // Slivers have two corners at the border, or at flat triangles with a corner there. Then the mesh
-  // includes all their neighbours.
-  IdSet atEdge = near;
-  for (const Index t : TrianglesAt(list, near, SubProgress(progress, 0.0, 0.1)))
-  {
-    if (isSliverOver(t, std::sqrt(measured.Longest[t])))
-    {
-      atEdge.AddAll(list.CornersOf(t));
-    }
-  }
-  near = atEdge;
-  double begin = 0.1; // of the round, in the progress
-  for (;;)
-  {
-    // A second round is rare, a third even rarer.
-    const double end = 0.5 * (1.0 + begin);
-    const Progress round = SubProgress(progress, begin, end);
-    begin = end;
-    std::vector<Index> triangles = TrianglesAt(list, near, SubProgress(round, 0.0, 0.1));
-    if (border.IsPart || static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
-    {
-      // Take all of them; this is then the last round.
-      triangles = AllTriangles(list);
-    }
-    const PartialMesh mesh(list, border.Edges, border.Vertices, std::move(triangles),
-      SubProgress(round, 0.1, 0.3), border.IsPart);
-    std::vector<char> keepHere = mesh.FlagsOf(keep);
-    // As a fraction of the least lake. Slivers, which were surface before, have hardly any area,
-    // and their spacings are not known.
-    const auto shareOf = [&](Index i) {
-      const Index t = mesh.Triangles[i];
-      return keep[t] == Surface ? 0.0 : list.SquareShare(t, spacingOf(t));
-    };
-    const auto isSliver = [&](Index h) {
-      const Index t = mesh.Triangles[Mesh::Triangle(h)];
-      const Index* corners = list.CornersOf(t);
-      return atEdge.Has(corners[0]) + atEdge.Has(corners[1]) + atEdge.Has(corners[2]) >= 2 &&
-        isSliverOver(t, std::sqrt(mesh.Surface.SquaredLengthOf(h)));
-    };
-    DropSlivers(mesh.Surface, isSliver, keepHere, SubProgress(round, 0.3, 0.4));
-    if (std::find(keepHere.begin(), keepHere.end(), char(Surface)) == keepHere.end() &&
-      !border.IsPart && static_cast<Index>(mesh.Triangles.size()) == list.Count)
-    {
-      keepHere = mesh.FlagsOf(keep); // the surface is nothing but slivers
-    }
-    CloseSmallLakes(mesh.Surface, shareOf, keepHere, SubProgress(round, 0.4, 0.48));
-    CloseSmallBays(mesh.Surface, shareOf, keepHere, SubProgress(round, 0.48, 0.55));
-    const std::vector<Index> unknown = dropSmall
-      ? DropSmallPieces(mesh.Surface, keepHere, SubProgress(round, 0.55, 0.8))
-      : std::vector<Index>();
-    if (unknown.empty())
-    {
-      mesh.PutFlags(keepHere, keep);
-      result.Vertices = BorderOf(mesh.Surface, keepHere, SubProgress(round, 0.8, 1.0));
-      ToIds(result.Vertices.Vertices, mesh.Surface.Ids.data(), SubProgress(round, 1.0, 1.0));
-      return true;
-    }
-    if (border.IsPart)
-    {
-      return false;
-    }
-    // In the next round, include more of these pieces.
-    for (const Index vertex : unknown)
-    {
-      near.Add(mesh.Surface.Ids[vertex]);
-    }
-  }
-}
-
 class OutlineSearch
 {
 public:
@@ -598,7 +97,7 @@ public:
     , Threads(ResolveNumberOfThreads(options.NumberOfThreads))
     , IsAutomatic(!(options.GapTolerance > 0.0))
     , Tolerance(this->IsAutomatic ? DefaultTolerance : options.GapTolerance)
-    , Grid(options.Grid)
+    , Grid{ options.Grid, this->Measured.Scale }
     , Border{ this->Measured.Border, IdSet(this->Measured.List.Points.Count), false }
   {
     this->Result.GapTolerance = this->Tolerance;
@@ -631,14 +130,14 @@ public:
   std::optional<ExtractedBoundary> Run(const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
-    this->SortBorder(SubProgress(progress, 0.0, 0.02));
-    const Neighbors neighbors(this->Measured, SubProgress(progress, 0.02, 0.15));
+    this->SortBorder(progress.Between(0.0, 0.02));
+    const Neighbors neighbors(this->Measured, progress.Between(0.02, 0.15));
     if (!this->Border.IsPart)
     {
       this->Spacings.Resize(list.Points.Count);
     }
-    this->KeepCertainTriangles(SubProgress(progress, 0.15, 0.2));
-    std::vector<Index> doubtful = this->FindDoubtful(SubProgress(progress, 0.2, 0.32));
+    this->KeepCertainTriangles(progress.Between(0.15, 0.2));
+    std::vector<Index> doubtful = this->FindDoubtful(progress.Between(0.2, 0.32));
     Report(progress, 0.32);
     // How long the next steps take depends on how many are doubtful. Where these are few, no step
     // has so large a share that progress jumps.
@@ -646,51 +145,36 @@ public:
       std::clamp(20.0 * static_cast<double>(doubtful.size()) / list.Count, 0.6, 1.0);
     const double scaled = 0.32 + (this->IsAutomatic ? 0.25 * share : 0.0);
     const double decided = scaled + 0.25 * share + 0.03;
-    if (this->IsAutomatic && this->Border.IsPart)
-    {
-      const IdSet lonely = this->LonelyWithin(neighbors, this->CornersNear(doubtful));
-      if (!AreFew(neighbors, lonely, list.Points.Count, this->NumberOfPoints))
-      {
-        return std::nullopt;
-      }
-    }
-    else if (this->IsAutomatic)
-    {
-      this->Scales =
-        FindScales(this->Measured, neighbors, this->Border.Vertices, this->CornersNear(doubtful),
-          this->Threads, SubProgress(progress, 0.32, scaled), this->Spacings.data());
-      this->Result.GapTolerance *= this->TypicalScale();
-    }
-    const std::vector<Index> outside =
-      this->FindOutsideOfGrid(SubProgress(progress, scaled, scaled));
-    const auto middle = doubtful.insert(doubtful.end(), outside.begin(), outside.end());
-    std::inplace_merge(doubtful.begin(), middle, doubtful.end());
-    doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
-    if (!this->FindCornerSpacings(
-          doubtful, neighbors, SubProgress(progress, scaled, decided - 0.03)))
+    if (this->IsAutomatic &&
+      !this->FindAllScales(neighbors, doubtful, progress.Between(0.32, scaled)))
     {
       return std::nullopt;
     }
-    this->Decide(doubtful, SubProgress(progress, decided - 0.03, decided));
+    const std::vector<Index> outside =
+      FindOutsideBridges(list, this->Grid, this->Border, progress.Between(scaled, scaled));
+    const auto middle = doubtful.insert(doubtful.end(), outside.begin(), outside.end());
+    std::inplace_merge(doubtful.begin(), middle, doubtful.end());
+    doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
+    if (!this->FindCornerSpacings(doubtful, neighbors, progress.Between(scaled, decided - 0.03)))
+    {
+      return std::nullopt;
+    }
+    this->Decide(doubtful, progress.Between(decided - 0.03, decided));
     for (const Index t : outside)
     {
       this->Result.IsSurface[t] = Outside;
     }
-    if (!TraceSurface(
-          this->Measured, this->Border, [&](Index t) { return this->ToleranceOf(t); },
-          this->CornersNear(doubtful), !this->Grid.IsSet(), SubProgress(progress, decided, 0.97),
-          this->Result))
-    {
-      return std::nullopt;
-    }
-    if (!this->MeasureLoss(neighbors, SubProgress(progress, 0.97, 1.0)))
+    const SurfaceOptions tracing{ [this](Index t) { return this->ToleranceOf(t); },
+      !this->Grid.Steps.IsSet() };
+    if (!TraceSurface(this->Measured, this->Border, this->CornersNear(doubtful), tracing,
+          progress.Between(decided, 0.97), this->Result.IsSurface, this->Result.Vertices) ||
+      !this->MeasureLoss(neighbors, progress.Between(0.97, 1.0)))
     {
       return std::nullopt;
     }
     if (this->Measured.Ids.size() > 0)
     {
-      ToIds(
-        this->Result.Vertices.Vertices, this->Measured.Ids.data(), SubProgress(progress, 1.0, 1.0));
+      ToIds(this->Result.Vertices.Vertices, this->Measured.Ids.data(), progress.Between(1.0, 1.0));
     }
     Report(progress, 1.0);
     return std::move(this->Result);
@@ -701,15 +185,15 @@ public:
   {
     const TriangleList& list = this->Measured.List;
     const IdSet& border = this->Border.Vertices;
-    this->SortBorder(SubProgress(progress, 0.0, 0.02));
-    const Neighbors neighbors(this->Measured, SubProgress(progress, 0.02, 0.15));
+    this->SortBorder(progress.Between(0.0, 0.02));
+    const Neighbors neighbors(this->Measured, progress.Between(0.02, 0.15));
     this->Spacings.Resize(list.Points.Count);
-    this->KeepCertainTriangles(SubProgress(progress, 0.15, 0.2));
-    for (const Index t : TrianglesAt(list, border, SubProgress(progress, 0.2, 0.25)))
+    this->KeepCertainTriangles(progress.Between(0.15, 0.2));
+    for (const Index t : TrianglesAt(list, border, progress.Between(0.2, 0.25)))
     {
       this->Result.IsSurface[t] = Outside; // not all edges are known there
     }
-    const std::vector<Index> doubtful = this->FindDoubtful(SubProgress(progress, 0.25, 0.4));
+    const std::vector<Index> doubtful = this->FindDoubtful(progress.Between(0.25, 0.4));
     const IdSet lonely = this->IsAutomatic
       ? LonelyVertices(neighbors, this->CornersNear(doubtful), list.Points.Count)
       : IdSet(0);
@@ -720,12 +204,12 @@ public:
     }
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     std::fill(this->Spacings.begin(), this->Spacings.end(), unknown);
-    FindSpacings(list, neighbors, CornersOf(list, doubtful, SubProgress(progress, 0.4, 0.45)),
-      this->Threads, SubProgress(progress, 0.45, 0.6), this->Spacings.data(), &border);
+    FindSpacings(list, neighbors, CornersOf(list, doubtful, progress.Between(0.4, 0.45)),
+      this->Threads, progress.Between(0.45, 0.6), this->Spacings.data(), &border);
     // Of groups that reach the border, other parts may have more.
     std::vector<char> isInside(list.Count, 0);
     const auto nothing = [](Index) { return 0.0; };
-    DropSmallGroups(list, border, doubtful, nothing, isInside, SubProgress(progress, 0.6, 0.65));
+    DropSmallGroups(list, border, doubtful, nothing, isInside, progress.Between(0.6, 0.65));
     std::vector<Known> states(list.Count, Known::Surface);
     for (const Index t : doubtful)
     {
@@ -738,11 +222,11 @@ public:
         near.AddAll(list.CornersOf(t));
       }
     }
-    for (const Index t : this->FindBridges(SubProgress(progress, 0.65, 0.65)))
+    for (const Index t : FindBridges(list, this->Grid, progress.Between(0.65, 0.65)))
     {
       near.AddAll(list.CornersOf(t)); // the border of the mesh may be in another part
     }
-    return this->PartNear(near, margin, states, SubProgress(progress, 0.65, 1.0));
+    return this->PartNear(near, margin, states, progress.Between(0.65, 1.0));
   }
 
 private:
@@ -757,7 +241,6 @@ private:
     }
     if (!this->Border.IsPart)
     {
-      this->Measured.Border = border;
       return;
     }
     this->Ends = IdSet(this->Measured.List.Points.Count);
@@ -805,7 +288,7 @@ private:
     near.Add(vertices, both);
     this->Widen(around, Progress(), near);
     OutlinePart part;
-    part.Triangles = TrianglesAt(list, near, SubProgress(progress, 0.7, 0.9));
+    part.Triangles = TrianglesAt(list, near, progress.Between(0.7, 0.9));
     for (const Index t : part.Triangles)
     {
       part.States.push_back(states[t]);
@@ -826,6 +309,25 @@ private:
       }
     }
     return part;
+  }
+
+  /**
+   * Finds the scales; those of a part of a mesh are all 1.
+   * @return false if the triangles are a part of a mesh, and others may have another scale
+   */
+  bool FindAllScales(
+    const Neighbors& neighbors, const std::vector<Index>& doubtful, const Progress& progress)
+  {
+    const IdSet near = this->CornersNear(doubtful);
+    if (this->Border.IsPart)
+    {
+      return AreFew(neighbors, this->LonelyWithin(neighbors, near),
+        this->Measured.List.Points.Count, this->NumberOfPoints);
+    }
+    this->Scales = FindScales(this->Measured, neighbors, this->Border, near, this->Threads,
+      progress, this->Spacings.data());
+    this->Result.GapTolerance *= this->TypicalScale();
+    return true;
   }
 
   /** The lonely vertices of a mesh; not where the triangles taken of it end. */
@@ -859,13 +361,13 @@ private:
   {
     Report(progress, 0.0);
     const TriangleList& list = this->Measured.List;
-    std::vector<Index> corners = CornersOf(list, triangles, SubProgress(progress, 0.0, 0.1));
+    std::vector<Index> corners = CornersOf(list, triangles, progress.Between(0.0, 0.1));
     const auto isKnown = [this](Index v) { return !std::isnan(this->Spacings[v]); };
     if (this->Border.IsPart)
     {
       corners.erase(std::remove_if(corners.begin(), corners.end(), isKnown), corners.end());
     }
-    FindSpacings(list, neighbors, corners, this->Threads, SubProgress(progress, 0.1, 1.0),
+    FindSpacings(list, neighbors, corners, this->Threads, progress.Between(0.1, 1.0),
       this->Spacings.data(), this->Border.IsPart ? &this->Ends : nullptr);
     Report(progress, 1.0);
     return !this->Border.IsPart || std::all_of(corners.begin(), corners.end(), isKnown);
@@ -880,29 +382,30 @@ private:
     return median == scales.end() ? 1.0 : *median;
   }
 
+  double ScaleAt(Index vertex) const { return this->Scales.empty() ? 1.0 : this->Scales[vertex]; }
+
   /** The longest edge that a triangle may have. */
   double ToleranceOf(Index t) const
   {
     const Index* const corners = this->Measured.List.CornersOf(t);
     double spacing = SpacingOf(this->Spacings, corners);
-    for (int k = 0; k < 3 && !this->Scales.empty(); ++k)
+    for (int k = 0; k < 3; ++k)
     {
       // Not at once, as the largest spacing replaces the median.
-      const double scale = this->Scales[corners[k]];
+      const double scale = this->ScaleAt(corners[k]);
       spacing = std::max(spacing, std::min(1.0, scale - 1.0) * scale * this->Spacings[corners[k]]);
     }
     return this->Tolerance * spacing;
   }
 
   /** The same for triangles in bays. */
-  double ToleranceOfBay(Index t) const
+  double BayTolerance(Index t) const
   {
     const Index* const corners = this->Measured.List.CornersOf(t);
     double spacing = 0.0;
     for (int k = 0; k < 3; ++k)
     {
-      const double scale = this->Scales.empty() ? 1.0 : this->Scales[corners[k]];
-      spacing = std::max(spacing, scale * this->Spacings[corners[k]]);
+      spacing = std::max(spacing, this->ScaleAt(corners[k]) * this->Spacings[corners[k]]);
     }
     return LongestInBay * this->Tolerance * spacing;
   }
@@ -937,7 +440,7 @@ private:
     const TriangleList& list = this->Measured.List;
     std::vector<char>& keep = this->Result.IsSurface;
     std::vector<Index> doubtful, inGroups; // the groups of the others are known
-    ForEachStretch(list.Count, SubProgress(progress, 0.0, 0.2), [&](Index begin, Index end) {
+    ForEachStretch(list.Count, progress.Between(0.0, 0.2), [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
         if (!keep[t])
@@ -952,95 +455,10 @@ private:
       return list.SquareShare(t, SmallGroup * this->Tolerance * spacing);
     };
     const std::vector<Index> others = DropSmallGroups(
-      list, this->Border.Vertices, inGroups, shareOf, keep, SubProgress(progress, 0.2, 1.0));
+      list, this->Border.Vertices, inGroups, shareOf, keep, progress.Between(0.2, 1.0));
     const auto middle = doubtful.insert(doubtful.end(), others.begin(), others.end());
     std::inplace_merge(doubtful.begin(), middle, doubtful.end());
     return doubtful;
-  }
-
-  /** Whether an edge goes more than one step along either axis of the grid. */
-  bool BridgesNodes(const Point2& p, const Point2& q) const
-  {
-    const Point2& u = this->Grid.StepU;
-    const Point2& v = this->Grid.StepV;
-    const double x = (q.X - p.X) / this->Measured.Scale, y = (q.Y - p.Y) / this->Measured.Scale;
-    constexpr double most = 1.5; // the next is two steps
-    const double cell = std::fabs(this->Grid.Area());
-    return std::fabs(x * v.Y - y * v.X) > most * cell || std::fabs(u.X * y - u.Y * x) > most * cell;
-  }
-
-  /** The triangles with an edge that bridges missing nodes of the grid; increasing. */
-  std::vector<Index> FindBridges(const Progress& progress) const
-  {
-    const TriangleList& list = this->Measured.List;
-    std::vector<Index> bridges;
-    ForEachStretch(this->Grid.IsSet() ? list.Count : 0, progress, [&](Index begin, Index end) {
-      for (Index t = begin; t < end; ++t)
-      {
-        const Index* const corners = list.CornersOf(t);
-        const Point2 p = list.Points.At(corners[0]), q = list.Points.At(corners[1]),
-                     r = list.Points.At(corners[2]);
-        if (this->BridgesNodes(p, q) || this->BridgesNodes(q, r) || this->BridgesNodes(r, p))
-        {
-          bridges.push_back(t);
-        }
-      }
-    });
-    return bridges;
-  }
-
-  /** The triangles that are reached from the border of the mesh across such edges; increasing. */
-  std::vector<Index> FindOutsideOfGrid(const Progress& progress) const
-  {
-    std::vector<Index> bridges = this->FindBridges(progress);
-    if (bridges.empty())
-    {
-      return bridges;
-    }
-    const PartialMesh mesh(this->Measured.List, this->Border.Edges, this->Border.Vertices,
-      std::move(bridges), progress, this->Border.IsPart);
-    const Mesh& surface = mesh.Surface;
-    std::vector<char> isOutside(surface.NumberOfTriangles(), 0);
-    std::vector<Index> stack;
-    const auto enter = [&](Index h, Index t) {
-      if (!isOutside[t] &&
-        this->BridgesNodes(
-          surface.PointOf(surface.Origin(h)), surface.PointOf(surface.Destination(h))))
-      {
-        isOutside[t] = 1;
-        stack.push_back(t);
-      }
-    };
-    for (const Index h : Counted(surface.NumberOfHalfEdges()))
-    {
-      if (surface.IsBorder(h))
-      {
-        enter(h, Mesh::Triangle(h));
-      }
-    }
-    while (!stack.empty())
-    {
-      CountWork(1);
-      const Index t = stack.back();
-      stack.pop_back();
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
-      {
-        // A neighbour that is left out is behind a short edge.
-        if (!surface.IsBorder(h) && surface.Twin(h) != h)
-        {
-          enter(h, Mesh::Triangle(surface.Twin(h)));
-        }
-      }
-    }
-    std::vector<Index> outside;
-    for (Index t = 0; t < surface.NumberOfTriangles(); ++t)
-    {
-      if (isOutside[t])
-      {
-        outside.push_back(mesh.Triangles[t]);
-      }
-    }
-    return outside;
   }
 
   /** The corners of triangles that are not surface, and those at the border. */
@@ -1066,7 +484,7 @@ private:
         const Index t = doubtful[i];
         const double longest = std::sqrt(this->Measured.Longest[t]);
         this->Result.IsSurface[t] = longest <= this->ToleranceOf(t) ? Surface
-          : longest <= this->ToleranceOfBay(t)                      ? Bay
+          : longest <= this->BayTolerance(t)                        ? Bay
                                                                     : Outside;
       }
     });
@@ -1087,18 +505,18 @@ private:
       outward.push_back(static_cast<Index>(t - keep.begin()));
       area += list.SquareShare(outward.back(), 1.0);
     }
-    const IdSet leftOut = CornersLeftOut(list, outward, keep, SubProgress(progress, 0.0, 0.6));
+    const IdSet leftOut = CornersLeftOut(list, outward, keep, progress.Between(0.0, 0.6));
     this->Result.NumberOfPointsLeftOut = leftOut.Count();
     const double all = AreaOf(list, this->Border.Edges);
     this->Result.AreaLeftOut = all > 0.0 ? std::min(1.0, area / all) : 0.0;
-    const double points =
-      static_cast<double>(this->Border.IsPart ? this->NumberOfPoints : this->Measured.NumberOfCorners());
+    const double points = static_cast<double>(
+      this->Border.IsPart ? this->NumberOfPoints : this->Measured.NumberOfCorners());
     this->Result.PointsLeftOut = this->Result.NumberOfPointsLeftOut / points;
     if (!this->Result.LeavesOutMuch())
     {
       return true;
     }
-    if (!this->FindCornerSpacings(outward, neighbors, SubProgress(progress, 0.6, 1.0)))
+    if (!this->FindCornerSpacings(outward, neighbors, progress.Between(0.6, 1.0)))
     {
       return false;
     }
@@ -1137,8 +555,8 @@ private:
   const int Threads;
   const bool IsAutomatic;
   const double Tolerance; ///< at scale 1
-  const Lattice Grid;
-  BorderOfMesh Border;
+  const GridSteps Grid;
+  MeshBorder Border;
   const Known* States = nullptr;   ///< one per triangle, if they are a part of a mesh
   std::int64_t NumberOfPoints = 0; ///< of that mesh
   IdSet Ends{ 0 };                 ///< vertices that have more triangles in it
@@ -1164,13 +582,12 @@ bool FindOutlinePart(
   {
     return true;
   }
-  if (!MeasureBySweep(
-        list, options.NumberOfThreads, SubProgress(options.Monitor, 0.0, 0.5), measured))
+  if (!MeasureBySweep(list, options.NumberOfThreads, options.Monitor.Between(0.0, 0.5), measured))
   {
     return false;
   }
-  part = OutlineSearch(std::move(measured), options)
-           .FindPart(margin, SubProgress(options.Monitor, 0.5, 1.0));
+  part =
+    OutlineSearch(std::move(measured), options).FindPart(margin, options.Monitor.Between(0.5, 1.0));
   part.Spacings.resize(list.Points.Count); // there are more of the measured ids than of points
   return true;
 }
@@ -1180,12 +597,11 @@ std::optional<ExtractedBoundary> FindSharedOutline(
 {
   MeasuredTriangles measured;
   if (list.Count == 0 ||
-    !MeasureBySweep(
-      list, options.NumberOfThreads, SubProgress(options.Monitor, 0.0, 0.3), measured))
+    !MeasureBySweep(list, options.NumberOfThreads, options.Monitor.Between(0.0, 0.3), measured))
   {
     return std::nullopt;
   }
-  const Progress finding = SubProgress(options.Monitor, 0.3, 1.0);
+  const Progress finding = options.Monitor.Between(0.3, 1.0);
   if (list.Count == mesh.NumberOfTriangles)
   {
     return OutlineSearch(std::move(measured), options).Run(finding);
@@ -1209,9 +625,9 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
     nothing.GapTolerance = options.GapTolerance;
     return nothing;
   }
-  MeasuredTriangles measured = Measure(mesh, SubProgress(options.Monitor, 0.0, 0.4));
+  MeasuredTriangles measured = Measure(mesh, options.Monitor.Between(0.0, 0.4));
   ExtractOptions rest = options;
-  const Progress finding = SubProgress(options.Monitor, 0.4, 1.0);
+  const Progress finding = options.Monitor.Between(0.4, 1.0);
   rest.Monitor = finding;
   return FindOutline(std::move(measured), rest);
 }

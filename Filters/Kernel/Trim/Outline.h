@@ -127,18 +127,18 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
  *     spacing. The other triangles are grouped by common corners; a group away from the border of
  *     the mesh is surface too if it is smaller than a square with a side of 0.7 GapTolerance short
  *     spacings: it has no room for a lake.
- *   - A triangle at the border of the surface is a sliver, and not surface, if its height over the
- *     edge there is less than a tenth of its short spacing. So is the next one that comes to the
+ *   - A triangle with its longest edge at the border of the surface is a sliver, and not surface,
+ *     if its height is less than a tenth of its short spacing. So is the next one that comes to the
  *     border, if two of its corners were at the border from the start, or are corners of flat
- *     triangles with a corner there. Slivers that lean with their longest edge on surface stay.
- *     Slivers do not count in the size of an opening. So a line of points that leads away from the
- *     others is left out, even if it wavers (unless no triangle would be left).
+ *     triangles with a corner there. Slivers do not count in the size of an opening. So a line of
+ *     points that leads away from the others is left out, even if it wavers (unless no triangle
+ *     would be left); and no vertex is, whose sliver leans on surface.
  *   - An opening between surface triangles is a lake only if it is larger than a square with a side
  *     of GapTolerance spacings; a smaller one is closed.
  *   - Bays: slivers, and triangles that are not surface, with edges of at most 1.6 GapTolerance
- *     times the largest spacing of a corner (times its scale); not in lakes of less than four such
- *     squares. What is connected of them is surface if it is smaller than that square and has
- *     surface along at least half of its border. So the outline does not follow each point inwards.
+ *     times the largest spacing of a corner (times its scale). What is connected of them is surface
+ *     if it is smaller than that square and has surface along at least half of its border. So the
+ *     outline does not follow each point inwards.
  *   - A piece with 6 vertices or fewer, too few for spacings of their own, is not surface, unless
  *     all pieces are as small.
  *   - With a Grid, triangles that are reached from the border of the mesh across edges of more than

@@ -40,7 +40,7 @@ std::vector<Segment> SegmentsOf(
   Sort(
     segments.begin(), segments.end(),
     [&mesh](const Segment& s, const Segment& t) { return IsLower(mesh, s, t); },
-    SubProgress(progress, 0.5, 1.0));
+    progress.Between(0.5, 1.0));
   return segments;
 }
 
@@ -82,19 +82,19 @@ OutwardTriangles FindOutward(
 {
   OutwardTriangles result;
   Report(progress, 0.0);
-  VertexStars stars(mesh, SubProgress(progress, 0.0, 0.35));
+  VertexStars stars(mesh, progress.Between(0.0, 0.35));
   const std::vector<Segment> segments =
-    SegmentsOf(mesh, stars, boundary, SubProgress(progress, 0.35, 0.4));
+    SegmentsOf(mesh, stars, boundary, progress.Between(0.35, 0.4));
   std::vector<char>& isOnBoundary = result.IsOnBoundary;
   if (recover)
   {
     result.NumberOfRecoveredEdges =
-      RecoverSegments(mesh, stars, segments, isOnBoundary, SubProgress(progress, 0.4, 0.5));
+      RecoverSegments(mesh, stars, segments, isOnBoundary, progress.Between(0.4, 0.5));
   }
-  MarkEdges(mesh, stars, segments, isOnBoundary, SubProgress(progress, 0.5, 0.6));
+  MarkEdges(mesh, stars, segments, isOnBoundary, progress.Between(0.5, 0.6));
 
   const RingLocator locator(mesh.Points, boundary);
-  const Components parts = FindComponents(mesh, SubProgress(progress, 0.6, 0.9),
+  const Components parts = FindComponents(mesh, progress.Between(0.6, 0.9),
     [&isOnBoundary](Index h) { return static_cast<int>(isOnBoundary[h]); });
   std::vector<char> isOutward; // one per label
   for (const Index t : parts.Lowest)
@@ -106,7 +106,7 @@ OutwardTriangles FindOutward(
   }
   const Index count = mesh.NumberOfTriangles();
   result.IsOutward.resize(count);
-  ForEachStretch(count, SubProgress(progress, 0.9, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.9, 1.0), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       result.IsOutward[t] = isOutward[parts.Labels[t]];
@@ -133,17 +133,16 @@ void ApplyInwardNormalTest(const Mesh& mesh, const std::vector<char>& isOnBounda
       taken.push_back(t);
     }
   };
-  ForEachStretch(
-    mesh.NumberOfHalfEdges(), SubProgress(progress, 0.0, 0.5), [&](Index begin, Index end) {
-      for (Index h = begin; h < end; ++h)
+  ForEachStretch(mesh.NumberOfHalfEdges(), progress.Between(0.0, 0.5), [&](Index begin, Index end) {
+    for (Index h = begin; h < end; ++h)
+    {
+      if (isOnBoundary[h])
       {
-        if (isOnBoundary[h])
-        {
-          walkAlong(h);
-        }
+        walkAlong(h);
       }
-    });
-  const Progress walking = SubProgress(progress, 0.5, 1.0);
+    }
+  });
+  const Progress walking = progress.Between(0.5, 1.0);
   StepCount done;
   while (!taken.empty())
   {

@@ -42,26 +42,26 @@ std::vector<Index> CornersOf(
   return corners;
 }
 
-PartialMesh::PartialMesh(const TriangleList& list, const std::vector<BorderEdge>& border,
-  const IdSet& atBorder, std::vector<Index> triangles, const Progress& progress, bool isPart)
-  : Surface(SubMesh(list, triangles, SubProgress(progress, 0.0, 0.5)))
+PartialMesh::PartialMesh(const TriangleList& list, const MeshBorder& border,
+  std::vector<Index> triangles, const Progress& progress)
+  : Surface(SubMesh(list, triangles, progress.Between(0.0, 0.5)))
   , Triangles(std::move(triangles))
 {
-  this->Surface.ConnectTwins(0, SubProgress(progress, 0.5, 0.8));
-  if (!isPart && static_cast<Index>(this->Triangles.size()) == list.Count)
+  this->Surface.ConnectTwins(0, progress.Between(0.5, 0.8));
+  if (!border.IsPart && static_cast<Index>(this->Triangles.size()) == list.Count)
   {
     return; // nothing is left out
   }
-  ForEachStretch(this->Surface.NumberOfHalfEdges(), SubProgress(progress, 0.8, 1.0),
-    [&](Index begin, Index end) {
+  ForEachStretch(
+    this->Surface.NumberOfHalfEdges(), progress.Between(0.8, 1.0), [&](Index begin, Index end) {
       for (Index h = begin; h < end; ++h)
       {
         if (this->Surface.IsBorder(h))
         {
           const BorderEdge edge{ this->Surface.IdOf(this->Surface.Origin(h)),
             this->Surface.IdOf(this->Surface.Destination(h)) };
-          if (!atBorder.Has(edge.Origin) || !atBorder.Has(edge.Destination) ||
-            !std::binary_search(border.begin(), border.end(), edge))
+          if (!border.Vertices.Has(edge.Origin) || !border.Vertices.Has(edge.Destination) ||
+            !std::binary_search(border.Edges.begin(), border.Edges.end(), edge))
           {
             this->Surface.Twins[h] = h;
           }
@@ -72,20 +72,20 @@ PartialMesh::PartialMesh(const TriangleList& list, const std::vector<BorderEdge>
 
 std::vector<char> PartialMesh::FlagsOf(const std::vector<char>& flags) const
 {
-  std::vector<char> ofThese;
-  ofThese.reserve(this->Triangles.size());
+  std::vector<char> taken;
+  taken.reserve(this->Triangles.size());
   for (const Index t : this->Triangles)
   {
-    ofThese.push_back(flags[t]);
+    taken.push_back(flags[t]);
   }
-  return ofThese;
+  return taken;
 }
 
-void PartialMesh::PutFlags(const std::vector<char>& ofThese, std::vector<char>& flags) const
+void PartialMesh::PutFlags(const std::vector<char>& taken, std::vector<char>& flags) const
 {
-  for (std::size_t i = 0; i < ofThese.size(); ++i)
+  for (std::size_t i = 0; i < taken.size(); ++i)
   {
-    flags[this->Triangles[i]] = ofThese[i];
+    flags[this->Triangles[i]] = taken[i];
   }
 }
 

@@ -25,26 +25,27 @@ std::vector<Index> TrianglesAt(
 std::vector<Index> CornersOf(
   const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress);
 
+/** The border of a mesh that a list of triangles is, or is a part of. */
+struct MeshBorder
+{
+  std::vector<BorderEdge> Edges; ///< sorted
+  IdSet Vertices;
+  bool IsPart = false; ///< whether the list is only a part
+};
+
 /** Triangles as a mesh. A half-edge that is its own twin leads to a triangle left out. */
 struct PartialMesh
 {
-  /**
-   * @param[in] border     of the list, or of the mesh that it is a part of; sorted
-   * @param[in] atBorder   its vertices
-   * @param[in] triangles  to take; increasing
-   * @param[in] isPart     whether the list is only a part of a mesh
-   * @throws Aborted, std::bad_alloc
-   */
-  PartialMesh(const TriangleList& list, const std::vector<BorderEdge>& border,
-    const IdSet& atBorder, std::vector<Index> triangles, const Progress& progress,
-    bool isPart = false);
+  /** @param[in] triangles  to take; increasing. @throws Aborted, std::bad_alloc */
+  PartialMesh(const TriangleList& list, const MeshBorder& border, std::vector<Index> triangles,
+    const Progress& progress);
 
   Mesh Surface;
   const std::vector<Index> Triangles; ///< their ids in the list
 
   /** One flag per triangle of the mesh, from one per triangle of the list; and back. */
   std::vector<char> FlagsOf(const std::vector<char>& flags) const;
-  void PutFlags(const std::vector<char>& ofThese, std::vector<char>& flags) const;
+  void PutFlags(const std::vector<char>& taken, std::vector<char>& flags) const;
 };
 
 } // namespace elevation

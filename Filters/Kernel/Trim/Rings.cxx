@@ -63,7 +63,7 @@ bool IsBefore(const Ends& one, const Ends& other)
   return one[0] != other[0] ? IsLower(one[0], other[0]) : IsLower(one[1], other[1]);
 }
 
-std::string NameOfLine(const BoundaryLines& lines, Index line)
+std::string LineName(const BoundaryLines& lines, Index line)
 {
   return (lines.IsPolygon[line] ? "polygon (cell " : "line (cell ") +
     std::to_string(lines.Cells[line]) + ")";
@@ -90,7 +90,7 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines)
       if (!std::isfinite(p.X) || !std::isfinite(p.Y))
       {
         throw Error("The boundary's " + NameOf(lines.Points, *point) + " of " +
-          NameOfLine(lines, line) + " is not finite.");
+          LineName(lines, line) + " is not finite.");
       }
       if (piece.Points.empty() || lines.Points[piece.Points.back()] != p)
       {
@@ -109,7 +109,7 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines)
     }
     if (piece.IsClosed && piece.Points.size() < 3)
     {
-      throw Error("The boundary's " + NameOfLine(lines, line) + " has only " +
+      throw Error("The boundary's " + LineName(lines, line) + " has only " +
         std::to_string(piece.Points.size()) + " different point" +
         (piece.Points.size() == 1 ? "" : "s") + "; a ring has at least three.");
     }
@@ -159,7 +159,7 @@ Message DropRepeated(const BoundaryLines& lines, std::vector<Piece>& pieces)
   pieces = std::move(kept);
   return count == 0
     ? Message()
-    : MakeMessage<sentences::RingsRepeated>(count, "the " + NameOfLine(lines, firstLine));
+    : MakeMessage<sentences::RingsRepeated>(count, "the " + LineName(lines, firstLine));
 }
 
 /** Chains open pieces at their ends: the front of piece i is end 2 i, its back is end 2 i + 1. */
@@ -221,7 +221,7 @@ private:
       const std::size_t count = piece.IsClosed ? 0 : this->EndsAt.at(this->PlaceAt(end, 0)).size();
       if (count % 2 != 0)
       {
-        throw Error("The boundary is not closed: " + NameOfLine(this->Lines, piece.Line) +
+        throw Error("The boundary is not closed: " + LineName(this->Lines, piece.Line) +
           " ends at " + NameOf(this->Lines.Points, this->PointAt(end, 0)) +
           (count == 1
               ? ", where no other line goes on."
@@ -316,7 +316,7 @@ Rings JoinLines(const BoundaryLines& lines, Message* repeated)
   }
   if (joined.Vertices.empty())
   {
-    throw Error("The boundary's " + NameOfLine(lines, pieces.front().Line) +
+    throw Error("The boundary's " + LineName(lines, pieces.front().Line) +
       " makes a ring of only two points, and so do all others; a ring has at least three.");
   }
   return joined;

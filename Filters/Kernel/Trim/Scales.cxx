@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scales.h"
 
-#include "PartialMesh.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,10 +23,10 @@ constexpr std::size_t LonelyGroup = 30;
 constexpr Index LeastInner = 50;
 constexpr Index InnerPerOther = 2;
 constexpr double LongestShortEdge = 6.0; // spacings
-constexpr double SpacingsOfUnit = 2.0;
+constexpr double UnitSpacings = 2.0;
 constexpr double LeastWidth = 1.2;
-constexpr double WidthOfLength = 2.5;
-constexpr double ShareOfPoint = 0.2;
+constexpr double WidthPerLength = 2.5;
+constexpr double PointShare = 0.2;
 constexpr double LongestJoin = 5.0;
 
 /** 0 up to half of what is asked for, 1 from there on. */
@@ -76,7 +74,7 @@ IdSet OutsideCores(
 {
   std::vector<Index> parents(count);
   std::iota(parents.begin(), parents.end(), 0);
-  ForEachStretch(count, SubProgress(progress, 0.0, 0.6), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.0, 0.6), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       for (std::uint32_t k = neighbors.Offsets[v]; !near.Has(v) && k < neighbors.Offsets[v + 1];
@@ -89,14 +87,14 @@ IdSet OutsideCores(
     }
   });
   std::vector<Index> inner(count, 0), others(count, 0);
-  ForEachStretch(count, SubProgress(progress, 0.6, 0.8), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.6, 0.8), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       ++(near.Has(v) ? others : inner)[RootOf(parents, v)];
     }
   });
   IdSet outside(count);
-  ForEachStretch(count, SubProgress(progress, 0.8, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.8, 1.0), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       const Index root = RootOf(parents, v);
@@ -171,10 +169,10 @@ public:
     const Index top = this->TopOf(part);
     this->Grow(top, length);
     JoiningPart& grown = this->Parts[top];
-    const double asked = std::max(LeastWidth, WidthOfLength * (length - 1.0));
+    const double asked = std::max(LeastWidth, WidthPerLength * (length - 1.0));
     const double width = grown.Border > 0.0 ? 2.0 * grown.Area / grown.Border : 0.0;
     const double share = grown.Area / static_cast<double>(grown.Points);
-    const double surface = std::min(Reached(width, asked), Reached(share, ShareOfPoint));
+    const double surface = std::min(Reached(width, asked), Reached(share, PointShare));
     if (surface > grown.Surface)
     {
       grown.Surface = surface;
@@ -256,10 +254,10 @@ public:
   /** @return one per vertex of the list */
   std::vector<float> FindScales(bool hasCore, const Progress& progress)
   {
-    this->MeasureTriangles(SubProgress(progress, 0.0, 0.1));
-    this->FindGroups(SubProgress(progress, 0.1, 0.2));
-    this->FindEvents(SubProgress(progress, 0.2, 0.6));
-    this->FollowEvents(SubProgress(progress, 0.6, 1.0));
+    this->MeasureTriangles(progress.Between(0.0, 0.1));
+    this->FindGroups(progress.Between(0.1, 0.2));
+    this->FindEvents(progress.Between(0.2, 0.6));
+    this->FollowEvents(progress.Between(0.6, 1.0));
     const std::vector<float> ofParts = this->Parts.Scales(hasCore);
     std::vector<float> scales(this->List.Points.Count, 1.0f);
     for (Index v = 0; v < this->Surface.NumberOfPoints(); ++v)
@@ -323,7 +321,7 @@ private:
           longest = std::max(longest, this->LengthOf(h));
           isInside = isInside && this->IsThin(this->Surface.Origin(h));
         }
-        this->Units[t] = SpacingsOfUnit * spacing;
+        this->Units[t] = UnitSpacings * spacing;
         this->Lengths[t] = longest / this->Units[t];
         for (Index h = 3 * t; h < 3 * t + 3; ++h)
         {
@@ -387,8 +385,8 @@ private:
 
   void FindEvents(const Progress& progress)
   {
-    ForEachStretch(this->Surface.NumberOfTriangles(), SubProgress(progress, 0.0, 0.3),
-      [&](Index begin, Index end) {
+    ForEachStretch(
+      this->Surface.NumberOfTriangles(), progress.Between(0.0, 0.3), [&](Index begin, Index end) {
         for (Index t = begin; t < end; ++t)
         {
           int thinCorners = 0;
@@ -434,7 +432,7 @@ private:
       const std::array<Point2, 3> q = cornersOf(b.Triangle);
       return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end(), IsLower);
     };
-    Sort(this->Events.begin(), this->Events.end(), isBefore, SubProgress(progress, 0.3, 1.0));
+    Sort(this->Events.begin(), this->Events.end(), isBefore, progress.Between(0.3, 1.0));
   }
 
   void FollowEvents(const Progress& progress)
@@ -543,7 +541,8 @@ bool AreFew(
 }
 
 std::vector<float> FindScales(const MeasuredTriangles& measured, const Neighbors& neighbors,
-  const IdSet& atBorder, const IdSet& near, int threads, const Progress& progress, double* spacings)
+  const MeshBorder& border, const IdSet& near, int threads, const Progress& progress,
+  double* spacings)
 {
   const TriangleList& list = measured.List;
   const Index count = list.Points.Count;
@@ -552,18 +551,17 @@ std::vector<float> FindScales(const MeasuredTriangles& measured, const Neighbors
   {
     return {};
   }
-  const IdSet thin = OutsideCores(neighbors, near, count, SubProgress(progress, 0.0, 0.1));
-  std::vector<Index> triangles = TrianglesAt(list, thin, SubProgress(progress, 0.1, 0.15));
+  const IdSet thin = OutsideCores(neighbors, near, count, progress.Between(0.0, 0.1));
+  std::vector<Index> triangles = TrianglesAt(list, thin, progress.Between(0.1, 0.15));
   if (triangles.empty())
   {
     return {};
   }
-  FindSpacings(list, neighbors, CornersOf(list, triangles, SubProgress(progress, 0.15, 0.2)),
-    threads, SubProgress(progress, 0.2, 0.4), spacings);
-  const PartialMesh partial(
-    list, measured.Border, atBorder, std::move(triangles), SubProgress(progress, 0.4, 0.6));
-  return ThinTriangles(list, partial, atBorder, thin, spacings)
-    .FindScales(thin.Count() < count, SubProgress(progress, 0.6, 1.0));
+  FindSpacings(list, neighbors, CornersOf(list, triangles, progress.Between(0.15, 0.2)), threads,
+    progress.Between(0.2, 0.4), spacings);
+  const PartialMesh partial(list, border, std::move(triangles), progress.Between(0.4, 0.6));
+  return ThinTriangles(list, partial, border.Vertices, thin, spacings)
+    .FindScales(thin.Count() < count, progress.Between(0.6, 1.0));
 }
 
 } // namespace elevation

@@ -44,6 +44,7 @@
 #define elevation_Trim_Scales_h
 
 #include "Kernel/Base/Base.h"
+#include "PartialMesh.h"
 #include "Spacings.h"
 
 #include <cstdint>
@@ -65,15 +66,15 @@ bool AreFew(
 
 /**
  * Finds the scales.
- * @param[in]     measured  with a sorted border
- * @param[in]     atBorder  the vertices at the border
- * @param[in]     near      the corners of triangles that are not surface at scale 1, and atBorder
+ * @param[in]     border    of the triangles, which are a whole mesh
+ * @param[in]     near      the corners of triangles that are not surface at scale 1, and those at
+ *                          the border
  * @param[in,out] spacings  one per vertex; set where they are needed
  * @return one per vertex, 1 or more; none: all are 1
  * @throws Aborted, std::bad_alloc
  */
 std::vector<float> FindScales(const MeasuredTriangles& measured, const Neighbors& neighbors,
-  const IdSet& atBorder, const IdSet& near, int threads, const Progress& progress,
+  const MeshBorder& border, const IdSet& near, int threads, const Progress& progress,
   double* spacings);
 
 } // namespace elevation

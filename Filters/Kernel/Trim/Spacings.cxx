@@ -20,7 +20,7 @@ Neighbors::Neighbors(const MeasuredTriangles& measured, const Progress& progress
     (Group - 1) * (static_cast<std::size_t>(count) + 1));
   // At first the end of each vertex's range, which is filled backwards.
   std::uint32_t sum = 0; // below 9 per point
-  ForEachStretch(count, SubProgress(progress, 0.0, 0.3), [&](Index begin, Index end) {
+  ForEachStretch(count, progress.Between(0.0, 0.3), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       const std::uint32_t size = measured.Degrees[v];
@@ -32,7 +32,7 @@ Neighbors::Neighbors(const MeasuredTriangles& measured, const Progress& progress
   });
   this->Offsets[count] = sum;
   const auto add = [&](Index a, Index b) { this->Ids[--this->Offsets[a]] = b; };
-  ForEachStretch(list.Count, SubProgress(progress, 0.3, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(list.Count, progress.Between(0.3, 1.0), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       const Index* ahead = list.CornersOf(std::min(t + 40, list.Count - 1));
@@ -126,7 +126,7 @@ private:
     this->IsCut = this->IsCut || (this->Incomplete && this->Incomplete->Has(expanded));
     const std::uint32_t first = this->Around.Offsets[expanded];
     const std::uint32_t size = this->Around.Offsets[expanded + 1] - first;
-    if (expanded != this->Vertex && size > NeighborsOfHub)
+    if (expanded != this->Vertex && size > HubNeighbors)
     {
       return;
     }

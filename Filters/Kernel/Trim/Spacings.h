@@ -18,6 +18,7 @@
 #include "Kernel/Base/Base.h"
 #include "MeasuredTriangles.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace elevation
@@ -28,7 +29,25 @@ constexpr double SpacingPerNeighborDistance = 0.5;
 /** A lower bound, so that no spacing is 0 and squares stay in the range of double. */
 constexpr double LeastSpacing = 1e-150;
 /** A vertex with more neighbours is not expanded. */
-constexpr std::size_t NeighborsOfHub = 64;
+constexpr std::size_t HubNeighbors = 64;
+
+/** The largest spacing of a triangle, in the least of its corners. */
+constexpr double LargestSpacingInTriangle = 2.0;
+
+/**
+ * The spacing of a triangle: the median of its corners', which ignores the large spacing of an
+ * isolated corner, but not far above the least, in case two corners are isolated.
+ */
+template <typename Real>
+double SpacingOf(const Buffer<Real>& spacings, const Index* corners)
+{
+  const Real a = spacings[corners[0]];
+  const Real b = spacings[corners[1]];
+  const Real c = spacings[corners[2]];
+  const Real least = std::min({ a, b, c });
+  const Real middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
+  return std::max<double>(LeastSpacing, std::min<double>(middle, LargestSpacingInTriangle * least));
+}
 
 /** The neighbours of each vertex. */
 struct Neighbors

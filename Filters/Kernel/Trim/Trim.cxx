@@ -33,17 +33,17 @@ struct Changes
 /** All triangles as a mesh with Twins that covers nothing twice. @throws Error */
 Mesh ProvenMesh(const TriangleList& list, int threads, const Progress& progress)
 {
-  Mesh mesh = MeshOf(list, ResolveNumberOfThreads(threads), SubProgress(progress, 0.0, 0.4));
-  mesh.ConnectTwins(list.FirstCell, SubProgress(progress, 0.4, 0.8));
-  FindHoles(mesh, list.FirstCell, SubProgress(progress, 0.8, 1.0));
+  Mesh mesh = MeshOf(list, ResolveNumberOfThreads(threads), progress.Between(0.0, 0.4));
+  mesh.ConnectTwins(list.FirstCell, progress.Between(0.4, 0.8));
+  FindHoles(mesh, list.FirstCell, progress.Between(0.8, 1.0));
   return mesh;
 }
 
 /** Some of the triangles, proven by a sweep, as a mesh with Twins. */
 Mesh NearMesh(const TriangleList& list, const std::vector<Index>& near, const Progress& progress)
 {
-  Mesh mesh = SubMesh(list, near, SubProgress(progress, 0.0, 0.5));
-  mesh.ConnectTwins(list.FirstCell, SubProgress(progress, 0.5, 1.0));
+  Mesh mesh = SubMesh(list, near, progress.Between(0.0, 0.5));
+  mesh.ConnectTwins(list.FirstCell, progress.Between(0.5, 1.0));
   return mesh;
 }
 
@@ -172,7 +172,7 @@ void MarkBordersAround(const Mesh& mesh, const Rings& rings, Index firstOutside,
     const Ends ends = endsOf(i);
     return Ends{ { { 0.0, ends[0].Y }, { 0.0, ends[1].Y } } };
   };
-  const CellGrid byHeight(border.size(), heightsOf, SubProgress(progress, 0.0, 0.5));
+  const CellGrid byHeight(border.size(), heightsOf, progress.Between(0.0, 0.5));
   WorkReporter work(progress);
   for (std::size_t k = 0; k < outside.size(); ++k)
   {
@@ -247,27 +247,24 @@ Rings ThereAndBack(const BoundaryLines& lines)
 }
 
 /**
- * @param[in] lines     a boundary, or with Following::Lines lines along which triangles are split
- * @param[in] ofWhole   the border of the mesh, where these are all triangles near the boundary
+ * Finds the triangles near the boundary, the flags of the others, and the border of the mesh.
+ * @param[in] known  the border of the mesh, where these are all triangles near the boundary
+ * @return nothing: all of them, whose border is that of the mesh
  */
-void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
-  const std::vector<BorderEdge>* ofWhole, const TrimOptions& options, Following follow,
-  const Progress& progress, Changes& changes, Trimmed& result)
+NearTriangles FindNear(const TriangleList& list, const NamedPoints& points, const Rings& boundary,
+  const std::vector<BorderEdge>* known, const TrimOptions& options, const Progress& progress,
+  std::vector<BorderEdge>& border, Changes& changes)
 {
-  const int threads = options.NumberOfThreads;
-  const bool areLines = follow == Following::Lines;
-  result.Boundary = areLines ? ThereAndBack(lines) : JoinLines(lines, &result.Warning);
   NearTriangles near;
-  std::vector<BorderEdge> border;
-  if (ofWhole)
+  if (known)
   {
     near = AllTriangles(list);
-    border = *ofWhole;
+    border = *known;
   }
   else if (options.Test == OutwardTest::Exact)
   {
-    std::optional<SweptAlongRings> swept = FindNearTriangles(
-      list, lines.Points.Places, result.Boundary, threads, SubProgress(progress, 0.0, 0.3));
+    std::optional<SweptAlongRings> swept =
+      FindNearTriangles(list, points.Places, boundary, options.NumberOfThreads, progress);
     if (swept)
     {
       near = std::move(swept->Near);
@@ -276,16 +273,32 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
     }
   }
   changes.IsOutward.resize(list.Count);
-  const Progress making =
-    SubProgress(progress, options.Test == OutwardTest::Exact ? 0.3 : 0.0, 0.5);
+  return near;
+}
+
+/**
+ * @param[in] lines  a boundary, or with Following::Lines lines along which triangles are split
+ * @param[in] known  the border of the mesh, where these are all triangles near the boundary
+ */
+void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
+  const std::vector<BorderEdge>* known, const TrimOptions& options, Following follow,
+  const Progress& progress, Changes& changes, Trimmed& result)
+{
+  const int threads = options.NumberOfThreads;
+  const bool areLines = follow == Following::Lines;
+  result.Boundary = areLines ? ThereAndBack(lines) : JoinLines(lines, &result.Warning);
+  std::vector<BorderEdge> border;
+  const NearTriangles near = FindNear(list, lines.Points, result.Boundary, known, options,
+    progress.Between(0.0, 0.3), border, changes);
+  const Progress making = progress.Between(options.Test == OutwardTest::Exact ? 0.3 : 0.0, 0.5);
   Mesh mesh = near ? NearMesh(list, *near, making) : ProvenMesh(list, threads, making);
   mesh.NumberOf = options.NumberOf;
-  border = near ? std::move(border) : BorderOf(mesh, SubProgress(progress, 0.5, 0.5));
+  border = near ? std::move(border) : BorderOf(mesh, progress.Between(0.5, 0.5));
   const Index before = mesh.NumberOfPoints();
   InsertedRings rings = InsertRings(mesh, lines.Points, result.Boundary, options.RecoverBoundary,
-    SubProgress(progress, 0.5, 0.75), follow);
+    progress.Between(0.5, 0.75), follow);
   OutwardTriangles outward =
-    FindOutward(mesh, rings.Vertices, options.RecoverBoundary, SubProgress(progress, 0.75, 0.95));
+    FindOutward(mesh, rings.Vertices, options.RecoverBoundary, progress.Between(0.75, 0.95));
   // An edge that follows the surface is counted once, also where a part of it had to be recovered.
   result.NumberOfRecoveredEdges =
     follow != Following::None ? rings.NumberOfFollowedEdges : outward.NumberOfRecoveredEdges;
@@ -296,19 +309,19 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
     std::fill(outward.IsOutward.begin(), outward.IsOutward.end(), char(0));
     std::fill(changes.IsOutward.begin(), changes.IsOutward.end(), char(0));
   }
-  result.OnBoundary = VerticesOf(mesh, outward.IsOnBoundary, SubProgress(progress, 0.95, 0.955));
+  result.OnBoundary = VerticesOf(mesh, outward.IsOnBoundary, progress.Between(0.95, 0.955));
   MarkBordersAround(mesh, rings.Vertices, before + static_cast<Index>(rings.Inserted.size()), list,
-    border, SubProgress(progress, 0.955, 0.96), result.OnBoundary);
+    border, progress.Between(0.955, 0.96), result.OnBoundary);
   if (options.Test == OutwardTest::InwardNormal)
   {
     CheckEnclosed(list, outward.IsOutward, lines.Points, result.Boundary);
     ApplyInwardNormalTest(
-      mesh, outward.IsOnBoundary, outward.IsOutward, SubProgress(progress, 0.96, 0.97));
+      mesh, outward.IsOnBoundary, outward.IsOutward, progress.Between(0.96, 0.97));
   }
-  PutBack(list, near, mesh, SubProgress(progress, 0.97, 1.0), changes);
+  PutBack(list, near, mesh, progress.Between(0.97, 1.0), changes);
   PutBackFlags(near, std::move(outward.IsOutward), changes);
   PutBackInserted(near, mesh, rings, changes, result);
-  if (!ofWhole)
+  if (!known)
   {
     CheckEnclosed(list, changes.IsOutward, lines.Points, result.Boundary);
   }
@@ -376,18 +389,17 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   ExtractedBoundary found;
   Mesh mesh; // of all triangles, if the sweep fails
   if (isExact &&
-    MeasureBySweep(list, options.NumberOfThreads, SubProgress(progress, 0.0, 0.6), measured))
+    MeasureBySweep(list, options.NumberOfThreads, progress.Between(0.0, 0.6), measured))
   {
-    found =
-      FindOutline(std::move(measured), ExtractionOf(options, SubProgress(progress, 0.6, 1.0)));
+    found = FindOutline(std::move(measured), ExtractionOf(options, progress.Between(0.6, 1.0)));
   }
   else
   {
     measured = MeasuredTriangles();
     // After a sweep that failed, or from the start.
     const double begin = isExact ? 0.6 : 0.0, proven = isExact ? 0.7 : 0.45;
-    mesh = ProvenMesh(list, options.NumberOfThreads, SubProgress(progress, begin, proven));
-    found = ExtractBoundary(mesh, ExtractionOf(options, SubProgress(progress, proven, 0.9)));
+    mesh = ProvenMesh(list, options.NumberOfThreads, progress.Between(begin, proven));
+    found = ExtractBoundary(mesh, ExtractionOf(options, progress.Between(proven, 0.9)));
   }
   if (found.Vertices.Count() == 0)
   {
@@ -399,15 +411,15 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   {
     result.Warning = Message();
     OutwardTriangles outward =
-      FindOutward(mesh, result.Boundary, options.RecoverBoundary, SubProgress(progress, 0.9, 0.95));
+      FindOutward(mesh, result.Boundary, options.RecoverBoundary, progress.Between(0.9, 0.95));
     isOutward = std::move(outward.IsOutward);
-    ApplyInwardNormalTest(mesh, outward.IsOnBoundary, isOutward, SubProgress(progress, 0.95, 0.97));
+    ApplyInwardNormalTest(mesh, outward.IsOnBoundary, isOutward, progress.Between(0.95, 0.97));
     result.NumberOfPointsLeftOut = 0;
   }
   if (mesh.NumberOfTriangles() > 0)
   {
     // Triangles may have been reoriented.
-    PutBack(list, std::nullopt, mesh, SubProgress(progress, 0.97, 1.0), changes);
+    PutBack(list, std::nullopt, mesh, progress.Between(0.97, 1.0), changes);
   }
   changes.IsOutward = std::move(isOutward);
 }
@@ -451,7 +463,7 @@ void WriteSides(const TriangleList& list, const Changes& changes, const TrimOpti
     outwardBefore[range + 1] =
       static_cast<Index>(std::count(flags.begin() + begin, flags.begin() + end, char(1)));
   };
-  ForEachRange(all, threads, SubProgress(progress, 0.0, 0.1), count, atOnce);
+  ForEachRange(all, threads, progress.Between(0.0, 0.1), count, atOnce);
   std::partial_sum(outwardBefore.begin(), outwardBefore.end(), outwardBefore.begin());
   const Index sizes[2] = { all - outwardBefore[ranges], outwardBefore[ranges] };
   result.NumberOfOutwardTriangles = sizes[1];
@@ -464,18 +476,18 @@ void WriteSides(const TriangleList& list, const Changes& changes, const TrimOpti
     sides[side]->Corners.Resize(sides[side]->IsWholeList ? 0 : 3 * size);
     sides[side]->Parents.Resize(options.ReturnParents ? size : 0);
   }
-  const auto write = [&](Index range, Index t, Index endOfRange) {
+  const auto write = [&](Index range, Index t, Index rangeEnd) {
     std::size_t next[2] = { static_cast<std::size_t>(t - outwardBefore[range]),
       static_cast<std::size_t>(outwardBefore[range]) };
     auto changed = std::lower_bound(changes.Changed.begin(), changes.Changed.end(), t);
-    while (t < endOfRange)
+    while (t < rangeEnd)
     {
       // A run of triangles on the same side.
       const char flag = flags[t];
       const char* const first = flags.data() + t;
-      const void* other = std::memchr(first, 1 - flag, static_cast<std::size_t>(endOfRange - t));
+      const void* other = std::memchr(first, 1 - flag, static_cast<std::size_t>(rangeEnd - t));
       const Index end =
-        other ? t + static_cast<Index>(static_cast<const char*>(other) - first) : endOfRange;
+        other ? t + static_cast<Index>(static_cast<const char*>(other) - first) : rangeEnd;
       TrimmedSide& side = *sides[static_cast<int>(flag)];
       std::size_t& place = next[static_cast<int>(flag)];
       if (!side.IsWholeList)
@@ -490,7 +502,7 @@ void WriteSides(const TriangleList& list, const Changes& changes, const TrimOpti
       t = end;
     }
   };
-  ForEachRange(all, threads, SubProgress(progress, 0.1, 1.0), write, atOnce);
+  ForEachRange(all, threads, progress.Between(0.1, 1.0), write, atOnce);
 }
 
 /** @param[in] find  finds the changes, and the rest of the result */
@@ -499,8 +511,8 @@ Trimmed TrimBy(const TriangleList& triangles, const TrimOptions& options, const 
 {
   Trimmed result;
   Changes changes;
-  find(SubProgress(options.Monitor, 0.0, 0.95), changes, result);
-  WriteSides(triangles, changes, options, SubProgress(options.Monitor, 0.95, 1.0), result);
+  find(options.Monitor.Between(0.0, 0.95), changes, result);
+  WriteSides(triangles, changes, options, options.Monitor.Between(0.95, 1.0), result);
   Report(options.Monitor, 1.0);
   return result;
 }
@@ -581,7 +593,7 @@ std::optional<Trimmed> TrimNearOutline(
   const TriangleList& triangles, OutlineMesh&& mesh, const TrimOptions& options)
 {
   std::optional<ExtractedBoundary> found = FindSharedOutline(
-    triangles, std::move(mesh), ExtractionOf(options, SubProgress(options.Monitor, 0.0, 0.95)));
+    triangles, std::move(mesh), ExtractionOf(options, options.Monitor.Between(0.0, 0.95)));
   if (!found || found->Vertices.Count() == 0)
   {
     return std::nullopt;

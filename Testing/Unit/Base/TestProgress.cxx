@@ -17,8 +17,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -84,7 +86,7 @@ TEST(Progress, OfPartsDoesNotFallWhereTheyMeet)
         EXPECT_LE(fraction, end);
         return true;
       };
-      SubProgress(progress, begin, end)(1.0);
+      progress.Between(begin, end)(1.0);
     }
   }
 }
@@ -183,12 +185,12 @@ TEST(Progress, IsTheLastReportWhereItAsksToStop)
       int reports = 0;
       std::size_t asked = 0;
       const Progress stop = [&](double) {
-        asked = WorkOfAll();
+        asked = TotalWork();
         return ++reports < last;
       };
       EXPECT_THROW(compute(stop), Aborted);
       EXPECT_EQ(reports, last);
-      EXPECT_LT(WorkOfAll() - asked, 30000u); // what was done before, and had not been counted yet
+      EXPECT_LT(TotalWork() - asked, 30000u); // what was done before, and had not been counted yet
     }
   }
 }
@@ -243,6 +245,67 @@ TEST(Progress, OfFillingOneLargeHoleIsNotSilent)
     EXPECT_GT(result.NumberOfPoints(), 250000);
   }),
     0.1);
+}
+
+TEST(Progress, OfFillingRisesWhileALatticeIsSought)
+{
+  const Mesh& mesh = LargeSheet();
+  std::vector<double> coordinates;
+  for (const Point2& p : mesh.Points)
+  {
+    coordinates.insert(coordinates.end(), { p.X, p.Y, 0.1 * p.X * p.Y });
+  }
+  PointView points;
+  points.Double = coordinates.data();
+  points.Count = mesh.NumberOfPoints();
+  FillOptions options;
+  const std::vector<double> fractions = FractionsOf([&](const Progress& progress) {
+    options.Monitor = progress;
+    FillHoles(mesh, points, FindHoles(mesh), options);
+  });
+  // The search has the first fiftieth.
+  const auto end = std::upper_bound(fractions.begin(), fractions.end(), 0.02);
+  const std::set<double> ofSearch(fractions.begin(), end);
+  ASSERT_GT(ofSearch.size(), 2u);
+  EXPECT_LT(*std::next(ofSearch.begin()), 0.015);
+}
+
+TEST(Progress, OfCuttingLinesAtTheirCrossingsRises)
+{
+  // 40,000 crossings, which are doubles: all are cut in one round.
+  testing_points::Cloud cloud, ends;
+  ConstraintLines lines;
+  const auto add = [&](double x, double y, double u, double v) {
+    ends.Add(x, y);
+    ends.Add(u, v);
+    for (int end = 2; end > 0; --end)
+    {
+      lines.Vertices.push_back(ends.Count() - end);
+    }
+    lines.Offsets.push_back(ends.Count());
+    lines.IsClosed.push_back(0);
+    lines.Cells.push_back(static_cast<Index>(lines.Cells.size()));
+  };
+  constexpr int count = 200;
+  for (int i = 0; i < count; ++i)
+  {
+    add(i, -1.0, i, count);
+    add(-1.0, i, count, i);
+  }
+  lines.Points = ends.View();
+  double last = 0.0;
+  std::size_t longest = 0, since = TotalWork();
+  const auto rise = [&](double fraction) {
+    if (fraction > last)
+    {
+      last = fraction;
+      longest = std::max(longest, TotalWork() - since);
+      since = TotalWork();
+    }
+    return true;
+  };
+  EXPECT_EQ(CutLines(cloud.View(), lines, DuplicatePolicy::KeepFirst, rise).Added.size(), 40800u);
+  EXPECT_LT(longest, 260000u);
 }
 
 TEST(Progress, OfTriangulatingPointsThatAreSlowIsNotSilent)

@@ -564,6 +564,25 @@ TEST(Fill, FailsWhereSquaresLeaveTheRangeOfNumbers)
   }
 }
 
+TEST(Fill, MeasuresHolesUpToTheBoundsOfSizesAndThese)
+{
+  for (const double size : { 1e150, 1e-150 })
+  {
+    for (const double factor : { 0.999, 1.0, 1.001 })
+    {
+      // So flat that the diagonal is as long as the hole.
+      Mesh mesh = Draw({ "###", "# #", "###" });
+      for (Point2& p : mesh.Points)
+      {
+        p = { p.X * factor * size, p.Y * 1e-10 * size };
+      }
+      const HoleReport report = MeasureHole(mesh, FindHoles(mesh), 0, FillOptions());
+      EXPECT_EQ(report.Size, factor * size);
+      EXPECT_EQ(std::isnan(report.Area), size > 1.0 ? factor > 1.0 : factor < 1.0) << factor;
+    }
+  }
+}
+
 TEST(Fill, FillsThousandsOfHoles)
 {
   const int size = 121;

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -537,6 +538,56 @@ TEST(Heights, OfAttributesAreFoundInTheSameWay)
     }
     EXPECT_GT(numbers, run.Patches.NumberOfPoints() * 9 / 10);
   }
+}
+
+TEST(Heights, OfSplinesLeaveOutPartsOfLessThanAQuarterOfThePoints)
+{
+  // A cliff cuts points off the others around the hole. Which of them a spline has for centres is
+  // seen in an attribute that does not know the cliff.
+  const Mesh mesh = Sheet(20, Disc(10, 10, 3));
+  std::set<Index> rim, known;
+  const Outcome plain = Fill(
+    mesh, [](const Point2& p) { return p.X; }, Interpolation::ThinPlate);
+  for (const Index id : plain.Patches.Triangles)
+  {
+    if (id < mesh.NumberOfPoints())
+    {
+      rim.insert(id);
+    }
+  }
+  for (std::size_t h = 0; h < mesh.Triangles.size(); ++h)
+  {
+    for (std::size_t k = h - h % 3; k < h - h % 3 + 3; ++k)
+    {
+      if (rim.count(mesh.Triangles[h]))
+      {
+        known.insert(mesh.Triangles[k]);
+      }
+    }
+  }
+  const std::size_t quarter = known.size() / 4;
+  ASSERT_EQ(4 * quarter, known.size());
+  std::vector<Index> fromTheLeft(known.begin(), known.end());
+  std::stable_sort(fromTheLeft.begin(), fromTheLeft.end(),
+    [&](Index a, Index b) { return mesh.Points[a].X < mesh.Points[b].X; });
+  const auto attributeBeside = [&](std::size_t high) {
+    std::vector<char> isHigh(mesh.Points.size(), 0);
+    for (std::size_t i = 0; i < high; ++i)
+    {
+      isHigh[fromTheLeft[i]] = 1;
+    }
+    FillOptions options;
+    options.Method = Interpolation::ThinPlate;
+    options.Attributes = { [&](Index id) { return std::sin(mesh.Points[id].X); } };
+    const Elevation elevation = [&](const Point2& p) {
+      const auto id = std::find(mesh.Points.begin(), mesh.Points.end(), p) - mesh.Points.begin();
+      return p.X + (isHigh[id] ? 100.0 : 0.0);
+    };
+    return Fill(mesh, elevation, options).Patches.Attributes[0];
+  };
+  const std::vector<double> expected = attributeBeside(0);
+  EXPECT_EQ(attributeBeside(quarter), expected);
+  EXPECT_NE(attributeBeside(quarter - 1), expected);
 }
 
 TEST(Heights, TakeValuesOfAnySize)

@@ -24,6 +24,7 @@ using testing_surfaces::Draw;
 using testing_surfaces::ExpectPatchesFit;
 using testing_surfaces::Fill;
 using testing_surfaces::Judge;
+using testing_surfaces::Make;
 using testing_surfaces::Outcome;
 using testing_surfaces::Quality;
 using testing_surfaces::TurnedSheet;
@@ -319,6 +320,45 @@ TEST(Patch, DoesNotFillEveryNodeOfAThinnedLattice)
   const double area = run.Patches.Reports[0].Area;
   EXPECT_LT(run.Patches.NumberOfPoints(), 0.3 * area);
   EXPECT_GT(run.Patches.NumberOfPoints(), 0.05 * area);
+}
+
+TEST(Patch, TakesNodesOnlyWhereTheWholeBoundaryIsOnThemInBothDirections)
+{
+  const Mesh mesh = Draw({ "#####", "#   #", "#   #", "#   #", "#####" });
+  const Holes holes = FindHoles(mesh);
+  const Lattice lattice{ { 0, 0 }, { 1, 0 }, { 0, 1 } };
+  const auto kindWithout = [&](Index vertex, double dx, double dy) {
+    Mesh moved = mesh;
+    moved.Points[vertex] = { moved.Points[vertex].X + dx, moved.Points[vertex].Y + dy };
+    const VertexStars stars(moved);
+    return PlanPatch(moved, &stars, holes, 0, 9.0, 0.0, &lattice).Kind;
+  };
+  holes.VisitEdges(0, [&](Index vertex, Index) {
+    for (const double off : { -0.02, 0.02 })
+    {
+      EXPECT_NE(kindWithout(vertex, off, 0.0), Arrangement::Nodes) << vertex;
+      EXPECT_NE(kindWithout(vertex, 0.0, off), Arrangement::Nodes) << vertex;
+      EXPECT_EQ(kindWithout(vertex, 0.4 * off, -0.4 * off), Arrangement::Nodes) << vertex;
+    }
+  });
+}
+
+TEST(Patch, TakesNodesBesideTrianglesOfUpToOneAndThreeQuarterCells)
+{
+  // The triangles with an edge of the hole's four are most of those at its vertices.
+  const Lattice lattice{ { 0, 0 }, { 1, 0 }, { 0, 1 } };
+  for (const double cells : { 1.5, 1.75, 1.75 + 0x1p-20, 2.0 })
+  {
+    const double low = -2.0 * cells, high = 1.0 + 2.0 * cells;
+    const Mesh mesh = Make({ { low, low }, { high, low }, { high, high }, { low, high }, { 0, 0 },
+                             { 1, 0 }, { 1, 1 }, { 0, 1 } },
+      { 0, 5, 4, 0, 1, 5, 1, 6, 5, 1, 2, 6, 2, 7, 6, 2, 3, 7, 3, 4, 7, 3, 0, 4 });
+    const VertexStars stars(mesh);
+    const Holes holes = FindHoles(mesh);
+    ASSERT_EQ(holes.Count(), 1);
+    const PatchPlan plan = PlanPatch(mesh, &stars, holes, 0, 1.0, 0.0, &lattice);
+    EXPECT_EQ(plan.Kind == Arrangement::Nodes, cells <= 1.75) << cells;
+  }
 }
 
 TEST(Patch, FillsNodesAlsoBehindLongEdges)

@@ -553,6 +553,29 @@ TEST(Lattice, IsFoundWhereMostPointsAreDuplicates)
   }
 }
 
+TEST(Lattice, IsLookedForInTheWholeCloudWhereThisCannotBeCut)
+{
+  std::mt19937_64 random(59);
+  for (int trial = 0; trial < 100; ++trial)
+  {
+    // Points that fit one cell, though they are more than a crowd; and those of one column or row.
+    const int kind = trial % 3;
+    LatticeSample sample;
+    const double width = Uniform(random), height = Uniform(random);
+    while (sample.Points.size() < 400)
+    {
+      const double x = width * Uniform(random), y = height * Uniform(random);
+      sample.Points.push_back({ kind == 1 ? 0.3 : x, kind == 2 ? 0.7 : y });
+      sample.Box::Add(sample.Points.back());
+    }
+    std::sort(sample.Points.begin(), sample.Points.end(), IsLower);
+    sample.CloudSize = sample.Count = kind == 0 ? 400.0 : 1e6;
+    const Box place = FullestPlace(sample);
+    EXPECT_EQ(place.Low, sample.Low) << trial;
+    EXPECT_EQ(place.High, sample.High) << trial;
+  }
+}
+
 TEST(Lattice, ReportsWithinLongRows)
 {
   // Rows as long as they may be, and one fan of nearly a whole row.

@@ -380,6 +380,26 @@ TEST(Holes, WithAnIslandThatTouchesTheRimAreMarked)
   EXPECT_EQ(holes.Touched[0], 1);
 }
 
+TEST(Holes, WithAnIslandThatTouchesTheRimAreMarkedOnEverySide)
+{
+  // An island whose corner lies inside an edge of the rim, turned by quarters.
+  Mesh mesh = Make({ { -6, -6 }, { 6, -6 }, { 6, 6 }, { -6, 6 }, { -3, -3 }, { 3, -3 }, { 3, 3 },
+                     { -3, 3 }, { -3, 0 }, { -1, -1 }, { -1, 1 } },
+    { 0, 1, 4, 1, 5, 4, 1, 2, 5, 2, 6, 5, 2, 3, 6, 3, 7, 6, 3, 0, 7, 0, 4, 7, 8, 9, 10 });
+  for (int quarter = 0; quarter < 4; ++quarter)
+  {
+    const Holes holes = FindHoles(mesh);
+    ASSERT_EQ(holes.Count(), 1) << quarter;
+    EXPECT_EQ(NumberOfIslands(holes, 0), 1) << quarter;
+    EXPECT_EQ(holes.Touched[0], 1) << quarter;
+    EXPECT_EQ(holes.ContactVertices, std::vector<Index>{ 8 }) << quarter;
+    for (Point2& p : mesh.Points)
+    {
+      p = { -p.Y, p.X };
+    }
+  }
+}
+
 TEST(Holes, WithTwoPointsAtOnePlaceAreMarkedAndTheOthersNot)
 {
   // An island whose corner lies on a corner of the rim, but is another point.

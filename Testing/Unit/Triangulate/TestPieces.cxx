@@ -252,7 +252,7 @@ struct FoundInParts
     elevation::Lattice steps;
     if (FitLattice(sample, std::move(there), tolerance, Progress(), steps))
     {
-      const NodeOfPoint nodeOf(steps);
+      const NodeFinder nodeOf(steps);
       const NodeBox nodes = FindNodeBox(nodeOf, sample, steps, [&]() {
         NodeBox box;
         for (Index k = 0; k < cloud.Count(); ++k)
@@ -482,7 +482,7 @@ TEST(SharedLattice, HoldsAllPointsOfACircleInItsBox)
       continue;
     }
     ++decided;
-    const Box box = lattice.BoxOfCircle(a, b, c);
+    const Box box = lattice.CircleBox(a, b, c);
     for (Index k = 0; k < cloud.Count(); ++k)
     {
       const LatticeNode d = lattice.NodeOf(at(k));

@@ -324,6 +324,27 @@ TEST(Simplify, OfAPlaneOnlyTheCornersOfTheHullAreLeft)
   }
 }
 
+TEST(Simplify, OfAPlaneOnlyTheCornersAreLeftWherePointsLieBesideTheirNodesAndTriangles)
+{
+  // Nodes on the diagonal: by their coordinates, they are in one triangle or the other.
+  for (const double angle : { 0.3, 0.9, 1.4 })
+  {
+    const double c = std::cos(angle), s = std::sin(angle);
+    Cloud cloud;
+    for (int i = 0; i < 2500; ++i)
+    {
+      const double u = i % 50, v = i / 50;
+      const double x = std::round(1000.0 * (c * u - s * v)) / 100.0;
+      const double y = std::round(1000.0 * (s * u + c * v)) / 100.0;
+      cloud.Add(x, y, 0.3 * x - 0.2 * y + 7.0);
+    }
+    const Triangulation made = Triangulate(cloud.View(), WithError(0.1));
+    EXPECT_TRUE(made.LatticeFound);
+    EXPECT_EQ(ChosenOf(cloud, made), (std::vector<Index>{ 0, 49, 2450, 2499 })) << angle;
+    EXPECT_LT(made.LargestElevationError, 1e-9);
+  }
+}
+
 TEST(Simplify, ASpikeAndItsFootAreKept)
 {
   Cloud cloud;
@@ -534,6 +555,31 @@ TEST(Simplify, WithDataDependentEdgesEveryPointIsWithinTheErrorForFewerPoints)
     }
   }
   EXPECT_LT(static_cast<double>(fewer), 0.92 * static_cast<double>(few)) << fewer << " " << few;
+}
+
+TEST(Simplify, WithDataDependentEdgesIsTheSameInAnyUnitOfElevation)
+{
+  std::mt19937_64 random(14);
+  const Cloud cloud = CloudOf(0, 5000, random);
+  const auto trianglesIn = [&](double unit) {
+    Cloud scaled;
+    for (Index i = 0; i < cloud.Count(); ++i)
+    {
+      const Point2 p = cloud.View().At(i);
+      scaled.Add(p.X, p.Y, unit * cloud.View().Elevation(i));
+    }
+    DelaunayOptions options = WithError(unit);
+    options.Edges = EdgeCriterion::DataDependent;
+    const Triangulation made = Triangulate(scaled.View(), options);
+    EXPECT_EQ(made.LatticeFound, false);
+    return std::vector<Index>(made.Triangles.begin(), made.Triangles.end());
+  };
+  const std::vector<Index> expected = trianglesIn(1.0);
+  EXPECT_GT(expected.size(), 3u * 500u);
+  for (const double unit : { 0x1p-20, 0x1p-6, 0x1p6, 0x1p20 })
+  {
+    EXPECT_EQ(trianglesIn(unit), expected) << unit;
+  }
 }
 
 TEST(Simplify, WithDataDependentEdgesLinesStayEdges)

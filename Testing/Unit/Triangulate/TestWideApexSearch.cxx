@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Base/Predicates.h"
+#include "Kernel/Grow/ApexSearch.h"
 #include "Kernel/Grow/WideApexSearch.h"
 #include "PointSets.h"
 
@@ -231,5 +232,42 @@ TEST_P(EachInstructionSet, ProvesTheApexThatIsTheLastOfASmallerWindow)
     cloud.Add(10.7, 10.35);
     cloud.Add(10.71, 10.3);
     EXPECT_EQ(IsLastProved(cloud, GetParam()), count <= 56) << count;
+  }
+}
+
+TEST(ApexSearch, FindsTheApexOverAnyEdgeWhateverItsOriginWasBefore)
+{
+  std::mt19937_64 random(9);
+  Cloud cloud;
+  for (int i = 0; i < 30; ++i)
+  {
+    const double x = Uniform(random);
+    cloud.Add(x, Uniform(random));
+  }
+  const BinGrid grid(cloud.View(), DuplicatePolicy::KeepFirst, Progress());
+  for (const InstructionSet set : { InstructionSet::Scalar, InstructionSet::AVX2 })
+  {
+    DelaunayOptions options;
+    options.Instructions = set;
+    WorkBudget budget(1000, 1000, 1000);
+    ApexSearch search(grid, options, budget);
+    int found = 0;
+    for (Index a = 0; a < grid.NumberOfPoints(); ++a)
+    {
+      for (Index b = 0; b < grid.NumberOfPoints(); ++b)
+      {
+        const Index apex = a == b ? None : Apex(grid, a, b);
+        if (apex != None && Apex(grid, b, apex) == a) // an edge of the triangulation
+        {
+          search.SetOrigin(apex, None);
+          const std::int64_t before = budget.Work();
+          EXPECT_EQ(search.FindAnywhere(a, b), apex) << a << " " << b;
+          // Each box and point is looked at once, none is compared exactly.
+          EXPECT_LE(budget.Work() - before, 30 + 8) << a << " " << b;
+          ++found;
+        }
+      }
+    }
+    EXPECT_GT(found, 100);
   }
 }

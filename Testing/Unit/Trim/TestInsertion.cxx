@@ -638,6 +638,31 @@ TEST(InsertRings, RefusesRingsThatCrossInPointsOfBoth)
   EXPECT_EQ(messageOf(square, { { 4, 4 }, { 1, 2 }, { 2, 1 } }), "");
 }
 
+TEST(InsertRings, TakesASpurThroughAPointOfAnotherRing)
+{
+  // One ring runs out and straight back; the other one has a point there, or a corner.
+  const Mesh before = LatticeMesh(9);
+  const auto messageOf = [&](const std::vector<Point2>& spurred, const std::vector<Point2>& other) {
+    Boundary boundary;
+    boundary.Add(spurred);
+    boundary.Add(other);
+    return MessageOf(before, boundary);
+  };
+  const std::vector<Point2> other{ { 5, 1 }, { 7, 1 }, { 7, 3 }, { 5, 3 }, { 5, 2 } };
+  const std::vector<Point2> ahead{ { 1, 1 }, { 3, 1 }, { 3, 2 }, { 6, 2 }, { 3, 2 }, { 3, 3 },
+    { 1, 3 } };
+  // The same where the spur is at the ends of the list, and where it is one of several.
+  const std::vector<Point2> last{ { 3, 2 }, { 3, 3 }, { 1, 3 }, { 1, 1 }, { 3, 1 }, { 3, 2 },
+    { 6, 2 } };
+  const std::vector<Point2> bent{ { 1, 1 }, { 3, 1 }, { 3, 2 }, { 6, 2 }, { 6, 2.5 }, { 6, 2 },
+    { 3, 2 }, { 3, 3 }, { 1, 3 } };
+  for (const std::vector<Point2>& spurred : { ahead, last, bent })
+  {
+    EXPECT_EQ(messageOf(spurred, other), "no error");
+    EXPECT_EQ(messageOf({ spurred.rbegin(), spurred.rend() }, other), "no error");
+  }
+}
+
 TEST(InsertRings, RefusesRingsThatCrossAlongEdges)
 {
   Mesh mesh = MeshOf({ { -9, -9 }, { 9, -9 }, { 9, 9 }, { -9, 9 } }, { 0, 1, 2, 0, 2, 3 });
@@ -1447,6 +1472,26 @@ TEST(InsertRings, AcrossBordersThatLieOnEachOther)
       "passes (6, 1.5), where borders of the mesh lie on each other");
     EXPECT_HAS(
       messageOf({ { 6, -1 }, { 9, 4 }, { 6, 7 } }), "where borders of the mesh lie on each other");
+  }
+}
+
+TEST(InsertRings, RefusesAPointBesideBordersThatLieOnEachOther)
+{
+  // Two tiles with a slanted border, which have no vertices in common. The ring's first point is
+  // one of the border but for rounding, by which it lies in the tile that the ring is not in.
+  const Mesh mesh =
+    MeshOf({ { 0, -1 }, { 1, 2 }, { -3, 2 }, { -3, -1 }, { 0, -1 }, { 1, 2 }, { 4, -1 }, { 4, 2 } },
+      { 0, 1, 2, 0, 2, 3, 4, 6, 7, 4, 7, 5 });
+  const std::vector<std::vector<Point2>> triangles{ { { 2.0 / 3.0, 1 }, { 2, 0.25 }, { 2, 0.75 } },
+    { { 1.25 / 3.0, 0.25 }, { -2, 0.375 }, { -2, -0.125 } } };
+  for (const std::vector<Point2>& triangle : triangles)
+  {
+    for (const bool isTurned : { false, true })
+    {
+      Boundary boundary;
+      boundary.Add(isTurned ? std::vector<Point2>(triangle.rbegin(), triangle.rend()) : triangle);
+      EXPECT_HAS(MessageOf(mesh, boundary), "where borders of the mesh lie on each other without");
+    }
   }
 }
 

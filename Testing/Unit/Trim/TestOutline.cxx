@@ -75,7 +75,6 @@ struct RuleByTheLetter
   Index NumberOfDoubtful = 0; ///< by short edges
   Index NumberOfOthers = 0;   ///< of these, those that no small group has
   Index NumberOfSlivers = 0;
-  Index NumberOfSliversBack = 0;
   Index NumberInBays = 0;
 
   RuleByTheLetter(const Mesh& mesh, double tolerance)
@@ -160,14 +159,14 @@ struct RuleByTheLetter
       this->Keep[t] = this->Keep[t] || ratios[t] <= this->Tolerance;
     }
     const std::vector<char> before = this->Keep;
-    // Slivers with two corners at the border, until there are none.
+    // Slivers with two corners at the border and their longest edge there, until there are none.
     std::vector<char> isSliver(count, 0), atEdge = atBorder;
     for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
     {
       atEdge[mesh.Origin(h)] |= !before[Mesh::Triangle(h)];
     }
-    const auto isSliverOver = [&](Index t, double length) {
-      const double height = std::fabs(testing_surfaces::TwiceArea(mesh, t)) / length;
+    const auto isFlat = [&](Index t) {
+      const double height = std::fabs(testing_surfaces::TwiceArea(mesh, t)) / this->Longest(t);
       return height < 0.1 * this->SpacingOf(shortEdges, t);
     };
     const std::vector<char> atBorderOfAll = atEdge;
@@ -177,7 +176,7 @@ struct RuleByTheLetter
         mesh.Origin(3 * t + 2) };
       const bool isAtEdge =
         atBorderOfAll[corners[0]] || atBorderOfAll[corners[1]] || atBorderOfAll[corners[2]];
-      for (int k = 0; k < 3 && isAtEdge && isSliverOver(t, this->Longest(t)); ++k)
+      for (int k = 0; k < 3 && isAtEdge && isFlat(t); ++k)
       {
         atEdge[corners[k]] = 1;
       }
@@ -191,35 +190,14 @@ struct RuleByTheLetter
         const bool isOpen = mesh.IsBorder(h) || !this->Keep[Mesh::Triangle(mesh.Twin(h))];
         const bool isAtEdge =
           atEdge[mesh.Origin(h)] + atEdge[mesh.Destination(h)] + atEdge[mesh.Apex(h)] >= 2;
-        if (this->Keep[t] && isOpen && isAtEdge)
+        const bool isLongest =
+          std::sqrt(this->Squared(mesh.Origin(h), mesh.Destination(h))) == this->Longest(t);
+        if (this->Keep[t] && isOpen && isAtEdge && isLongest && isFlat(t))
         {
-          if (isSliverOver(t, std::sqrt(this->Squared(mesh.Origin(h), mesh.Destination(h)))))
-          {
-            this->Keep[t] = 0;
-            isSliver[t] = 1;
-            ++this->NumberOfSlivers;
-            isDone = false;
-          }
-        }
-      }
-    }
-    for (bool isDone = false; !isDone;)
-    {
-      isDone = true;
-      for (Index t = 0; t < count; ++t)
-      {
-        for (Index h = 3 * t; h < 3 * t + 3; ++h)
-        {
-          const bool isLongest =
-            std::sqrt(this->Squared(mesh.Origin(h), mesh.Destination(h))) == this->Longest(t);
-          if (isSliver[t] && isLongest && !mesh.IsBorder(h) &&
-            this->Keep[Mesh::Triangle(mesh.Twin(h))])
-          {
-            this->Keep[t] = 1;
-            isSliver[t] = 0;
-            ++this->NumberOfSliversBack;
-            isDone = false;
-          }
+          this->Keep[t] = 0;
+          isSliver[t] = 1;
+          ++this->NumberOfSlivers;
+          isDone = false;
         }
       }
     }
@@ -252,12 +230,11 @@ struct RuleByTheLetter
       {
         const bool isAtBorder =
           mesh.IsBorder(3 * t) || mesh.IsBorder(3 * t + 1) || mesh.IsBorder(3 * t + 2);
-        sum += isAtBorder ? 4.0 : before[t] ? 0.0 : share(t);
+        sum += isAtBorder ? 1.0 : before[t] ? 0.0 : share(t);
       }
       for (const Index t : lake)
       {
         this->Keep[t] = sum < 1.0;
-        isInBay[t] = isInBay[t] && sum >= 4.0;
       }
     }
     for (Index t = 0; t < count; ++t)
@@ -407,7 +384,7 @@ TEST(ExtractBoundary, FollowsItsRuleToTheLetter)
 {
   Random random(17);
   Index numberOfDoubtful = 0, numberOfOthers = 0, numberOfOutward = 0, numberOfSlivers = 0,
-        numberOfSliversBack = 0, numberInBays = 0;
+        numberInBays = 0;
   for (int round = 0; round < 4; ++round)
   {
     // Few enough that the typical triangle is found from all of them; dense on one side.
@@ -427,7 +404,6 @@ TEST(ExtractBoundary, FollowsItsRuleToTheLetter)
       numberOfDoubtful += rule.NumberOfDoubtful;
       numberOfOthers += rule.NumberOfOthers;
       numberOfSlivers += rule.NumberOfSlivers;
-      numberOfSliversBack += rule.NumberOfSliversBack;
       numberInBays += rule.NumberInBays;
       numberOfOutward += static_cast<Index>(std::count(rule.Keep.begin(), rule.Keep.end(), 0));
       ExtractOptions options;
@@ -442,7 +418,6 @@ TEST(ExtractBoundary, FollowsItsRuleToTheLetter)
   EXPECT_GT(numberOfOthers, numberOfOutward + 100);
   EXPECT_GT(numberOfOutward, 100);
   EXPECT_GT(numberOfSlivers, 20);
-  EXPECT_GT(numberOfSliversBack, 2);
   EXPECT_GT(numberInBays, 100);
 }
 
@@ -722,7 +697,7 @@ double ErrorOfExtraction(const std::vector<Point2>& points, const Mask& mask,
 {
   const Mesh mesh = Delaunay(points);
   const ExtractedBoundary boundary = ExtractBoundary(mesh, ExtractOptions());
-  return ErrorOfOutline(mesh.Points, boundary.Vertices, mask, spacing, placing);
+  return SampledMask(mask, spacing, placing).Error(mesh.Points, boundary.Vertices);
 }
 
 /** The points on land of so many at random in the unit square. */

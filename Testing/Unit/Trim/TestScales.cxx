@@ -463,14 +463,12 @@ TEST(Scales, OfMaskedLinesFollowTheMask)
     }
     const Mesh mesh = Delaunay(points);
     const ExtractedBoundary boundary = ExtractBoundary(mesh, ExtractOptions());
-    EXPECT_LE(ErrorOfOutline(
-                mesh.Points, boundary.Vertices,
-                [](double x, double y) {
-                  return std::hypot(x - 0.5, y - 0.5) < 0.45 && std::hypot(x - 0.4, y - 0.55) > 0.15;
-                },
-                [](double, double) { return 1.0 / 60.0; }),
-      0.125)
-      << seed;
+    const SampledMask truth(
+      [](double x, double y) {
+        return std::hypot(x - 0.5, y - 0.5) < 0.45 && std::hypot(x - 0.4, y - 0.55) > 0.15;
+      },
+      [](double, double) { return 1.0 / 60.0; });
+    EXPECT_LE(truth.Error(mesh.Points, boundary.Vertices), 0.125) << seed;
     EXPECT_EQ(boundary.NumberOfPointsLeftOut, 0) << seed;
   }
 }

@@ -216,6 +216,42 @@ TEST(OutlineOfParts, IsThatOfTheWhole)
   std::cout << found << " found, of " << smaller << " less than two thirds of the triangles\n";
 }
 
+TEST(OutlineOfParts, DecidesBySpacingOnlyTrianglesWhoseSpacingsAreAllKnown)
+{
+  // Halves, so that spacings near their common border depend on the other one.
+  Random random(43);
+  Index decided = 0, open = 0;
+  for (int round = 0; round < 40; ++round)
+  {
+    const Surface surface = SurfaceOf(Delaunay(Torn(random, Cloud(random, 2, 2000))));
+    Surface half;
+    half.Coordinates = surface.Coordinates;
+    for (Index t = 0; t < surface.List().Count; ++t)
+    {
+      const auto corners = surface.Corners.begin() + 3 * t;
+      if (surface.At(*corners).Y < 0.5)
+      {
+        half.Corners.insert(half.Corners.end(), corners, corners + 3);
+      }
+    }
+    OutlinePart part;
+    ASSERT_TRUE(FindOutlinePart(half.List(), 4, ExtractOptions(), part));
+    for (std::size_t i = 0; i < part.Triangles.size(); ++i)
+    {
+      const Index* const corners = half.List().CornersOf(part.Triangles[i]);
+      const bool areKnown =
+        std::none_of(corners, corners + 3, [&](Index v) { return std::isnan(part.Spacings[v]); });
+      const bool isDecided = part.States[i] == Known::SurfaceBySpacing;
+      EXPECT_TRUE(areKnown || !isDecided)
+        << "round " << round << ", triangle " << part.Triangles[i];
+      decided += isDecided;
+      open += part.States[i] == Known::Doubtful && !areKnown;
+    }
+  }
+  EXPECT_GT(decided, 100);
+  EXPECT_GT(open, 0);
+}
+
 TEST(OutlineOfParts, NeedsFewTrianglesOfALargeSurface)
 {
   Random random(42);

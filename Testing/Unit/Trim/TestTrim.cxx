@@ -377,6 +377,29 @@ TEST(Trim, KeepsAllInsideAFarRing)
   EXPECT_EQ(kept.NumberOfRecoveredEdges, 0);
 }
 
+TEST(Trim, OfAllTrianglesAsTheyAreIsTheWholeList)
+{
+  // A ring along the border is near triangles, of which none changes.
+  Random random(19);
+  std::vector<Point2> points = ScatteredPoints(random, 300);
+  const std::vector<Point2> corners{ { -1, -1 }, { 2, -1 }, { 2, 2 }, { -1, 2 } };
+  points.insert(points.end(), corners.begin(), corners.end());
+  const Surface surface = SurfaceOf(points);
+  Boundary boundary;
+  boundary.Add(corners);
+  const BoundaryLines lines = LinesOf(boundary.Points, boundary.Lines);
+  for (const BoundaryEdges edges : { BoundaryEdges::FollowSurface, BoundaryEdges::Straight })
+  {
+    TrimOptions options;
+    options.Edges = edges;
+    const Trimmed trimmed = Trim(surface.List(), &lines, options);
+    EXPECT_EQ(trimmed.NumberOfOutwardTriangles, 0);
+    EXPECT_TRUE(trimmed.Kept.IsWholeList);
+    EXPECT_TRUE(trimmed.Kept.Corners.empty());
+    EXPECT_FALSE(trimmed.Outward.IsWholeList);
+  }
+}
+
 TEST(Trim, LongTrianglesAreNotTakenForTheirCorners)
 {
   // Few points far apart, and a ring between them that comes near no corner.

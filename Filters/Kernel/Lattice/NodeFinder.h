@@ -4,8 +4,8 @@
  * @file
  * The node of a lattice that a point lies on. Constant time.
  */
-#ifndef elevation_Lattice_NodeOfPoint_h
-#define elevation_Lattice_NodeOfPoint_h
+#ifndef elevation_Lattice_NodeFinder_h
+#define elevation_Lattice_NodeFinder_h
 
 #include "FindLattice.h"
 
@@ -49,10 +49,10 @@ struct NodeBox : Box
 };
 
 /** The node of a point, relative to the lower left one. */
-class NodeOfPoint
+class NodeFinder
 {
 public:
-  NodeOfPoint(const Lattice& lattice)
+  NodeFinder(const Lattice& lattice)
     : Origin(lattice.Origin)
     , IX(lattice.StepV.Y / lattice.Area())
     , IY(-lattice.StepV.X / lattice.Area())
@@ -119,7 +119,7 @@ private:
  */
 template <typename OfPoints>
 NodeBox FindNodeBox(
-  const NodeOfPoint& nodeOf, const Box& cloud, const Lattice& steps, OfPoints&& ofPoints)
+  const NodeFinder& nodeOf, const Box& cloud, const Lattice& steps, OfPoints&& ofPoints)
 {
   NodeBox box;
   for (const Point2& p : { cloud.Low, Point2{ cloud.High.X, cloud.Low.Y },

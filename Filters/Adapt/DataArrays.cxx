@@ -1,0 +1,281 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DataArrays.h"
+
+#include "UsedPoints.h"
+
+#include "vtkDataSetAttributes.h"
+#include "vtkIdList.h"
+#include "vtkMath.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVariant.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <new>
+
+namespace elevation
+{
+
+namespace
+{
+/** Tuples copied from one report to the next. */
+constexpr vtkIdType TuplesAtOnce = 65536;
+
+/** Copies all tuples of an array to the beginning of one of @a all tuples. */
+void CopyToBegin(
+  vtkAbstractArray* input, std::size_t all, const Progress& progress, vtkAbstractArray* output)
+{
+  const vtkIdType count = input->GetNumberOfTuples();
+  for (vtkIdType i = 0; i < count; i += TuplesAtOnce)
+  {
+    ReportStep(progress, static_cast<std::size_t>(i), all);
+    output->InsertTuples(i, std::min(TuplesAtOnce, count - i), i, input);
+  }
+}
+
+/** The tuples of @a input, followed by new ones without a value. */
+vtkSmartPointer<vtkAbstractArray> Extend(
+  vtkAbstractArray* input, vtkIdType numberOfNew, bool areIds, const Progress& progress)
+{
+  const vtkIdType count = input->GetNumberOfTuples();
+  const vtkSmartPointer<vtkAbstractArray> output = NewLike(input);
+  SetTuples(count + numberOfNew, output);
+  const std::size_t all = static_cast<std::size_t>(count + numberOfNew);
+  CopyToBegin(input, all, progress, output);
+  if (vtkArrayDownCast<vtkDataArray>(output.Get()))
+  {
+    // 0 is a valid id. As an unsigned number, -1 is the largest.
+    const vtkVariant value =
+      IsFloatingPoint(output) ? vtkVariant(vtkMath::Nan()) : vtkVariant(areIds ? -1 : 0);
+    const vtkIdType components = output->GetNumberOfComponents();
+    for (vtkIdType i = components * count; i < components * (count + numberOfNew); ++i)
+    {
+      ReportStep(progress, static_cast<std::size_t>(i / components), all);
+      output->SetVariantValue(i, value);
+    }
+  }
+  return output;
+}
+
+/** Sets the new tuples of an array, which follow those of the input. */
+void SetNewTuples(vtkAbstractArray* input, const NewValues& values, bool areNormals,
+  const Progress& progress, vtkAbstractArray* output)
+{
+  vtkDataArray* const numbers =
+    IsFloatingPoint(input) ? vtkArrayDownCast<vtkDataArray>(output) : nullptr;
+  if (numbers ? !values.Interpolated : !values.Nearest)
+  {
+    return;
+  }
+  const vtkIdType count = input->GetNumberOfTuples();
+  const vtkIdType numberOfNew = output->GetNumberOfTuples() - count;
+  for (vtkIdType i = values.First; i < numberOfNew; ++i)
+  {
+    ReportStep(progress, static_cast<std::size_t>(i), static_cast<std::size_t>(numberOfNew));
+    if (!numbers)
+    {
+      output->SetTuple(count + i, values.Nearest(i), input);
+      continue;
+    }
+    double squares = 0.0;
+    for (int c = 0; c < numbers->GetNumberOfComponents(); ++c)
+    {
+      const double value = values.Interpolated(i, c);
+      numbers->SetComponent(count + i, c, value);
+      squares += value * value;
+    }
+    for (int c = 0; areNormals && squares > 0.0 && c < 3; ++c)
+    {
+      numbers->SetComponent(count + i, c, numbers->GetComponent(count + i, c) / std::sqrt(squares));
+    }
+  }
+}
+
+/**
+ * Numbers the new tuples of an array of global ids after its largest.
+ * @return whether the type has numbers for them
+ */
+bool NumberNewTuples(vtkIdType numberOfNew, vtkAbstractArray* output)
+{
+  auto* const ids = vtkArrayDownCast<vtkDataArray>(output);
+  if (!ids || IsFloatingPoint(ids) || ids->GetNumberOfComponents() != 1)
+  {
+    return false;
+  }
+  const vtkIdType count = ids->GetNumberOfTuples() - numberOfNew;
+  double first = 0.0;
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    first = std::max(first, ids->GetComponent(i, 0) + 1.0);
+  }
+  constexpr double largest = 9007199254740992.0; // up to which doubles are exact
+  if (first + static_cast<double>(numberOfNew) > std::min(largest, ids->GetDataTypeMax()))
+  {
+    return false;
+  }
+  for (vtkIdType i = 0; i < numberOfNew; ++i)
+  {
+    ids->SetComponent(count + i, 0, first + static_cast<double>(i));
+  }
+  return true;
+}
+} // namespace
+
+void CopyTuples(vtkDataSetAttributes* input, vtkIdType count,
+  const std::function<vtkIdType(vtkIdType i)>& sourceOf, const Progress& progress,
+  vtkDataSetAttributes* output)
+{
+  output->CopyAllOn();
+  output->CopyAllocate(input, count);
+  vtkNew<vtkIdList> from;
+  vtkNew<vtkIdList> to;
+  for (vtkIdType begin = 0; begin < count; begin += TuplesAtOnce)
+  {
+    ReportStep(progress, static_cast<std::size_t>(begin), static_cast<std::size_t>(count));
+    const vtkIdType size = std::min(TuplesAtOnce, count - begin);
+    from->SetNumberOfIds(size);
+    to->SetNumberOfIds(size);
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      to->SetId(i, begin + i);
+      from->SetId(i, sourceOf(begin + i));
+    }
+    output->CopyData(input, from, to);
+  }
+}
+
+vtkSmartPointer<vtkPolyData> ChosenPoints(
+  vtkPolyData* source, const std::vector<Index>& chosen, const Progress& progress)
+{
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataType(source->GetPoints()->GetDataType());
+  vtkNew<vtkIdList> ids;
+  ids->SetNumberOfIds(static_cast<vtkIdType>(chosen.size()));
+  std::copy(chosen.begin(), chosen.end(), ids->begin());
+  SetTuples(ids->GetNumberOfIds(), points->GetData());
+  source->GetPoints()->GetPoints(ids, points);
+  data->SetPoints(points);
+  CopyTuples(
+    source->GetPointData(), ids->GetNumberOfIds(), [&](vtkIdType i) { return chosen[i]; }, progress,
+    data->GetPointData());
+  return data;
+}
+
+bool IsFloatingPoint(vtkAbstractArray* array)
+{
+  return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
+}
+
+bool IsGhostArray(vtkAbstractArray* array)
+{
+  return array->GetName() && !std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName());
+}
+
+vtkUnsignedCharArray* GhostsOf(vtkDataSetAttributes* data)
+{
+  return vtkUnsignedCharArray::SafeDownCast(
+    data->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+}
+
+vtkSmartPointer<vtkAbstractArray> NewLike(vtkAbstractArray* array)
+{
+  auto made = vtk::TakeSmartPointer(vtkAbstractArray::CreateArray(array->GetDataType()));
+  made->SetName(array->GetName());
+  made->SetNumberOfComponents(array->GetNumberOfComponents());
+  made->CopyComponentNames(array);
+  made->CopyInformation(array->GetInformation(), /*deep=*/1);
+  if (vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(made.Get()))
+  {
+    numbers->SetLookupTable(vtkArrayDownCast<vtkDataArray>(array)->GetLookupTable());
+  }
+  return made;
+}
+
+void SetTuples(vtkIdType count, vtkAbstractArray* array)
+{
+  array->SetNumberOfTuples(count);
+  if (array->GetNumberOfTuples() != count)
+  {
+    throw std::bad_alloc();
+  }
+}
+
+bool IsIdArray(vtkDataSetAttributes* data, vtkAbstractArray* array)
+{
+  return array == data->GetAbstractAttribute(vtkDataSetAttributes::GLOBALIDS) ||
+    array == data->GetAbstractAttribute(vtkDataSetAttributes::PEDIGREEIDS);
+}
+
+vtkSmartPointer<vtkPoints> AppendPoints(vtkPoints* input, vtkIdType numberOfNew,
+  const Progress& progress, const std::function<void(vtkIdType i, double* xyz)>& place)
+{
+  if (numberOfNew == 0)
+  {
+    return input;
+  }
+  const vtkIdType count = input ? input->GetNumberOfPoints() : 0;
+  const std::size_t all = static_cast<std::size_t>(count + numberOfNew);
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataType(input ? input->GetDataType() : VTK_DOUBLE);
+  points->SetNumberOfPoints(count + numberOfNew);
+  if (input)
+  {
+    CopyToBegin(input->GetData(), all, progress, points->GetData());
+  }
+  for (vtkIdType i = 0; i < numberOfNew; ++i)
+  {
+    ReportStep(progress, static_cast<std::size_t>(count + i), all);
+    double xyz[3];
+    place(i, xyz);
+    points->SetPoint(count + i, xyz);
+  }
+  return points;
+}
+
+void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSetAttributes* output,
+  const Progress& progress,
+  const std::function<NewValues(vtkAbstractArray*, vtkAbstractArray*, const Progress&)>& valuesOf)
+{
+  if (numberOfNew == 0)
+  {
+    output->PassData(input);
+    return;
+  }
+  for (int i = 0; i < input->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* before = input->GetAbstractArray(i);
+    const double count = input->GetNumberOfArrays();
+    const Progress ofArray = progress.Between(i / count, (i + 1) / count);
+    const bool areOriginalIds = IsOriginalIds(before);
+    const vtkSmartPointer<vtkAbstractArray> after = Extend(
+      before, numberOfNew, areOriginalIds || IsIdArray(input, before), ofArray.Between(0.0, 0.5));
+    const bool areGlobalIds =
+      before == input->GetAbstractAttribute(vtkDataSetAttributes::GLOBALIDS) &&
+      NumberNewTuples(numberOfNew, after);
+    if (valuesOf && !areGlobalIds && !areOriginalIds && !IsGhostArray(before))
+    {
+      const NewValues values = valuesOf(before, after, ofArray.Between(0.5, 0.7));
+      const bool areNormals = before == input->GetAbstractAttribute(vtkDataSetAttributes::NORMALS);
+      SetNewTuples(before, values, areNormals, ofArray.Between(0.7, 1.0), after);
+    }
+    const int index = output->AddArray(after);
+    for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)
+    {
+      // Values that repeat are no longer global ids.
+      if (input->GetAbstractAttribute(type) == before &&
+        (type != vtkDataSetAttributes::GLOBALIDS || areGlobalIds))
+      {
+        output->SetActiveAttribute(index, type);
+      }
+    }
+  }
+}
+
+} // namespace elevation

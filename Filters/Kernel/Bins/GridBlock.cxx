@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "GridBlock.h"
+
+#include "Kernel/Base/Base.h"
+#include "RowSorter.h"
+
+#include <cfloat>
+#include <utility>
+#include <vector>
+
+namespace elevation
+{
+namespace
+{
+using Node = BoxTree::Node;
+
+class BlockFiller
+{
+public:
+  BlockFiller(BinGrid& grid, GridBlock& block, const Progress& progress)
+    : Grid(grid)
+    , Filled(block)
+    , Monitor(progress)
+    , Rows(block.EndRow - block.FirstRow)
+    , Bins(static_cast<std::size_t>(this->Rows) * grid.Bins.Columns)
+    , Order(grid.Order.data() + block.Begin)
+    , Local{ grid.X.data() + block.Begin, grid.Y.data() + block.Begin,
+      grid.Ids.data() + block.Begin, Buffer<Index>(), grid.Bins.Columns }
+  {
+  }
+
+  void Run(const PointView& points, DuplicatePolicy policy)
+  {
+    this->SortIntoBins();
+    if (this->Filled.Pieces(this->Grid.Bins) > 1)
+    {
+      this->Filled.Nodes.Reserve(this->Filled.Count / 48); // growing it takes long
+    }
+    this->Filled.Root = BoxTree::Build(this->Local, this->Rows, this->Filled.Points,
+      this->Filled.Nodes, this->Monitor.Between(0.1, 0.6));
+    this->SortRows();
+    this->SetDuplicatesAside(points, policy);
+    if (!this->Filled.Duplicates.empty())
+    {
+      this->CloseGaps();
+    }
+    const Index* const starts = this->Local.Starts.data();
+    Index* const to = this->Grid.Starts.data() +
+      static_cast<std::size_t>(this->Filled.FirstRow) * this->Grid.Bins.Columns;
+    this->ForEach(this->Bins, 1.0, 1.0, [&](Index bin) { to[bin] = starts[bin]; });
+  }
+
+private:
+  /** Calls visit(0) to visit(count - 1), and reports fractions between from and to. */
+  template <typename Visit>
+  void ForEach(std::size_t count, double from, double to, Visit&& visit) const
+  {
+    const auto report = [&](double fraction) {
+      Report(this->Monitor, from + fraction * (to - from));
+    };
+    report(0.0);
+    ForEachReporting(0, static_cast<Index>(count), report, visit);
+  }
+
+  /**
+   * Counting sort. While filling, starts[b + 1] runs from the first slot of bin b to its end, which
+   * is the first slot of the next bin.
+   */
+  void SortIntoBins()
+  {
+    const BoxTree::Placed* const placed = this->Filled.Points;
+    const Index begin = this->Filled.Begin, count = this->Filled.Count;
+    this->Local.Starts.Resize(this->Bins + 1);
+    Index* const starts = this->Local.Starts.data();
+    this->ForEach(this->Bins + 1, 0.0, 0.0, [&](Index bin) { starts[bin] = 0; });
+    this->ForEach(count, 0.0, 0.05, [&](Index i) { ++starts[placed[i].Bin + 1]; });
+    Index sum = 0;
+    this->ForEach(
+      this->Bins, 0.05, 0.05, [&](Index bin) { sum += std::exchange(starts[bin + 1], sum); });
+    const Progress here = this->Monitor.Between(0.05, 0.05);
+    TouchPages(this->Grid.X, begin, begin + count, here);
+    TouchPages(this->Grid.Y, begin, begin + count, here);
+    TouchPages(this->Grid.Ids, begin, begin + count, here);
+    this->ForEach(count, 0.05, 0.1, [&](Index i) {
+      const Index slot = starts[placed[i].Bin + 1]++;
+      this->Local.X[slot] = placed[i].X;
+      this->Local.Y[slot] = placed[i].Y;
+      this->Local.Ids[slot] = placed[i].Id;
+    });
+  }
+
+  void SortRows()
+  {
+    const BinGrid::Layout& bins = this->Grid.Bins;
+    Progress inSort;
+    RowSorter sorter(this->Local, this->Filled.Points, inSort);
+    for (Index row = 0; row < this->Rows; ++row)
+    {
+      const auto slots = this->Local.Slots(row, 0, bins.Columns - 1);
+      double& lowest = this->Grid.RowLow[this->Filled.FirstRow + row] = DBL_MAX;
+      double& highest = this->Grid.RowHigh[this->Filled.FirstRow + row] = -DBL_MAX;
+      if (slots.first < slots.second)
+      {
+        const double done = 0.6 + 0.3 * row / this->Rows;
+        inSort = this->Monitor.Between(done, done);
+        const double low = bins.OriginY + (this->Filled.FirstRow + row) * bins.BinHeight;
+        sorter.Sort(slots, low, low + bins.BinHeight, this->Order + slots.first);
+        lowest = this->Local.Y[this->Order[slots.first]];
+        highest = this->Local.Y[this->Order[slots.second - 1]];
+      }
+    }
+  }
+
+  /** In the order of rows, equal points are adjacent. */
+  void SetDuplicatesAside(const PointView& points, DuplicatePolicy policy)
+  {
+    const BoxTree::Rows& local = this->Local;
+    Index kept = 0;
+    this->ForEach(this->Filled.Count, 0.9, 0.95, [&](Index i) {
+      const Index first = this->Order[kept], slot = this->Order[i];
+      if (local.Y[first] != local.Y[slot] || local.X[first] != local.X[slot])
+      {
+        kept = i;
+      }
+      else if (i > kept)
+      {
+        if (IsPreferred(points, policy, local.Ids[slot], local.Ids[first]))
+        {
+          std::swap(local.Ids[slot], local.Ids[first]);
+        }
+        this->IsAside.resize(this->Filled.Count, false);
+        this->IsAside[slot] = true;
+        this->Filled.Duplicates.Append(local.Ids[slot]);
+      }
+    });
+  }
+
+  void CloseGaps()
+  {
+    Buffer<Index> moved; // the number of slots kept before each
+    moved.Resize(static_cast<std::size_t>(this->Filled.Count) + 1);
+    Index kept = 0;
+    this->ForEach(this->Filled.Count, 0.95, 0.97, [&](Index slot) {
+      moved[slot] = kept;
+      if (!this->IsAside[slot])
+      {
+        this->Local.X[kept] = this->Local.X[slot];
+        this->Local.Y[kept] = this->Local.Y[slot];
+        this->Local.Ids[kept] = this->Local.Ids[slot];
+        ++kept;
+      }
+    });
+    moved[this->Filled.Count] = kept;
+    Index ordered = 0;
+    this->ForEach(this->Filled.Count, 0.97, 1.0, [&](Index i) {
+      if (!this->IsAside[this->Order[i]])
+      {
+        this->Order[ordered++] = moved[this->Order[i]];
+      }
+    });
+    Index* const starts = this->Local.Starts.data();
+    this->ForEach(this->Bins + 1, 1.0, 1.0, [&](Index bin) { starts[bin] = moved[starts[bin]]; });
+    const auto move = [&](Index& first, Index& count) {
+      if (count > 0)
+      {
+        count = moved[first + count] - moved[first];
+        first = moved[first];
+      }
+    };
+    for (Node& node : this->Filled.Nodes)
+    {
+      for (int place = 0; place < Node::Places; ++place)
+      {
+        move(node.First[place], node.Count[place]);
+      }
+    }
+    move(this->Filled.Root.First, this->Filled.Root.Count);
+    this->Filled.Count = kept;
+  }
+
+  BinGrid& Grid;
+  GridBlock& Filled;
+  const Progress& Monitor;
+  const Index Rows;
+  const std::size_t Bins;
+  Index* const Order;
+  BoxTree::Rows Local;
+  std::vector<bool> IsAside; ///< by slot; empty while there are no duplicates
+};
+} // namespace
+
+void GridBlock::Fill(
+  const PointView& points, DuplicatePolicy policy, const Progress& progress, BinGrid& grid)
+{
+  BlockFiller(grid, *this, progress).Run(points, policy);
+}
+
+} // namespace elevation

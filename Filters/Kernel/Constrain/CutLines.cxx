@@ -1,0 +1,421 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CutLines.h"
+
+#include "Kernel/Messages/Messages.h"
+#include "SegmentCrossings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace elevation
+{
+namespace
+{
+
+class LineCutting : private SegmentNetwork
+{
+public:
+  LineCutting(const PointView& points, const ConstraintLines& lines, DuplicatePolicy duplicates,
+    const Progress& progress)
+    : Points(points)
+    , Lines(lines)
+    , Duplicates(duplicates)
+  {
+    this->Collect(lines, progress.Between(0.0, 0.1));
+    if (!this->Pieces.empty())
+    {
+      this->Split(progress.Between(0.1, 0.9));
+      this->Match(progress.Between(0.9, 1.0));
+    }
+  }
+
+  /** The added points, and the pieces by final ids. */
+  LinePieces Result(const Progress& progress) const
+  {
+    LinePieces result;
+    result.AreNone = this->Vertices.empty();
+    result.NumberOfCrossings = this->NumberOfCrossings;
+    std::vector<AddedPoint>& added = result.Added;
+    std::vector<Index> ids(this->Vertices.size());
+    const auto elevationOf = [&](Index id) {
+      return id < this->Points.Count ? this->Points.Elevation(id)
+                                     : added[id - this->Points.Count].Elevation;
+    };
+    for (const std::size_t v : Counted(this->Vertices.size()))
+    {
+      ReportStep(progress, v, this->Vertices.size());
+      const LineVertex& vertex = this->Vertices[v];
+      if (vertex.Input != None)
+      {
+        ids[v] = vertex.Input;
+        continue;
+      }
+      if (added.size() >= static_cast<std::size_t>(MaximumNumberOfPoints - this->Points.Count))
+      {
+        throw Error("With the points that lines add there are more than " +
+          std::to_string(MaximumNumberOfPoints) + " points.");
+      }
+      ids[v] = this->Points.Count + static_cast<Index>(added.size());
+      AddedPoint point{ vertex.Position, 0.0, vertex.Source, None, None, 0.0 };
+      if (vertex.Source != None)
+      {
+        point.Elevation = this->Lines.Points.Elevation(vertex.Source);
+      }
+      else
+      {
+        point.From = ids[vertex.From];
+        point.To = ids[vertex.To];
+        point.Fraction = this->FractionOf(vertex);
+        const double from = elevationOf(point.From), to = elevationOf(point.To);
+        point.Elevation = from + point.Fraction * (to - from);
+        if (!std::isfinite(point.Elevation))
+        {
+          point.Elevation = (1.0 - point.Fraction) * from + point.Fraction * to;
+        }
+      }
+      added.push_back(point);
+    }
+    for (const SegmentPiece& piece : this->Pieces)
+    {
+      if (piece.A != piece.B)
+      {
+        result.Pieces.push_back({ ids[piece.A], ids[piece.B] });
+      }
+    }
+    return result;
+  }
+
+private:
+  static constexpr std::size_t Everything = static_cast<std::size_t>(-1);
+
+  /** Pass 2. */
+  void Split(const Progress& progress)
+  {
+    this->CutAtPoints(progress.Between(0.0, 0.5));
+    // Up to here, pieces follow the lines exactly; the next steps move them by rounding.
+    const std::vector<SegmentPiece> pieces = this->Pieces;
+    const std::size_t count = this->Vertices.size();
+    // Two units cover the rounding of an end and of a crossing. A reach of 0 is for lines no longer
+    // than a few units: the doubles between them are finite in number, so that it ends.
+    if (this->Settle(2.0, true, progress.Between(0.5, 0.9)))
+    {
+      return;
+    }
+    this->Pieces = pieces;
+    this->Vertices.resize(count);
+    if (!this->Settle(0.0, false, progress.Between(0.9, 1.0)))
+    {
+      const Segment &one = this->Segments[this->Unsettled[0]],
+                    &other = this->Segments[this->Unsettled[1]];
+      const auto point = [this](Index vertex) { return this->Vertices[vertex].Source; };
+      const auto cell = [this](Index rank) { return this->Lines.Cells[this->SegmentLines[rank]]; };
+      throw MakeError<sentences::LinesNotSettled>(point(one.A), point(one.B), "constraints'",
+        cell(this->Unsettled[0]), point(other.A), point(other.B), cell(this->Unsettled[1]));
+    }
+  }
+
+  /**
+   * Cuts until no pieces cross and none runs through a vertex.
+   * @param reach  as of CutAtCrossings()
+   * @return whether it succeeded
+   */
+  bool Settle(double reach, bool isToCount, const Progress& progress)
+  {
+    constexpr int mostRounds = 64; // two or three are usual
+    bool haveCounted = !isToCount;
+    for (int round = 0; round < mostRounds; ++round)
+    {
+      // Each round gets half of the remaining progress.
+      const Progress ofRound =
+        progress.Between(1.0 - std::ldexp(1.0, -round), 1.0 - std::ldexp(1.0, -round - 1));
+      this->EnterInGrid(ofRound.Between(0.0, 0.2));
+      std::vector<PieceCut> cuts;
+      this->CutAtVertices(cuts, Everything, ofRound.Between(0.2, 0.4));
+      if (cuts.empty())
+      {
+        const std::vector<Crossing> crossings = FindCrossings(*this, ofRound.Between(0.4, 0.7));
+        if (crossings.empty())
+        {
+          return true;
+        }
+        if (!haveCounted)
+        {
+          this->CountCrossings(crossings);
+          haveCounted = true;
+        }
+        CutAtCrossings(*this, crossings, reach, cuts, ofRound.Between(0.7, 0.9));
+        const auto [p, q] = crossings[0];
+        this->Unsettled = { this->Pieces[p].Rank, this->Pieces[q].Rank };
+      }
+      this->Apply(cuts, ofRound.Between(0.9, 1.0));
+    }
+    return false;
+  }
+
+  /** Cuts at vertices and input points that lie exactly on the lines. */
+  void CutAtPoints(const Progress& progress)
+  {
+    this->EnterInGrid(progress.Between(0.0, 0.2));
+    std::vector<PieceCut> cuts;
+    std::vector<Passage> passages;
+    // With so many, lines overlap or run along each other.
+    const std::size_t many = 64 * (this->Vertices.size() + this->Pieces.size());
+    if (!this->CutAtVertices(cuts, many, progress.Between(0.2, 0.3)))
+    {
+      std::vector<Point2> places(this->Vertices.size());
+      for (std::size_t v = 0; v < places.size(); ++v)
+      {
+        places[v] = this->Vertices[v].Position;
+      }
+      passages = JoinOverlaps(this->Pieces, places, progress.Between(0.3, 0.35));
+      this->EnterInGrid(progress.Between(0.35, 0.4));
+      cuts.clear();
+      this->CutAtVertices(cuts, Everything, progress.Between(0.4, 0.45));
+    }
+    this->CutAtInputPoints(cuts, progress.Between(0.45, 0.9));
+    for (const PieceCut& cut : cuts)
+    {
+      const SegmentPiece& piece = this->Pieces[cut.Piece];
+      passages.push_back({ cut.Vertex, piece.B, piece.Count });
+    }
+    this->CountCrossingsAtVertices(passages, progress.Between(0.9, 0.94));
+    this->Apply(cuts, progress.Between(0.94, 1.0));
+  }
+
+  /**
+   * Finds the input points that are vertices of the lines. Those on segments become vertices, where
+   * the segments are cut.
+   */
+  void CutAtInputPoints(std::vector<PieceCut>& cuts, const Progress& progress)
+  {
+    std::vector<PieceCut> found; // with input points for vertices
+    ForEachStretch(
+      this->Points.Count, progress.Between(0.0, 0.8), [&](Index begin, Index end) {
+        for (Index id = begin; id < end; ++id)
+        {
+          const Point2 p = this->Points.At(id);
+          std::size_t cell;
+          if (!this->Grid.FindCell(p, cell) || !std::isfinite(this->Points.Elevation(id)))
+          {
+            continue;
+          }
+          const std::size_t before = found.size();
+          for (const Index* i = this->Grid.Begin(cell); i < this->Grid.End(cell); ++i)
+          {
+            const Ends& ends = this->PieceEnds[*i];
+            const Index vertex = ends[0] == p ? this->Pieces[*i].A
+              : ends[1] == p                  ? this->Pieces[*i].B
+                                              : None;
+            if (vertex != None)
+            {
+              this->SetInput(vertex, id);
+              found.resize(before); // there is a vertex already
+              break;
+            }
+            if (IsInside(ends, p))
+            {
+              found.push_back({ *i, id });
+            }
+          }
+        }
+      });
+    Sort(
+      found.begin(), found.end(),
+      [&](const PieceCut& p, const PieceCut& q) {
+        const Point2 at = this->Points.At(p.Vertex), other = this->Points.At(q.Vertex);
+        return at != other ? IsLower(at, other) : p.Piece < q.Piece;
+      },
+      progress.Between(0.8, 1.0));
+    const std::size_t first = this->Vertices.size(), firstCut = cuts.size();
+    for (const PieceCut& cut : found)
+    {
+      const Point2 p = this->Points.At(cut.Vertex);
+      if (this->Vertices.size() == first || this->Vertices.back().Position != p)
+      {
+        this->AddVertex(p);
+      }
+      const Index vertex = static_cast<Index>(this->Vertices.size()) - 1;
+      this->SetInput(vertex, cut.Vertex);
+      // Duplicates cut only once.
+      if (cuts.size() == firstCut || cuts.back().Vertex != vertex || cuts.back().Piece != cut.Piece)
+      {
+        cuts.push_back({ cut.Piece, vertex });
+      }
+    }
+  }
+
+  void SetInput(Index vertex, Index id)
+  {
+    Index& input = this->Vertices[vertex].Input;
+    if (input == None || IsPreferred(this->Points, this->Duplicates, id, input))
+    {
+      input = id;
+    }
+  }
+
+  /**
+   * Cuts pieces at the vertices on them.
+   * @return false if there is more than most to look at; the cuts are then incomplete
+   */
+  bool CutAtVertices(std::vector<PieceCut>& cuts, std::size_t most, const Progress& progress)
+  {
+    WorkReporter work(progress);
+    for (std::size_t v = 0; v < this->Vertices.size() && work.Count() <= most; ++v)
+    {
+      work.Step(v, this->Vertices.size());
+      const Point2& p = this->Vertices[v].Position;
+      this->Grid.Visit(p, [&](Index piece) {
+        work.Tick();
+        if (IsInside(this->PieceEnds[piece], p))
+        {
+          cuts.push_back({ piece, static_cast<Index>(v) });
+        }
+      });
+    }
+    return work.Count() <= most;
+  }
+
+  /** Counts the pairs of segments that cross at a vertex: both run through it, not on one line. */
+  void CountCrossingsAtVertices(std::vector<Passage>& passages, const Progress& progress)
+  {
+    Sort(
+      passages.begin(), passages.end(),
+      [&](const Passage& p, const Passage& q) {
+        // Around a vertex, by their direction upwards: these span half a turn.
+        return p.Vertex != q.Vertex
+          ? p.Vertex < q.Vertex
+          : Orientation(this->At(p.Vertex), this->At(p.Toward), this->At(q.Toward)) == Positive;
+      },
+      progress.Between(0.0, 0.8));
+    const Progress counting = progress.Between(0.8, 1.0);
+    std::int64_t around = 0, alike = 0; // earlier segments at this vertex; in this direction
+    for (const std::size_t i : Counted(std::size_t(1), passages.size()))
+    {
+      ReportStep(counting, i, passages.size());
+      const Passage &before = passages[i - 1], &passage = passages[i];
+      const bool isSameVertex = passage.Vertex == before.Vertex;
+      const bool isSameLine = isSameVertex &&
+        Orientation(this->At(passage.Vertex), this->At(before.Toward), this->At(passage.Toward)) ==
+          Zero;
+      around = isSameVertex ? around + before.Count : 0;
+      alike = isSameLine ? alike + before.Count : 0;
+      this->NumberOfCrossings += passage.Count * (around - alike);
+    }
+  }
+
+  void CountCrossings(const std::vector<Crossing>& crossings)
+  {
+    for (const auto& [p, q] : Counted(crossings))
+    {
+      this->NumberOfCrossings += std::int64_t(this->Pieces[p].Count) * this->Pieces[q].Count;
+    }
+  }
+
+  /** Replaces pieces by their parts from cut to cut. */
+  void Apply(std::vector<PieceCut>& cuts, const Progress& progress)
+  {
+    SortAlong(
+      cuts, [&](Index piece) -> const Ends& { return this->PieceEnds[piece]; },
+      [&](Index vertex) { return this->At(vertex); }, progress.Between(0.0, 0.5));
+    std::vector<SegmentPiece> pieces;
+    const Progress cutting = progress.Between(0.5, 0.7);
+    WorkReporter work(cutting);
+    auto cut = cuts.begin();
+    for (std::size_t i = 0; i < this->Pieces.size(); ++i)
+    {
+      work.Step(i, this->Pieces.size());
+      SegmentPiece piece = this->Pieces[i];
+      Index from = piece.A;
+      const Index end = piece.B;
+      const auto append = [&](Index to) {
+        if (from != to)
+        {
+          const bool isUp = IsLower(this->At(from), this->At(to));
+          piece.A = isUp ? from : to;
+          piece.B = isUp ? to : from;
+          pieces.push_back(piece);
+          from = to;
+        }
+      };
+      for (; cut != cuts.end() && cut->Piece == static_cast<Index>(i); ++cut)
+      {
+        work.Tick();
+        append(cut->Vertex);
+      }
+      if (piece.Rank == None)
+      {
+        pieces.push_back(piece);
+      }
+      append(end);
+    }
+    this->Pieces = std::move(pieces);
+    this->JoinEqualPieces(progress.Between(0.7, 1.0));
+  }
+
+  /** Pass 3: the input points at crossings. All others have been found when cutting. */
+  void Match(const Progress& progress)
+  {
+    std::vector<Index> crossings;
+    for (std::size_t v = 0; v < this->Vertices.size(); ++v)
+    {
+      if (this->Vertices[v].From != None)
+      {
+        crossings.push_back(static_cast<Index>(v));
+      }
+    }
+    if (crossings.empty())
+    {
+      return;
+    }
+    const CellGrid grid(
+      crossings.size(),
+      [&](std::size_t i) { return std::array<Point2, 1>{ { this->At(crossings[i]) } }; },
+      progress.Between(0.0, 0.1));
+    ForEachStretch(
+      this->Points.Count, progress.Between(0.1, 1.0), [&](Index begin, Index end) {
+        for (Index id = begin; id < end; ++id)
+        {
+          const Point2 p = this->Points.At(id);
+          grid.Visit(p, [&](Index i) {
+            if (this->At(crossings[i]) == p && std::isfinite(this->Points.Elevation(id)))
+            {
+              this->SetInput(crossings[i], id);
+            }
+          });
+        }
+      });
+  }
+
+  /** The fraction of the distance from From to To, by the longer of x and y. */
+  double FractionOf(const LineVertex& vertex) const
+  {
+    const Point2 &p = vertex.Position, &a = this->At(vertex.From), &b = this->At(vertex.To);
+    const double largest =
+      std::max({ std::fabs(a.X), std::fabs(a.Y), std::fabs(b.X), std::fabs(b.Y) });
+    // Scaled by 1/4, so that no difference overflows; or up, so that none underflows.
+    const double scale = largest < 1e-150 ? 0x1p600 : 0.25;
+    const double dx = scale * b.X - scale * a.X, dy = scale * b.Y - scale * a.Y;
+    return std::fabs(dx) > std::fabs(dy) ? (scale * p.X - scale * a.X) / dx
+                                         : (scale * p.Y - scale * a.Y) / dy;
+  }
+
+  const PointView& Points;
+  const ConstraintLines& Lines;
+  const DuplicatePolicy Duplicates;
+  std::int64_t NumberOfCrossings = 0;
+  std::array<Index, 2> Unsettled{ { None, None } }; ///< two segments that still cross
+};
+} // namespace
+
+LinePieces CutLines(const PointView& points, const ConstraintLines& lines,
+  DuplicatePolicy duplicates, const Progress& progress)
+{
+  return LineCutting(points, lines, duplicates, progress.Between(0.0, 0.9))
+    .Result(progress.Between(0.9, 1.0));
+}
+
+} // namespace elevation

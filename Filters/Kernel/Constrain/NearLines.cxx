@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "NearLines.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace elevation
+{
+namespace
+{
+
+/** Whether a point is at most so far from a segment, or little more. */
+bool IsWithin(const Ends& segment, const Point2& p, double distance)
+{
+  const Point2 &a = segment[0], &b = segment[1];
+  const double far = 2.0 * distance;
+  if (p.X < std::min(a.X, b.X) - far || p.X > std::max(a.X, b.X) + far ||
+    p.Y < std::min(a.Y, b.Y) - far || p.Y > std::max(a.Y, b.Y) + far)
+  {
+    return false;
+  }
+  const double length = std::hypot(b.X - a.X, b.Y - a.Y);
+  const double across = (b.X - a.X) * (p.Y - a.Y) - (b.Y - a.Y) * (p.X - a.X);
+  return !(std::fabs(across) > far * length); // also where products over- or underflow
+}
+} // namespace
+
+std::vector<Index> ListNearLines(
+  const PointView& points, const ConstraintLines& lines, const Progress& progress)
+{
+  // Pieces and crossings stay within some hundred units in the last place of their lines.
+  constexpr double reach = 1e-9;
+  std::vector<Ends> segments;
+  lines.VisitSegments([&](Index line, Index k, Index next) {
+    segments.push_back({ lines.Points.At(LinePoint(lines, line, k)),
+      lines.Points.At(LinePoint(lines, line, next)) });
+  });
+  double largest = 0.0; // of the coordinates
+  for (const Ends& ends : segments)
+  {
+    for (const Point2& p : ends)
+    {
+      largest = std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
+    }
+  }
+  const CellGrid grid = GridOf(segments, progress.Between(0.0, 0.2));
+  const Progress looking = progress.Between(0.2, 1.0);
+  std::vector<Index> near;
+  for (const Index id : Counted(points.Count))
+  {
+    ReportStep(looking, id, points.Count);
+    const Point2 p = points.At(id);
+    if (!std::isfinite(p.X) || !std::isfinite(p.Y) || !std::isfinite(points.Elevation(id)))
+    {
+      continue;
+    }
+    const double size = reach * std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
+    const std::array<Point2, 3> around{ { { p.X - 2.0 * size, p.Y - size },
+      { p.X + 2.0 * size, p.Y - size }, { p.X, p.Y + 3.0 * size } } };
+    bool isNear = false;
+    grid.Visit(around, [&](Index i) { isNear = isNear || IsWithin(segments[i], p, size); });
+    if (isNear)
+    {
+      near.push_back(id);
+    }
+  }
+  return near;
+}
+
+} // namespace elevation

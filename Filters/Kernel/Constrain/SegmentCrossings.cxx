@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SegmentCrossings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <unordered_map>
+
+namespace elevation
+{
+namespace
+{
+
+/** Finds the cuts of one round. */
+class CrossingCuts
+{
+public:
+  CrossingCuts(SegmentNetwork& network, double reach, std::vector<PieceCut>& cuts)
+    : Network(network)
+    , Reach(reach)
+    , Cuts(cuts)
+  {
+  }
+
+  void Run(const std::vector<Crossing>& crossings, const Progress& progress)
+  {
+    std::vector<Place> places;
+    for (const std::size_t i : Counted(crossings.size()))
+    {
+      ReportStep(progress, i, 2 * crossings.size(), 1024);
+      if (!this->CutAtEnds(crossings[i]))
+      {
+        const Ends &s = this->Network.PieceEnds[crossings[i].first],
+                   &t = this->Network.PieceEnds[crossings[i].second];
+        places.push_back({ RoundedCrossing(s[0], s[1], t[0], t[1]), crossings[i], None });
+      }
+    }
+    Sort(
+      places.begin(), places.end(),
+      [](const Place& p, const Place& q) { return IsLower(p.Position, q.Position); },
+      progress.Between(0.5, 0.7));
+
+    const Progress naming = progress.Between(0.7, 1.0);
+    StepCount steps;
+    for (std::size_t i = 0, end = 0; i < places.size(); i = end)
+    {
+      steps.Add();
+      ReportStep(naming, i, places.size());
+      for (; end < places.size() && places[end].Position == places[i].Position; ++end)
+      {
+        places[end].Vertex = this->FindVertexInReach(places[i].Position, places[end].Pieces);
+      }
+      this->CutAtPlace(&places[i], &places[0] + end);
+    }
+  }
+
+private:
+  /** Where two pieces cross, and the vertex at which they are cut. */
+  struct Place
+  {
+    Point2 Position;
+    Crossing Pieces;
+    Index Vertex;
+  };
+
+  bool CanPassThrough(const SegmentPiece& piece, Index vertex) const
+  {
+    return piece.A == vertex || piece.B == vertex ||
+      IsBetween(this->Network.At(piece.A), this->Network.At(piece.B), this->Network.At(vertex));
+  }
+
+  /** Cuts at ends of either piece in reach of the other one. @return whether there are any */
+  bool CutAtEnds(const Crossing& crossing)
+  {
+    const std::size_t before = this->Cuts.size();
+    for (const auto& [piece, other] : { crossing, Crossing(crossing.second, crossing.first) })
+    {
+      const SegmentPiece& to = this->Network.Pieces[other];
+      VisitEndsInReach(this->Network.PieceEnds[other], this->Network.PieceEnds[piece],
+        this->Network.Pieces[piece].Unit, this->Reach, [this, &to, bent = piece](int end) {
+          this->Cuts.push_back({ bent, end == 0 ? to.A : to.B });
+        });
+    }
+    return this->Cuts.size() > before;
+  }
+
+  /** Cuts pieces that cross at one place: at a vertex in reach, otherwise at a new one. */
+  void CutAtPlace(const Place* begin, const Place* end)
+  {
+    Index vertex = None, first = None; // the new vertex, and the first piece through it
+    for (const Place* place = begin; place < end; ++place)
+    {
+      if (place->Vertex == None && vertex == None)
+      {
+        vertex = this->Network.AddVertex(place->Position);
+        std::size_t cell = 0;
+        // Succeeds: it is in the box of two pieces.
+        this->Network.Grid.FindCell(place->Position, cell);
+        this->NewVertices[cell].push_back(vertex);
+      }
+      for (const Index piece : { place->Pieces.first, place->Pieces.second })
+      {
+        this->Cuts.push_back({ piece, place->Vertex == None ? vertex : place->Vertex });
+        if (place->Vertex == None &&
+          (first == None || this->Network.Pieces[piece].Rank < this->Network.Pieces[first].Rank))
+        {
+          first = piece;
+        }
+      }
+    }
+    if (vertex != None)
+    {
+      this->Network.Vertices[vertex].From = this->Network.Pieces[first].A;
+      this->Network.Vertices[vertex].To = this->Network.Pieces[first].B;
+    }
+  }
+
+  /** The nearest vertex in reach of a crossing that both pieces can pass through, or None. */
+  Index FindVertexInReach(const Point2& p, const Crossing& crossing) const
+  {
+    const SegmentPiece& one = this->Network.Pieces[crossing.first];
+    const SegmentPiece& other = this->Network.Pieces[crossing.second];
+    const double unitX = std::max(one.Unit.X, other.Unit.X);
+    const double unitY = std::max(one.Unit.Y, other.Unit.Y);
+    const double reach = 2.0 * this->Reach, reachX = reach * unitX, reachY = reach * unitY;
+    Index nearest = None;
+    double shortest = 0.0;
+    const auto inUnits = [](double difference, double unit) {
+      return difference == 0.0 ? 0.0 : unit > 0.0 ? std::fabs(difference) / unit : HUGE_VAL;
+    };
+    const auto look = [&](Index v) {
+      const Point2& q = this->Network.At(v);
+      const double distance = std::max(inUnits(q.X - p.X, unitX), inUnits(q.Y - p.Y, unitY));
+      if (distance <= reach &&
+        (q == p || (this->CanPassThrough(one, v) && this->CanPassThrough(other, v))) &&
+        (nearest == None || distance < shortest ||
+          (distance == shortest && IsLower(q, this->Network.At(nearest)))))
+      {
+        nearest = v;
+        shortest = distance;
+      }
+    };
+    std::size_t last = static_cast<std::size_t>(-1);
+    for (const double y : { -reachY, reachY })
+    {
+      for (const double x : { -reachX, reachX })
+      {
+        std::size_t cell;
+        if (!this->Network.Grid.FindCell(Point2{ p.X + x, p.Y + y }, cell) || cell == last)
+        {
+          continue;
+        }
+        last = cell;
+        for (const Index* i = this->Network.Grid.Begin(cell); i < this->Network.Grid.End(cell); ++i)
+        {
+          look(this->Network.Pieces[*i].A);
+          look(this->Network.Pieces[*i].B);
+        }
+        const auto found = this->NewVertices.find(cell);
+        for (std::size_t k = found == this->NewVertices.end() ? 0 : found->second.size();
+             k > 0 && this->Network.At(found->second[k - 1]).Y >= p.Y - reachY; --k)
+        {
+          look(found->second[k - 1]);
+        }
+      }
+    }
+    return nearest;
+  }
+
+  SegmentNetwork& Network;
+  const double Reach;
+  std::vector<PieceCut>& Cuts;
+  /** By cells of the grid, from the lowest up. */
+  std::unordered_map<std::size_t, std::vector<Index>> NewVertices;
+};
+} // namespace
+
+std::vector<Crossing> FindCrossings(const SegmentNetwork& network, const Progress& progress)
+{
+  std::vector<Crossing> crossings;
+  VisitCrossings(
+    network.PieceEnds, network.Grid, progress.Between(0.0, 0.8), [&](std::size_t i, std::size_t j) {
+      crossings.push_back({ static_cast<Index>(i), static_cast<Index>(j) });
+    });
+  // A pair may be found in every cell that both are in.
+  Sort(crossings.begin(), crossings.end(), std::less<Crossing>(), progress.Between(0.8, 1.0));
+  crossings.erase(std::unique(crossings.begin(), crossings.end()), crossings.end());
+  return crossings;
+}
+
+void CutAtCrossings(SegmentNetwork& network, const std::vector<Crossing>& crossings, double reach,
+  std::vector<PieceCut>& cuts, const Progress& progress)
+{
+  CrossingCuts(network, reach, cuts).Run(crossings, progress);
+}
+
+} // namespace elevation

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SegmentNetwork.h"
+
+#include "Kernel/Messages/Messages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace elevation
+{
+namespace
+{
+
+/** Makes one vertex of each place of the lines' points. @return the vertex of each point */
+std::vector<Index> CollectPoints(
+  const ConstraintLines& lines, const Progress& progress, std::vector<LineVertex>& vertices)
+{
+  const PointView& own = lines.Points;
+  std::vector<Index> used;
+  for (Index line = 0; line < lines.Count(); ++line)
+  {
+    for (const Index k : Counted(lines.Offsets[line], lines.Offsets[line + 1]))
+    {
+      ReportStep(progress, k, 2 * lines.Vertices.size());
+      used.push_back(LinePoint(lines, line, k));
+    }
+  }
+  // By position, so that equal points are adjacent; the lowest id is the source of the vertex.
+  Sort(
+    used.begin(), used.end(),
+    [&](Index p, Index q) {
+      const Point2 at = own.At(p), other = own.At(q);
+      return at != other ? IsLower(at, other) : p < q;
+    },
+    progress.Between(0.5, 1.0));
+  std::vector<Index> vertexOf(own.Count, None); // at first, the source
+  for (std::size_t i = 0, first = 0; i < used.size(); ++i)
+  {
+    first = i > 0 && own.At(used[i]) == own.At(used[first]) ? first : i;
+    vertexOf[used[i]] = used[first];
+  }
+  // A source has the lowest id of its vertex, so it comes before the others.
+  for (Index id = 0; id < own.Count; ++id)
+  {
+    if (vertexOf[id] == id)
+    {
+      vertexOf[id] = static_cast<Index>(vertices.size());
+      vertices.push_back({ own.At(id), None, id, None, None });
+    }
+    else if (vertexOf[id] != None)
+    {
+      vertexOf[id] = vertexOf[vertexOf[id]];
+    }
+  }
+  return vertexOf;
+}
+} // namespace
+
+Index LinePoint(const ConstraintLines& lines, Index line, Index k)
+{
+  const PointView& points = lines.Points;
+  const Index id = lines.Vertices[k];
+  const bool exists = id >= 0 && id < points.Count;
+  if (!exists || !std::isfinite(points.At(id).X) || !std::isfinite(points.At(id).Y) ||
+    !std::isfinite(points.Elevation(id)))
+  {
+    const Index cell = lines.Cells[line];
+    throw exists ? MakeError<sentences::NonFinitePointOfLine>(id, "constraints'", cell)
+                 : MakeError<sentences::NoSuchPointOfLine>(id, "constraints'", cell);
+  }
+  return id;
+}
+
+void SegmentNetwork::Collect(const ConstraintLines& lines, const Progress& progress)
+{
+  const std::vector<Index> vertexOf =
+    CollectPoints(lines, progress.Between(0.0, 0.5), this->Vertices);
+  std::vector<char> hasSegment(this->Vertices.size(), 0);
+  lines.VisitSegments([&](Index line, Index k, Index next) {
+    Index p = vertexOf[lines.Vertices[k]], q = vertexOf[lines.Vertices[next]];
+    if (p != q)
+    {
+      if (IsLower(this->At(q), this->At(p)))
+      {
+        std::swap(p, q);
+      }
+      const Index rank = static_cast<Index>(this->Segments.size());
+      this->Pieces.push_back({ p, q, rank, 1, UnitsOf(this->At(p), this->At(q)) });
+      this->SegmentLines.push_back(line);
+      this->Segments.push_back({ p, q });
+      hasSegment[p] = hasSegment[q] = 1;
+    }
+  });
+  this->JoinEqualPieces(progress.Between(0.6, 1.0));
+  for (SegmentPiece& piece : this->Pieces)
+  {
+    piece.Count = 1; // equal segments of several lines count as one
+  }
+  for (std::size_t v = 0; v < hasSegment.size(); ++v)
+  {
+    if (!hasSegment[v])
+    {
+      this->Pieces.push_back({ static_cast<Index>(v), static_cast<Index>(v), None, 0 });
+    }
+  }
+}
+
+void SegmentNetwork::JoinEqualPieces(const Progress& progress)
+{
+  Sort(
+    this->Pieces.begin(), this->Pieces.end(),
+    [](const SegmentPiece& p, const SegmentPiece& q) {
+      return p.A != q.A ? p.A < q.A : (p.B != q.B ? p.B < q.B : p.Rank < q.Rank);
+    },
+    progress.Between(0.0, 0.9));
+  const Progress joining = progress.Between(0.9, 1.0);
+  std::size_t kept = 0, done = 0;
+  for (const SegmentPiece& piece : Counted(this->Pieces))
+  {
+    ReportStep(joining, done++, this->Pieces.size());
+    if (kept > 0 && this->Pieces[kept - 1].A == piece.A && this->Pieces[kept - 1].B == piece.B)
+    {
+      SegmentPiece& same = this->Pieces[kept - 1];
+      // Where pieces run to and fro, each round may double it. Crossings are counted in the first
+      // round, in which it is not above the number of segments.
+      same.Count += std::min(piece.Count, std::numeric_limits<Index>::max() - same.Count);
+      same.Unit = { std::max(same.Unit.X, piece.Unit.X), std::max(same.Unit.Y, piece.Unit.Y) };
+    }
+    else
+    {
+      this->Pieces[kept++] = piece;
+    }
+  }
+  this->Pieces.resize(kept);
+}
+
+void SegmentNetwork::EnterInGrid(const Progress& progress)
+{
+  this->PieceEnds.resize(this->Pieces.size());
+  for (std::size_t i = 0; i < this->Pieces.size(); ++i)
+  {
+    this->PieceEnds[i] = { this->At(this->Pieces[i].A), this->At(this->Pieces[i].B) };
+  }
+  this->Grid = GridOf(this->PieceEnds, progress);
+}
+
+} // namespace elevation

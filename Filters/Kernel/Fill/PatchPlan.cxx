@@ -1,0 +1,294 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PatchPlan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+
+/** The spacing at the boundary is the mean length of this many edges. */
+constexpr Index EdgesAround = 8;
+
+/** If spacings at the boundary differ more than this, points are graded. */
+constexpr double LargestSpacingRatio = 3.0;
+
+/** A line needs no closer points than this part of the gap beside it. */
+constexpr double LeastSpacingInGap = 0.1;
+
+/**
+ * Largest median triangle, in cells, for which the nodes are used. It is half a cell where the
+ * surface has all nodes, and one and a half where it has a quarter of them.
+ */
+constexpr double LargestCellsPerTriangle = 1.75;
+
+/**
+ * The median area of the surface's triangles at the vertices of a hole's boundary; infinite where
+ * there are none.
+ */
+double MedianTriangleArea(
+  const Mesh& mesh, const VertexStars& stars, const Holes& holes, Index hole)
+{
+  std::vector<double> areas;
+  holes.VisitEdges(hole, [&](Index origin, Index) {
+    const Point2& p = mesh.PointOf(origin);
+    stars.Visit(mesh, origin, [&](Index h) {
+      const Point2& a = mesh.PointOf(mesh.Destination(h));
+      const Point2& b = mesh.PointOf(mesh.Apex(h));
+      areas.push_back(0.5 * ((a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X)));
+      return true;
+    });
+  });
+  if (areas.empty())
+  {
+    return std::numeric_limits<double>::infinity();
+  }
+  const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+  std::nth_element(areas.begin(), middle, areas.end());
+  return *middle;
+}
+
+/** At the origin of each edge, the mean length of the edges before and after it on its walk. */
+std::vector<double> SpacingsAlong(
+  const Holes& holes, Index hole, const std::vector<double>& lengths)
+{
+  std::vector<double> spacings;
+  spacings.reserve(lengths.size());
+  const double* length = lengths.data();
+  for (Index loop = holes.Offsets[hole]; loop < holes.Offsets[hole + 1]; ++loop)
+  {
+    const Index count = holes.Walks.Size(holes.Loops[loop]);
+    const Index around = std::min(count, EdgesAround);
+    for (Index i = 0; i < count; ++i)
+    {
+      double sum = 0.0;
+      for (Index k = 0; k < around; ++k)
+      {
+        sum += length[(i + k + count - around / 2) % count];
+      }
+      spacings.push_back(sum / around);
+    }
+    length += count;
+  }
+  return spacings;
+}
+
+/**
+ * Appends the spacings at both ends of each inner edge: the mean length of the inner edges there,
+ * or the mean spacing where there are none.
+ */
+void AddInnerSpacings(const Holes& holes, Index hole, const std::vector<double>& lengths,
+  double mean, std::vector<double>& spacings)
+{
+  std::unordered_map<Index, std::pair<double, double>> sums; // of lengths, and their number
+  const double* length = lengths.data();
+  holes.VisitInnerEdges(hole, [&](Index a, Index b) {
+    for (const Index end : { a, b })
+    {
+      sums[end].first += *length;
+      sums[end].second += 1.0;
+    }
+    ++length;
+  });
+  holes.VisitInnerEdges(hole, [&](Index a, Index b) {
+    for (const Index end : { a, b })
+    {
+      const auto& [sum, number] = sums[end];
+      spacings.push_back(a == b ? mean : sum / number);
+    }
+  });
+}
+
+/** The lengths of a hole's edges, then those of its inner edges. */
+struct EdgeLengths
+{
+  std::vector<double> Boundary;
+  std::vector<double> Inner;
+};
+
+/** The mean spacing of those edges that are not longer than a limit; the limit if all are. */
+double MeanWithin(double limit, const EdgeLengths& lengths, const EdgeLengths& spacings)
+{
+  double sum = 0.0;
+  double number = 0.0;
+  const auto add = [&](const std::vector<double>& ofEdges, const std::vector<double>& values) {
+    for (std::size_t i = 0; i < ofEdges.size(); ++i)
+    {
+      if (ofEdges[i] > 0.0 && ofEdges[i] <= limit)
+      {
+        sum += values[i];
+        number += 1.0;
+      }
+    }
+  };
+  add(lengths.Boundary, spacings.Boundary);
+  add(lengths.Inner, spacings.Inner);
+  return number > 0.0 ? sum / number : limit;
+}
+
+EdgeLengths MeasureEdges(const Mesh& mesh, const Holes& holes, Index hole)
+{
+  EdgeLengths lengths;
+  const auto lengthOf = [&](Index a, Index b) {
+    const Point2& p = mesh.PointOf(a);
+    const Point2& q = mesh.PointOf(b);
+    return std::hypot(q.X - p.X, q.Y - p.Y);
+  };
+  lengths.Boundary.reserve(holes.NumberOfEdges(hole));
+  holes.VisitEdges(hole, [&](Index a, Index b) { lengths.Boundary.push_back(lengthOf(a, b)); });
+  holes.VisitInnerEdges(hole, [&](Index a, Index b) { lengths.Inner.push_back(lengthOf(a, b)); });
+  return lengths;
+}
+
+/**
+ * The spacing that each edge asks for: its length. In a region of lines, whose points are mostly
+ * inside, it follows the gaps beside them, where these are wide; but not wider than the region is.
+ */
+EdgeLengths EdgeSpacings(
+  const Holes& holes, Index hole, const EdgeLengths& lengths, double regionWidth)
+{
+  EdgeLengths spacings = lengths;
+  if (!holes.IsOfLines(hole))
+  {
+    return spacings;
+  }
+  double* next = spacings.Boundary.data();
+  const auto raise = [&](Index a, Index b) {
+    if (*next > 0.0 && *next <= holes.LongestEdge)
+    {
+      const double gap = std::min({ holes.Gaps[a], holes.Gaps[b], regionWidth });
+      *next = std::max(*next, LeastSpacingInGap * gap);
+    }
+    ++next;
+  };
+  holes.VisitEdges(hole, raise);
+  next = spacings.Inner.data();
+  holes.VisitInnerEdges(hole, raise);
+  return spacings;
+}
+
+/**
+ * About how many graded points there will be, which does not grow with the distance of lines. As
+ * the spacing grows with the distance from an edge, there are 1 / SpacingGrowth points at each of
+ * its sides, if it asks for its length; and around a lone point as many as the integral over rings
+ * gives. Far from all of these, the spacing is the largest.
+ */
+double GradedPoints(
+  const EdgeLengths& lengths, const EdgeLengths& spacings, double area, double mean, double largest)
+{
+  constexpr double perSide = 1.0 / SpacingGrowth;
+  const double reach = SpacingGrowth * std::sqrt(area) / mean;
+  const double perPoint = 6.3 / (SpacingGrowth * SpacingGrowth) * std::log1p(reach);
+  double points = area / largest / largest / RowHeight;
+  points += perSide *
+    std::inner_product(lengths.Boundary.begin(), lengths.Boundary.end(), spacings.Boundary.begin(),
+      0.0, std::plus<double>(), std::divides<double>());
+  for (std::size_t i = 0; i < lengths.Inner.size(); ++i)
+  {
+    const double length = lengths.Inner[i];
+    points += length > 0.0 ? 2.0 * perSide * (length / spacings.Inner[i]) : perPoint;
+  }
+  return points;
+}
+
+/** Whether all known points of a hole are nodes, and the ends of its edges are different ones. */
+bool IsOnLattice(const Mesh& mesh, const Holes& holes, Index hole, const Lattice& lattice)
+{
+  bool isOnLattice = true;
+  const auto check = [&](Index a, Index b) {
+    Point2 i, j;
+    isOnLattice = isOnLattice && FindNode(lattice, mesh.PointOf(a), i) &&
+      FindNode(lattice, mesh.PointOf(b), j) && (i != j || a == b);
+  };
+  holes.VisitEdges(hole, check);
+  holes.VisitInnerEdges(hole, check);
+  return isOnLattice;
+}
+} // namespace
+
+PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& holes, Index hole,
+  double area, double spacing, const Lattice* lattice)
+{
+  PatchPlan plan;
+  const EdgeLengths lengths = MeasureEdges(mesh, holes, hole);
+  const double edges = static_cast<double>(lengths.Boundary.size() + lengths.Inner.size());
+  const double perimeter = std::accumulate(lengths.Boundary.begin(), lengths.Boundary.end(), 0.0);
+  const EdgeLengths spacings = EdgeSpacings(holes, hole, lengths, 2.0 * area / perimeter);
+  if (spacing > 0.0)
+  {
+    plan.Spacing = spacing;
+  }
+  else if (holes.IsRegion(hole))
+  {
+    plan.Spacing = MeanWithin(holes.LongestEdge, lengths, spacings);
+  }
+  else
+  {
+    plan.Spacing = perimeter / edges;
+  }
+  const double length = std::accumulate(lengths.Inner.begin(), lengths.Inner.end(), perimeter);
+  plan.MostRows = length / plan.Spacing - edges;
+  plan.ExpectedPoints = plan.MostPoints = area / plan.Spacing / plan.Spacing / RowHeight;
+  if (spacing > 0.0)
+  {
+    return plan;
+  }
+  // Holes for only a few points may need one more for refinement.
+  constexpr double morePerEdge = 0.125;
+  plan.MostPoints += morePerEdge * edges;
+  if (lattice && IsOnLattice(mesh, holes, hole, *lattice) &&
+    MedianTriangleArea(mesh, *stars, holes, hole) <= LargestCellsPerTriangle * lattice->Area())
+  {
+    plan.Kind = Arrangement::Nodes;
+    plan.Steps = *lattice;
+    plan.ExpectedPoints = plan.MostPoints = area / lattice->Area();
+    return plan;
+  }
+
+  plan.Spacings = SpacingsAlong(holes, hole, spacings.Boundary);
+  AddInnerSpacings(holes, hole, spacings.Inner, plan.Spacing, plan.Spacings);
+  const auto range = std::minmax_element(plan.Spacings.begin(), plan.Spacings.end());
+  if (*range.second > LargestSpacingRatio * *range.first)
+  {
+    // More points are near parts of the boundary that are finer than average.
+    constexpr double morePerEdgeWhenGraded = 8.0;
+    plan.Kind = Arrangement::Graded;
+    plan.MostPoints += morePerEdgeWhenGraded * edges;
+    const double points = GradedPoints(lengths, spacings, area, plan.Spacing, *range.second);
+    if (holes.IsRegion(hole))
+    {
+      plan.MostPoints = std::min(plan.MostPoints, 2.0 * points); // to be safe
+    }
+    plan.ExpectedPoints = std::min(plan.MostPoints, points);
+  }
+  else
+  {
+    plan.Spacings = std::vector<double>();
+  }
+  return plan;
+}
+
+double PointSpacing(double area, double points)
+{
+  return std::sqrt(area / RowHeight / points);
+}
+
+bool FindNode(const Lattice& lattice, const Point2& p, Point2& node)
+{
+  const auto [i, j] = lattice.InSteps(p);
+  node = { std::round(i), std::round(j) };
+  constexpr double largest = 1e9; // rows are counted by Index
+  return std::fabs(i - node.X) <= LatticeTolerance && std::fabs(j - node.Y) <= LatticeTolerance &&
+    std::fabs(node.X) < largest && std::fabs(node.Y) < largest;
+}
+
+} // namespace elevation

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Openings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+namespace elevation
+{
+
+namespace
+{
+
+/** The parts of triangles with equal values of flagOf(t), connected by edges. */
+template <typename FlagOf>
+Components FindFlagParts(const Mesh& mesh, FlagOf&& flagOf, const Progress& progress)
+{
+  return FindComponents(mesh, progress, [&](Index h) {
+    return flagOf(Mesh::Triangle(h)) == flagOf(Mesh::Triangle(mesh.Twin(h))) ? 0 : -1;
+  });
+}
+
+/**
+ * In whole numbers, so that a sum does not depend on the order. Shares above 1 count as 1, and
+ * those below 0, of needles whose area rounding has turned, as 0.
+ */
+constexpr std::int64_t FixedOne = std::int64_t(1) << 30;
+std::int64_t ToFixedPoint(double share)
+{
+  return static_cast<std::int64_t>(
+    std::max(0.0, std::min(1.0, share)) * static_cast<double>(FixedOne));
+}
+
+/** What is known of connected triangles that are not surface. */
+struct Opening
+{
+  std::int64_t Share = 0; ///< the area as a fraction of the least lake's
+  std::int64_t Open = 0;  ///< length of the border, less twice that along surface
+  double Longest = 0.0;   ///< square of its longest edge
+  bool ReachesBorder = false;
+};
+
+/** Calls look(t, opening) for each triangle that has a place in an opening. */
+template <typename IsOpen, typename Look>
+void VisitOpenings(const Components& parts, std::vector<Opening>& openings, IsOpen&& isOpen,
+  const Progress& progress, Look&& look)
+{
+  ForEachStretch(static_cast<Index>(parts.Labels.size()), progress, [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      if (isOpen(t))
+      {
+        look(t, openings[parts.ComponentOf(t)]);
+      }
+    }
+  });
+}
+
+} // namespace
+
+void CloseSmallLakes(
+  const Mesh& mesh, const LakeShare& share, std::vector<char>& flags, const Progress& progress)
+{
+  const Components parts = FindFlagParts(
+    mesh, [&](Index t) { return flags[t] == Surface; }, progress.Between(0.0, 0.6));
+  std::vector<Opening> openings(parts.Count());
+  const auto isOpen = [&](Index t) { return flags[t] != Surface; };
+  VisitOpenings(
+    parts, openings, isOpen, progress.Between(0.6, 0.8), [&](Index t, Opening& opening) {
+      opening.Share += ToFixedPoint(share(t));
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        opening.ReachesBorder |= mesh.IsBorder(h);
+      }
+    });
+  VisitOpenings(
+    parts, openings, isOpen, progress.Between(0.8, 1.0), [&](Index t, Opening& opening) {
+      if (!opening.ReachesBorder && opening.Share < FixedOne)
+      {
+        flags[t] = Surface;
+      }
+    });
+}
+
+void CloseSmallBays(
+  const Mesh& mesh, const LakeShare& share, std::vector<char>& flags, const Progress& progress)
+{
+  const Components parts = FindFlagParts(
+    mesh, [&](Index t) { return flags[t]; }, progress.Between(0.0, 0.5));
+  std::vector<Opening> openings(parts.Count());
+  const auto isOpen = [&](Index t) { return flags[t] == Bay; };
+  VisitOpenings(
+    parts, openings, isOpen, progress.Between(0.5, 0.7), [&](Index t, Opening& opening) {
+      opening.Share += ToFixedPoint(share(t));
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        opening.Longest = std::max(opening.Longest, mesh.SquaredLengthOf(h));
+      }
+    });
+  VisitOpenings(
+    parts, openings, isOpen, progress.Between(0.7, 0.9), [&](Index t, Opening& opening) {
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        const char beside =
+          mesh.IsBorder(h) ? static_cast<char>(Outside) : flags[Mesh::Triangle(mesh.Twin(h))];
+        const std::int64_t length = beside == Bay
+          ? 0
+          : ToFixedPoint(std::sqrt(mesh.SquaredLengthOf(h) / opening.Longest)) >> 8;
+        opening.Open += beside == Surface ? -length : length;
+      }
+    });
+  VisitOpenings(
+    parts, openings, isOpen, progress.Between(0.9, 1.0), [&](Index t, Opening& opening) {
+      flags[t] = opening.Share < FixedOne && opening.Open <= 0 ? Surface : Outside;
+    });
+}
+
+std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBorder,
+  const std::vector<Index>& triangles, const LakeShare& share, std::vector<char>& keep,
+  const Progress& progress)
+{
+  Buffer<Index> parents; // of vertices, UnionFind.h
+  parents.Resize(list.Points.Count);
+  std::iota(parents.begin(), parents.end(), 0);
+  Buffer<std::int64_t> sums;
+  sums.Resize(list.Points.Count);
+  std::fill(sums.begin(), sums.end(), 0);
+  const Index count = static_cast<Index>(triangles.size());
+  ForEachStretch(count, progress.Between(0.0, 0.7), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+    {
+      const Index* ahead = list.CornersOf(triangles[std::min(i + 16, count - 1)]);
+      const Index* corners = list.CornersOf(triangles[i]);
+      const bool isAtBorder = atBorder.HasAny(corners);
+      const double area = isAtBorder ? 1.0 : share(triangles[i]);
+      Index root = RootOf(parents, corners[0]);
+      sums[root] += ToFixedPoint(area);
+      for (int k = 0; k < 3; ++k)
+      {
+        list.PrefetchPoint(ahead[k]);
+        Prefetch(&parents[ahead[k]]);
+        Prefetch(&sums[ahead[k]]);
+        const Index other = RootOf(parents, corners[k]);
+        if (other != root)
+        {
+          parents[std::max(root, other)] = std::min(root, other);
+          sums[std::min(root, other)] += sums[std::max(root, other)];
+          root = std::min(root, other);
+        }
+      }
+    }
+  });
+  std::vector<Index> others;
+  ForEachStretch(count, progress.Between(0.7, 1.0), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+    {
+      const Index t = triangles[i];
+      keep[t] = sums[RootOf(parents, list.CornersOf(t)[0])] < FixedOne;
+      if (!keep[t])
+      {
+        others.push_back(t);
+      }
+    }
+  });
+  return others;
+}
+
+} // namespace elevation

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Slivers.h"
+
+#include "Spacings.h"
+
+#include <cmath>
+
+namespace elevation
+{
+
+namespace
+{
+
+// The constant of the rule (Outline.cxx): the least height of a triangle, in short spacings.
+constexpr double LeastHeight = 0.1;
+
+bool IsFlat(const MeasuredTriangles& measured, Index t)
+{
+  const TriangleList& list = measured.List;
+  const double spacing = SpacingOf(measured.ShortSpacings, list.CornersOf(t));
+  return 2.0 * list.SquareShare(t, spacing) * spacing <
+    LeastHeight * std::sqrt(measured.Longest[t]);
+}
+
+/** Whether an edge is the longest of its triangle, or one of them. */
+bool IsLongest(const Mesh& mesh, Index h)
+{
+  const Index t = Mesh::Triangle(h);
+  const double squared = mesh.SquaredLengthOf(h);
+  return mesh.SquaredLengthOf(3 * t) <= squared && mesh.SquaredLengthOf(3 * t + 1) <= squared &&
+    mesh.SquaredLengthOf(3 * t + 2) <= squared;
+}
+
+} // namespace
+
+IdSet VerticesOfSlivers(
+  const MeasuredTriangles& measured, const IdSet& atBorder, const Progress& progress)
+{
+  IdSet vertices = atBorder;
+  for (const Index t : TrianglesAt(measured.List, atBorder, progress))
+  {
+    if (IsFlat(measured, t))
+    {
+      vertices.AddAll(measured.List.CornersOf(t));
+    }
+  }
+  return vertices;
+}
+
+void DropSlivers(const MeasuredTriangles& measured, const PartialMesh& partial, const IdSet& atEdge,
+  std::vector<char>& flags, const Progress& progress)
+{
+  const Mesh& mesh = partial.Surface;
+  const auto isSliver = [&](Index i) {
+    const Index t = partial.Triangles[i];
+    const Index* corners = measured.List.CornersOf(t);
+    return atEdge.Has(corners[0]) + atEdge.Has(corners[1]) + atEdge.Has(corners[2]) >= 2 &&
+      IsFlat(measured, t);
+  };
+  std::vector<Index> dropped;
+  const auto look = [&](Index h) {
+    const Index t = Mesh::Triangle(h);
+    if (flags[t] == Surface && IsLongest(mesh, h) && isSliver(t))
+    {
+      flags[t] = Bay;
+      dropped.push_back(t);
+    }
+  };
+  ForEachStretch(mesh.NumberOfHalfEdges(), progress, [&](Index begin, Index end) {
+    for (Index h = begin; h < end; ++h)
+    {
+      if (mesh.IsBorder(h) || flags[Mesh::Triangle(mesh.Twin(h))] != Surface)
+      {
+        look(h);
+      }
+      while (!dropped.empty())
+      {
+        const Index first = 3 * dropped.back();
+        dropped.pop_back();
+        for (Index side = first; side < first + 3; ++side)
+        {
+          if (!mesh.IsBorder(side))
+          {
+            look(mesh.Twin(side));
+          }
+        }
+      }
+    }
+  });
+}
+
+} // namespace elevation

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SmallPieces.h"
+
+#include "Kernel/Base/Base.h"
+#include "Spacings.h"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+
+/** What is known of the pieces before their vertices are counted. */
+struct PieceSizes
+{
+  PieceSizes(const Mesh& mesh, const Components& pieces, const std::vector<char>& keep,
+    const Progress& progress)
+    : Triangles(pieces.Count(), 0)
+    , Continues(pieces.Count(), 0)
+  {
+    ForEachStretch(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
+      {
+        const Index piece = pieces.ComponentOf(t);
+        this->Triangles[piece] += keep[t];
+        for (Index h = 3 * t; h < 3 * t + 3; ++h)
+        {
+          this->Continues[piece] |= mesh.Twin(h) == h;
+        }
+      }
+    });
+  }
+
+  /** Whether it has more triangles than so few vertices can form. */
+  bool IsLarge(Index piece) const { return this->Triangles[piece] > 3 * SpacingNeighbor; }
+
+  std::vector<Index> Triangles;
+  std::vector<char> Continues; ///< beyond the mesh
+};
+
+/** The pairs (piece, vertex) of pieces that may be small, each once; sorted. */
+std::vector<std::pair<Index, Index>> CornersOfSmall(const Mesh& mesh, const Components& pieces,
+  const PieceSizes& sizes, const std::vector<char>& keep, const Progress& progress)
+{
+  std::vector<std::pair<Index, Index>> corners;
+  ForEachStretch(mesh.NumberOfTriangles(), progress.Between(0.0, 0.7), [&](Index begin, Index end) {
+    for (Index h = 3 * begin; h < 3 * end; ++h)
+    {
+      const Index piece = pieces.ComponentOf(Mesh::Triangle(h));
+      if (keep[Mesh::Triangle(h)] && !sizes.IsLarge(piece))
+      {
+        corners.emplace_back(piece, mesh.Origin(h));
+      }
+    }
+  });
+  Sort(corners.begin(), corners.end(), std::less<std::pair<Index, Index>>(),
+    progress.Between(0.7, 1.0));
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+} // namespace
+
+std::vector<Index> DropSmallPieces(
+  const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
+{
+  const Components pieces = FindComponents(mesh, progress.Between(0.0, 0.5), [&](Index h) {
+    return keep[Mesh::Triangle(h)] == keep[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
+  });
+  const PieceSizes sizes(mesh, pieces, keep, progress.Between(0.5, 0.7));
+  const std::vector<std::pair<Index, Index>> corners =
+    CornersOfSmall(mesh, pieces, sizes, keep, progress.Between(0.7, 1.0));
+  bool hasLarge = false;
+  for (Index piece = 0; piece < pieces.Count(); ++piece)
+  {
+    hasLarge = hasLarge || sizes.IsLarge(piece);
+  }
+  std::vector<char> isSmall(pieces.Count(), 0);
+  std::vector<Index> unknown;
+  for (auto first = corners.begin(); first != corners.end();)
+  {
+    const auto last = std::find_if(first, corners.end(),
+      [&](const std::pair<Index, Index>& corner) { return corner.first != first->first; });
+    const bool isFew = last - first <= SpacingNeighbor;
+    for (auto corner = first; isFew && sizes.Continues[first->first] && corner != last; ++corner)
+    {
+      unknown.push_back(corner->second);
+    }
+    isSmall[first->first] = isFew;
+    hasLarge = hasLarge || !isFew;
+    first = last;
+  }
+  for (Index t = 0; hasLarge && unknown.empty() && t < mesh.NumberOfTriangles(); ++t)
+  {
+    keep[t] = keep[t] && !isSmall[pieces.ComponentOf(t)];
+  }
+  return unknown;
+}
+
+} // namespace elevation

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Pieces of a surface with too few vertices for spacings of their own, such as lone points far away
+ * from the others.
+ */
+#ifndef elevation_Trim_SmallPieces_h
+#define elevation_Trim_SmallPieces_h
+
+#include "Kernel/Mesh/Mesh.h"
+
+#include <vector>
+
+namespace elevation
+{
+
+/**
+ * Drops pieces with at most SpacingNeighbor vertices, if others have more.
+ * @param[in,out] keep  one per triangle: whether it is surface
+ * @return vertices of pieces that look small but continue beyond the mesh; if any, nothing is done
+ * @throws Aborted, std::bad_alloc
+ */
+std::vector<Index> DropSmallPieces(
+  const Mesh& mesh, std::vector<char>& keep, const Progress& progress);
+
+} // namespace elevation
+
+#endif
