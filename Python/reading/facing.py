@@ -36,7 +36,7 @@ def check_faces(path, data, options):
 
 
 def notes_on_faces(faces):
-    """Notes on the faces of vtkPolyData. Raises ElevationSurfaceError where they are no elevation
+    """Notes on the faces of vtkPolyData. Raises ElevationSurfaceError where they are not an elevation
     surface."""
     areas, slopes = signed_areas(faces)
     total = numpy.count_nonzero(areas) + numpy.count_nonzero(slopes[areas == 0])
