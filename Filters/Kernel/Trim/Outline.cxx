@@ -13,9 +13,11 @@
 //   DefaultTolerance 4.5: below, surface tears; above, channels and lakes close. With 4, random
 //     points with channels 0.15 -> 0.51; with 6, scan lines 0.11 -> 0.41, and two of three lakes
 //     with a radius of three spacings close.
+//   SpacingNeighbor 6 (Spacings.h): with fewer the spacing wavers, with more it reaches too far. With
+//     4 and 12, where density falls 0.21 -> 0.27 and 0.29; one of five, and half of the lakes close.
 //   LargestSpacingInTriangle 2 (Spacings.h): two lone points, whose spacing is the distance to all
-//     others. Without it triangles with both are surface; with 1, random points 0.10 -> 0.23. From
-//     1.5 on, no figure depends on it.
+//     others. Without it, of groups of two to six lone points 0 -> 0.54 are surface; with 1, random
+//     points 0.10 -> 0.23. Nothing else depends on it from 1.5 on.
 //   LongestInBay 1.6: an outline that follows each point inwards. Without bays, random points 0.10
 //     -> 0.18; with 3.2, survey lines 0.07 -> 0.12; without a limit, random points 0.16.
 //   The least lake, the tolerance squared (Openings.h): speckle. With half of it random points 0.10
@@ -28,6 +30,9 @@
 //   CertainSurface 0.52: time. Without it extraction from random points takes 13 times as long, and
 //     no figure changes by more than 0.01. With 0.6 gaps between lines and a swath may close; with
 //     1.04, random points with channels 0.15 -> 0.18.
+//   Twice the second shortest edge, for short spacings (MeasuredTriangles.h): gaps between lines.
+//     Without it, what is kept of jittered lines steps by 0.14 of the hull, not by less than 0.03,
+//     as they grow (TestScales); no figure of the trial changes.
 //   SmallGroup 0.7: time. Without it, extraction from random points takes 1.7 times as long, and no
 //     figure changes. With 1.4, seven of ten lakes with a radius of three close.
 #include "Outline.h"
