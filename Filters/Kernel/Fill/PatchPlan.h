@@ -5,7 +5,7 @@
  * The plan of a patch: how its new points are arranged, how far apart, and how many there can be.
  *
  * In: the boundary of a hole, the points and edges that it has inside, and the surface's lattice,
- * if it has one. There are three arrangements:
+ * if it has one. Out: one of three arrangements, the spacing, and bounds of the numbers:
  *   Nodes   If the hole's boundary lies on the surface's lattice, and the lattice is not thinned:
  *           the median area of the triangles at the boundary is at most 1.75 cells. The new points
  *           are the nodes inside. (A thinned lattice has many more nodes than points.)
