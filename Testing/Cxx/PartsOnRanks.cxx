@@ -927,7 +927,7 @@ void CheckCuts(const Ranks& ranks)
   std::vector<Message> warnings;
   parts.Triangulate(1, nullptr, DelaunayOptions(), warnings);
   const std::vector<vtkIdType> points =
-    ranks.Collect(std::vector<vtkIdType>{ static_cast<vtkIdType>(parts.Own().Points) });
+    ranks.Collect(std::vector<vtkIdType>{ static_cast<vtkIdType>(parts.GetEffort().Points) });
   const std::map<int, std::vector<vtkIdType>> expected = { { 2, { 5005, 5002 } },
     { 3, { 3337, 3358, 3312 } } };
   const auto ofRanks = expected.find(ranks.Count());

@@ -31,7 +31,6 @@ using testing_surfaces::TurnedSheet;
 
 namespace
 {
-constexpr double RowHeight = 0.8660254037844386;
 
 /** The Delaunay triangulation of points without the triangles whose centre is to be lost. */
 Mesh Cut(const std::vector<Point2>& points, const std::function<bool(const Point2&)>& isLost)
