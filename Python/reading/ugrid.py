@@ -33,7 +33,7 @@ def is_ugrid(path):
     try:
         with quiet():
             return mesh_of(arrays_of(path)) is not None
-    except (AttributeError, RuntimeError):
+    except (AttributeError, RuntimeError, TypeError):
         return False  # another kind of netCDF or HDF5, or damaged
 
 
@@ -80,7 +80,7 @@ def read_points(path, options):
             raise
         except KeyError as error:
             raise FileError(f"{path}: is damaged: it has no variable {error.args[0]}") from None
-        except (IndexError, RuntimeError, ValueError) as error:
+        except (IndexError, RuntimeError, TypeError, ValueError) as error:
             raise FileError(f"{path}: cannot be read: {one_line(error)}") from None
     keep = numpy.isfinite(columns[2])
     if not keep.any():

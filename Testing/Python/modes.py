@@ -374,7 +374,7 @@ def set_properties(row, of):
 
     What is filled are holes that a boundary has cut out, but where a row is about that.
     """
-    if row.filter == "Fill" and "cut out" not in row.feature:
+    if row.filter == "Fill" and "cut-outs" not in row.feature:
         of("Fill").SetFillCutOuts(True)
     for name, value in row.properties.items():
         name = name if "." in name else row.filter + "." + name

@@ -13,6 +13,8 @@ namespace elevation
 namespace
 {
 
+constexpr std::int64_t LakeWithBays = 4; // least lakes
+
 /** The parts of triangles with equal values of flagOf(t), connected by edges. */
 template <typename FlagOf>
 Components FindFlagParts(const Mesh& mesh, FlagOf&& flagOf, const Progress& progress)
@@ -77,9 +79,9 @@ void CloseSmallLakes(
     });
   VisitOpenings(
     parts, openings, isOpen, progress.Between(0.8, 1.0), [&](Index t, Opening& opening) {
-      if (!opening.ReachesBorder && opening.Share < FixedOne)
+      if (!opening.ReachesBorder && opening.Share < LakeWithBays * FixedOne)
       {
-        flags[t] = Surface;
+        flags[t] = opening.Share < FixedOne ? Surface : Outside;
       }
     });
 }

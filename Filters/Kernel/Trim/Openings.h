@@ -31,7 +31,7 @@ enum Flag : char
 using LakeShare = std::function<double(Index)>;
 
 /**
- * Makes lakes smaller than the least one surface.
+ * Makes lakes smaller than the least one surface; lakes of less than four such have no bays.
  * @param[in,out] flags  a Flag for each triangle
  * @throws Aborted, std::bad_alloc
  */

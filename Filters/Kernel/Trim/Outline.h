@@ -136,9 +136,9 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
  *   - An opening between surface triangles is a lake only if it is larger than a square with a side
  *     of GapTolerance spacings; a smaller one is closed.
  *   - Bays: slivers, and triangles that are not surface, with edges of at most 1.6 GapTolerance
- *     times the largest spacing of a corner (times its scale). What is connected of them is surface
- *     if it is smaller than that square and has surface along at least half of its border. So the
- *     outline does not follow each point inwards.
+ *     times the largest spacing of a corner (times its scale); not in lakes of less than four such
+ *     squares. What is connected of them is surface if it is smaller than that square and has
+ *     surface along at least half of its border. So the outline does not follow each point inwards.
  *   - A piece with 6 vertices or fewer, too few for spacings of their own, is not surface, unless
  *     all pieces are as small.
  *   - With a Grid, triangles that are reached from the border of the mesh across edges of more than

@@ -230,11 +230,12 @@ struct RuleByTheLetter
       {
         const bool isAtBorder =
           mesh.IsBorder(3 * t) || mesh.IsBorder(3 * t + 1) || mesh.IsBorder(3 * t + 2);
-        sum += isAtBorder ? 1.0 : before[t] ? 0.0 : share(t);
+        sum += isAtBorder ? 4.0 : before[t] ? 0.0 : share(t);
       }
       for (const Index t : lake)
       {
         this->Keep[t] = sum < 1.0;
+        isInBay[t] = isInBay[t] && sum >= 4.0;
       }
     }
     for (Index t = 0; t < count; ++t)
