@@ -7,7 +7,7 @@ import numpy
 from paraview import simple
 
 from plugin_testing import (array, check, check_close, check_equal, check_rules, fetch, finish,
-                            information, lines, number_of_border_edges, points, screenshot,
+                            information, lines, border_edge_count, points, screenshot,
                             signed_areas, start, triangles)
 
 
@@ -89,7 +89,7 @@ check_close(signed_areas(filled).sum(),
             signed_areas(kept).sum() + array(holes.GetCellData(), "Area").sum(),
             "area of the surface, with its holes")
 check_rules("the filled surface covers nothing twice", filled)
-check_equal(number_of_border_edges(kept) - number_of_border_edges(filled),
+check_equal(border_edge_count(kept) - border_edge_count(filled),
             array(holes.GetCellData(), "NumberOfEdges").sum(), "rim edges that were closed")
 
 

@@ -15,7 +15,7 @@ from vtkmodules.vtkIOImage import vtkPNGReader
 import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "Python"))
-from mesh_rules import findings, number_of_border_edges  # noqa: E402,F401
+from mesh_rules import findings, border_edge_count  # noqa: E402,F401
 from outcomes import noted  # noqa: E402
 
 FAILURES = []

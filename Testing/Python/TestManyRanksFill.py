@@ -151,15 +151,18 @@ def compare_random(random, claim):
 
 def check_filled_before(random, claim):
     """What has been filled before keeps its marks, and the numbers of holes go on."""
-    coordinates = clouds(random, 1000)
-    triangles = with_holes(random, coordinates, triangulated(coordinates), 9)
-    size = numpy.ptp(coordinates[:, 0])
-    before = fill(surface(coordinates, triangles), True, MaximumHoleSize=0.1 * size)[0].GetOutput()
-    points, cells = before.GetPointData(), before.GetCellData()
-    arrays = [(name, vtk_to_numpy(points.GetArray(name))) for name in ("FilledPoint", "FilledError")]
-    holes = vtk_to_numpy(cells.GetArray("HoleId"))
-    check((holes >= 0).any(), claim + ": a hole is filled")
+    filled = numpy.zeros(0)
+    while not (filled >= 0).any():
+        coordinates = clouds(random, 1000)
+        triangles = with_holes(random, coordinates, triangulated(coordinates), 9)
+        before = fill(surface(coordinates, triangles), True)[0].GetOutput()
+        filled = vtk_to_numpy(before.GetCellData().GetArray("HoleId"))
+    arrays = [(name, vtk_to_numpy(before.GetPointData().GetArray(name)))
+              for name in ("FilledPoint", "FilledError")]
     coordinates, triangles = vtk_to_numpy(before.GetPoints().GetData()), triangles_of(before)
+    holes = {tuple(corners): hole for corners, hole in zip(triangles.tolist(), filled.tolist())}
+    triangles = with_holes(random, coordinates, triangles, 4)
+    holes = numpy.array([holes[tuple(corners)] for corners in triangles.tolist()])
     compare(claim, coordinates, triangles, owners_of(random, coordinates, triangles),
             numpy.arange(len(coordinates)), arrays, True, holes)
 
