@@ -133,12 +133,12 @@ def quadrilaterals():
 
 
 # ---- the messages ------------------------------------------------------------------------------
-messages = guide_messages("What can go wrong")
-check_equal(sorted(messages), sorted(CASES), "headings with a message, and cases of this test")
+in_guide = guide_messages("What can go wrong")
+check_equal(sorted(in_guide), sorted(CASES), "headings with a message, and cases of this test")
 for heading, case in CASES.items():
     messages = case()
     check_equal(len(messages), 1, "%s: number of messages %s" % (heading, messages))
-    expected = messages.get(heading, "")
+    expected = in_guide.get(heading, "")
     check(messages and is_message(messages[0], expected),
           "%s: %s, not %s" % (heading, messages, expected))
 
