@@ -5,10 +5,10 @@
  * Work on a surface that is cut into parts, and what the parts send each other. Private to the
  * module.
  *
- * A program for parts is a list of steps. In a step each part is worked on by itself, with what
- * others have sent it, and says what to send to which part; all that is sent in a step is there
- * when the next one begins. Parts have numbers, and the program knows nothing else of where they
- * are:
+ * A program for parts is a sequence of ForEach() and Deliver(). In a step, ForEach(), each part is
+ * worked on by itself, with what others have sent it, and says what to send to which part. That
+ * waits in memory until all ranks call Deliver(), and then lies in the boxes. A step itself must
+ * not communicate. Parts have numbers, and the program knows nothing else of where they are:
  *   - one for each rank, in memory;
  *   - many for one process, in files, one of them in memory at a time;
  *   - many for each of several ranks, in files.
@@ -24,7 +24,8 @@
  * go with their box.
  *
  * Cost: what parts of the same rank send each other is moved, not copied, or appended to a file.
- * For other ranks there is one message for each thing that is sent, and a list of them.
+ * For other ranks there is one message for each thing that is sent, and a list of them. What a step
+ * sends is in memory at once, also of parts in files; ForEachInTurn() limits that.
  *
  * It is the model of DIY [Morozov & Peterka 2016]; Design.md says why it is not DIY.
  *
@@ -100,7 +101,8 @@ public:
 
   /**
    * A step on all ranks: for each part of this rank, one after another.
-   * @throws Error, Aborted on all ranks when any of them fails; std::bad_alloc: on one rank alone
+   * @throws Error, Aborted on all ranks when any of them fails, too little memory included; where
+   * there is one rank in all, what the step throws
    */
   void ForEach(const Progress& progress,
     const std::function<void(int part, const Progress& ofPart)>& step) const;

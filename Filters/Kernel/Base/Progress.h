@@ -23,7 +23,10 @@
 namespace elevation
 {
 
-/** Thrown when the input is invalid; the message names the offending point, edge or cell. */
+/**
+ * Thrown where there can be no result: the input is invalid, there are too many points, a disk is
+ * full. The message names the point, edge, cell or file.
+ */
 class Error : public std::runtime_error
 {
 public:
@@ -39,8 +42,9 @@ public:
 
 /**
  * Where a computation reports the fraction done, which rises in [0, 1], and learns that it has to
- * stop. A value: a copy, or that of a step, serves as long as it is needed. Every pass over all
- * points or triangles reports often enough that an abort takes effect within half a second.
+ * stop. Cheap to copy; copies and those of steps share the observer, and keep it alive. Report() and
+ * ReportStep() call it. Only the thread that has begun the computation does so, and often enough
+ * that an abort takes effect within half a second.
  */
 class Progress
 {
@@ -58,7 +62,7 @@ public:
 
   explicit operator bool() const { return bool(this->Observed); }
 
-  /** @return false to stop */
+  /** Only where there is an observer. @return false to stop */
   bool operator()(double fraction) const
   {
     // Rounding must not pass the end, where the next part begins.
@@ -66,7 +70,7 @@ public:
       std::min(this->End, this->Begin + fraction * (this->End - this->Begin)));
   }
 
-  /** That of a step, which is from one fraction to another of the whole. */
+  /** The progress of a step that takes the whole from @a begin to @a end. */
   Progress Between(double begin, double end) const
   {
     Progress step = *this;
@@ -134,8 +138,9 @@ private:
 };
 
 /**
- * Which reports an observer hears of, who may be slow: those a thousandth beyond the last one that
- * it heard of, and 20 a second. The first one, and the end.
+ * Which reports reach an observer, who may be slow: those a thousandth beyond the last one that
+ * reached it, or 50 ms after it; always the first, and each at 1. (An abort is asked for at every
+ * report.)
  */
 class ReportPace
 {

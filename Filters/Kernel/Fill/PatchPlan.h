@@ -5,16 +5,21 @@
  * The plan of a patch: how its new points are arranged, how far apart, and how many there can be.
  *
  * In: the boundary of a hole, the points and edges that it has inside, and the surface's lattice,
- * if it has one. Out: one of three arrangements, the spacing, and bounds of the numbers:
+ * if it has one. Out: one of three arrangements, the spacing, and limits of the numbers. In this
+ * order:
+ *   Even    If the user sets a spacing: rows one spacing apart, every other one shifted by half a
+ *           step, so that triangles are nearly equilateral.
  *   Nodes   If the hole's boundary lies on the surface's lattice, and the lattice is not thinned:
  *           the median area of the triangles at the boundary is at most 1.75 cells. The new points
  *           are the nodes inside. (A thinned lattice has many more nodes than points.)
- *   Graded  If the mean length of eight consecutive boundary edges is, at one place, more than
- *           three times that at another. This mean is the spacing at the boundary; inwards the
- *           spacing grows by 0.2 times the distance, up to the largest one at the boundary.
- *   Even    Otherwise, and always if the user sets a spacing: rows one spacing apart, every other
- *           one shifted by half a step, so that triangles are nearly equilateral. The default
- *           spacing is the mean length of the boundary's edges [Nguyen, eq. 1].
+ *   Graded  If the largest spacing is more than three times the least. The spacing at the boundary
+ *           is the mean length of the eight edges around a place (of all, if a ring has fewer), at a
+ *           point inside the mean length of its inner edges; inwards it grows by 0.2 times the
+ *           distance, up to the largest one.
+ *   Even    Otherwise. The spacing is the mean length of the boundary's edges [Nguyen, eq. 1].
+ *
+ * A region is a hole made of triangles with edges longer than Holes::LongestEdge, which are long;
+ * one of lines has more inner edges than boundary edges.
  * In a region, the mean is that of all edges, of the boundary and inside, that are not long: those
  * along the surface's own border may be. (It is the limit where all are.) In a region of lines,
  * which has more inner edges than boundary edges, an edge counts as at least a tenth of the gap
@@ -24,7 +29,8 @@
  * the inner edges there. With Nodes, inner edges are not kept as such: those between neighbouring
  * nodes come by themselves, longer ones get a node inside.
  *
- * Cost: linear in the edges; for Nodes, in the triangles at the boundary.
+ * Cost: linear in the edges; for Nodes, in the triangles at the boundary. Only std::bad_alloc is
+ * thrown.
  *
  * [Nguyen] A Complete Method for Reconstructing an Elevation Surface of 3D Point Clouds.
  */
@@ -66,10 +72,11 @@ struct PatchPlan
   double Spacing = 0.0; ///< for Even; else the mean length of the edges
   /** For Graded: at the origin of each edge, as of VisitEdges(); at both ends of inner edges. */
   std::vector<double> Spacings;
-  /** An upper bound of the number of new points; above 0, not a whole number. */
+  /** The most new points that the patch may insert; above 0, not a whole number. */
   double MostPoints = 0.0;
   double ExpectedPoints = 0.0; ///< about how many there will be
-  double MostRows = 0.0;       ///< how many more rows than edges the edges can meet
+  /** The rows that cross the edges, at most, less one for each edge: many in a long thin hole. */
+  double MostRows = 0.0;
   Lattice Steps;               ///< for Nodes
   /** The distance between neighbouring numbers at the largest coordinate of the hole. */
   double Precision = 0.0;

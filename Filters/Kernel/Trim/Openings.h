@@ -4,8 +4,11 @@
  * @file
  * Openings between the triangles of a surface, and which of them are too small to stay open.
  *
- * An opening is a set of triangles that are not surface, connected by edges. A lake is one that
- * does not reach the border of the mesh; a bay lies open on a side. Cost: linear.
+ * An opening is a set of triangles connected by edges. A lake is one of triangles that are not
+ * Surface, and does not reach the border of the mesh. A bay is one of triangles with the flag Bay;
+ * it may be a part of a lake. An opening is small if the shares of its triangles sum to less than 1:
+ * each is the area divided by that of the least lake there, at most 1, in whole numbers, so that
+ * the order does not matter. Cost: linear.
  */
 #ifndef elevation_Trim_Openings_h
 #define elevation_Trim_Openings_h
@@ -19,7 +22,7 @@
 namespace elevation
 {
 
-/** Flags of triangles while the outline is sought, one each. */
+/** Flags of triangles while the outline is sought, one each, kept as char. */
 enum Flag : char
 {
   Outside = 0,
@@ -31,21 +34,25 @@ enum Flag : char
 using LakeShare = std::function<double(Index)>;
 
 /**
- * Makes lakes smaller than the least one surface; lakes of less than four such have no bays.
+ * Small lakes become Surface. In lakes whose shares sum to less than 4 all triangles become Outside,
+ * so that they have no bays. Call it before CloseSmallBays().
  * @param[in,out] flags  a Flag for each triangle
  * @throws Aborted, std::bad_alloc
  */
 void CloseSmallLakes(
   const Mesh& mesh, const LakeShare& share, std::vector<char>& flags, const Progress& progress);
 
-/** The same for bays with surface along at least half of their border. The others are outside. */
+/**
+ * Small bays with surface along at least half of their border become Surface, the others Outside.
+ * Beyond the border of the mesh is outside.
+ */
 void CloseSmallBays(
   const Mesh& mesh, const LakeShare& share, std::vector<char>& flags, const Progress& progress);
 
 /**
- * Removes triangles that are surface in any case from a list: groups, connected by corners and away
- * from the border, without room for a lake.
- * @param[in,out] keep  set for the triangles removed
+ * Finds the triangles of a list that may hold a lake: groups of them, connected by corners, that are
+ * not small or touch the border. The others are surface.
+ * @param[in,out] keep  of the triangles in the list: 1 for those that are surface, 0 for the others
  * @return the others
  * @throws Aborted, std::bad_alloc
  */
