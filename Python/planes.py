@@ -64,7 +64,7 @@ def best_plane(points, ranks=None):
     """(the Plane that fits best, (3,) scatter off it, across and along it) of the points of all ranks."""
     xyz = sample_of(points, ranks)
     if len(xyz) < 3:
-        raise ElevationSurfaceError(f"{argument('plane')}: there are fewer than three finite points")
+        raise ElevationSurfaceError(f"{argument('plane')}: there are fewer than three finite points that are shown")
     unit = numpy.abs(xyz).max() or 1.0  # squares of large ones would be infinite
     middle = (xyz / unit).mean(axis=0)
     squares, directions = numpy.linalg.eigh(numpy.cov((xyz / unit - middle).T))

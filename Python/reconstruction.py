@@ -354,7 +354,10 @@ def run_chain(
     )
     result.removes_unused = given.get("remove_unused_points", True)
     if result.removes_unused:
-        result.notes += replaced_ids(cloud.points)
+        replaced = replaced_ids(cloud.points)
+        if strict and replaced:
+            raise ElevationSurfaceError(replaced[0])
+        result.notes += replaced
         result.surface = without_unused(ranks, result.complete, last_id(ranks, cloud.points))
     if cloud.plane:
         turn_back(result)
@@ -366,8 +369,8 @@ def replaced_ids(points):
     if not points.GetPointData().HasArray(ORIGINAL_IDS) or original_ids(points) is not None:
         return []
     return [
-        f"the point array {ORIGINAL_IDS} is not one signed integer for each point, so it is replaced by the "
-        "numbers of the points; rename it to keep it"
+        f"the point array {ORIGINAL_IDS} is not one signed integer for each point, so it is replaced "
+        "by their global ids or numbers; rename it to keep it"
     ]
 
 

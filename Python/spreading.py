@@ -10,6 +10,7 @@ its own.
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.util.vtkConstants import VTK_ID_TYPE, VTK_INT, VTK_LONG, VTK_LONG_LONG, VTK_SHORT
 from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints, vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
@@ -20,6 +21,7 @@ from .ranks import agreed, all_values, before, collected, packed, shared, togeth
 from .vtkElevationSurface import vtkTrimOutwardTriangles
 
 ORIGINAL_IDS = "OriginalPointIds"  # of points of the input, in a surface without unused points
+ID_TYPES = (VTK_ID_TYPE, VTK_LONG_LONG, VTK_LONG, VTK_INT, VTK_SHORT)
 IDS = "PlaceInInput"  # made for the way, where points have no global ids
 GHOSTS = vtkDataSetAttributes.GhostArrayName()
 RANK_FIELDS = ("WorkOfRank", "WorkOfTrim")  # field data
@@ -106,10 +108,11 @@ def follow_points(ranks, earlier, reasons, later, points):
 
 
 def original_ids(data):
-    """The array OriginalPointIds of points, (n,) of any kind of signed integers, or None."""
-    array = data.GetPointData().GetArray(ORIGINAL_IDS)
-    numbers = None if array is None else vtk_to_numpy(array)
-    return numbers if numbers is not None and numbers.ndim == 1 and numbers.dtype.kind == "i" else None
+    """The array OriginalPointIds of points, (n,) of the integers that UsedPoints.cxx knows, or None."""
+    array = data.GetPointData().GetAbstractArray(ORIGINAL_IDS)
+    if array is None or array.GetDataType() not in ID_TYPES or array.GetNumberOfComponents() != 1:
+        return None
+    return vtk_to_numpy(array)
 
 
 def without_unused(ranks, surface, last):

@@ -156,6 +156,7 @@ def triangulate(run, lines, error):
         hidden = marked_points(points, vtkDataSetAttributes.HIDDENPOINT)
         why = why_no_triangle(ranks, coordinates_of(points)[~hidden], limit, result.warnings)
         count = total(ranks, numpy.count_nonzero(hidden))
+        why = why.rstrip(".") if count else why
         why += f"; {counted(count, 'point is', 'points are')} marked as hidden" if count else ""
         raise ElevationSurfaceError(together(ranks, lambda: [why])[0])
 

@@ -10,6 +10,7 @@ import numpy
 
 import meshes
 from vtkelevationsurface import (
+    ElevationSurfaceError,
     read,
     reconstruct,
     vtkFillElevationHoles,
@@ -146,7 +147,8 @@ class Filters(unittest.TestCase):
 
     def test_an_array_of_this_name_that_has_no_ids_is_replaced_with_a_warning(self):
         other = numpy.linspace(0.0, 1.0, len(XYZ))
-        for array in (other, numpy.column_stack((other, other)).astype("i8"), numpy.arange(len(XYZ), dtype="u4")):
+        number = numpy.arange(len(XYZ))
+        for array in (other, numpy.column_stack((number, number)), number.astype("u4"), number.astype("i1")):
             data = meshes.cloud(XYZ, arrays=[("OriginalPointIds", array)])
             removing = vtkGridDelaunay2D()
             removing.SetInputData(data)
@@ -156,6 +158,8 @@ class Filters(unittest.TestCase):
             self.assertEqual([one.code for one in messages.warnings], ["OriginalIdsReplaced"])
             result = reconstruct(data, fill=False)
             self.assertEqual(sum("OriginalPointIds" in note for note in result.notes), 1)
+            with self.assertRaisesRegex(ElevationSurfaceError, "OriginalPointIds"):
+                reconstruct(data, trim=False, fill=False, strict=True)
             for surface in (removing.GetOutput(), result.surface):
                 xyz = vtk_to_numpy(surface.GetPoints().GetData())
                 numpy.testing.assert_array_equal(XYZ[original(surface)], xyz)

@@ -36,8 +36,7 @@ ELEVATION_SENTENCE(InvalidPrecision,
   "{property:OutputPointsPrecision} is {value}; it must be 0 (single), 1 (double) or 2 (default).");
 ELEVATION_SENTENCE(OriginalIdsReplaced,
   "The point array OriginalPointIds of the input is not one signed integer for each point, so it "
-  "is "
-  "replaced by the numbers of the points. Rename it to keep it.");
+  "is replaced by their global ids or numbers. Rename it to keep it.");
 ELEVATION_SENTENCE(FoldsInSingle,
   "In single precision cell {cell} of the output would turn over, lose its area or reach infinity. "
   "Use {property:OutputPointsPrecision} 1 (double), or move the origin to the points first.");
@@ -107,8 +106,8 @@ ELEVATION_SENTENCE(NoTriangle,
   "No triangle was made: the {points} input points are fewer than three distinct finite points, "
   "or all on one line.");
 ELEVATION_SENTENCE(NoTriangleShown,
-  "No triangle was made: of the {points} input points {hidden} are hidden (by vtkGhostType), and "
-  "the others are fewer than three distinct finite points, or all on one line.");
+  "No triangle was made: of the {points} input points {hidden} are hidden (by vtkGhostType), which "
+  "leaves fewer than three distinct finite points, or all on one line.");
 ELEVATION_SENTENCE(FewTriangles,
   "{property:MaximumEdgeLength} is {limit}, and {missing} of {points} points are left without a "
   "triangle, because the points are farther apart.");
