@@ -45,6 +45,17 @@ const Mesh& LargeSheet()
   return sheet;
 }
 
+/** Its points, with elevations. */
+testing_points::Cloud LargeSheetPoints()
+{
+  testing_points::Cloud points;
+  for (const Point2& p : LargeSheet().Points)
+  {
+    points.Add(p.X, p.Y, 0.1 * p.X * p.Y);
+  }
+  return points;
+}
+
 /** What a computation reports; the fractions are checked to rise within [0, 1]. */
 template <typename Computation>
 std::vector<double> FractionsOf(Computation&& computation)
@@ -150,16 +161,11 @@ TEST(Progress, IsTheLastReportWhereItAsksToStop)
   FillOptions filling;
   filling.Spacing = 0.05;
   const Mesh& sheet = LargeSheet();
-  std::vector<double> coordinates;
-  for (const Point2& p : sheet.Points)
-  {
-    coordinates.insert(coordinates.end(), { p.X, p.Y, 0.1 * p.X * p.Y });
-  }
+  const testing_points::Cloud points = LargeSheetPoints();
   TriangleList list;
   list.Corners = sheet.Triangles.data();
   list.Count = sheet.NumberOfTriangles();
-  list.Points.Double = coordinates.data();
-  list.Points.Count = sheet.NumberOfPoints();
+  list.Points = points.View();
   const Holes holes = FindHoles(sheet);
   const std::function<void(const Progress&)> computations[] = {
     [&](const Progress& monitor) {
@@ -230,18 +236,11 @@ TEST(Progress, OfFillingOneLargeHoleIsNotSilent)
 {
   EXPECT_LT(LargestSilence([&](const Progress& progress) {
     const Mesh& mesh = LargeSheet();
-    std::vector<double> coordinates;
-    for (const Point2& p : mesh.Points)
-    {
-      coordinates.insert(coordinates.end(), { p.X, p.Y, 0.1 * p.X * p.Y });
-    }
-    PointView points;
-    points.Double = coordinates.data();
-    points.Count = mesh.NumberOfPoints();
+    const testing_points::Cloud points = LargeSheetPoints();
     FillOptions options;
     options.Spacing = 0.02;
     options.Monitor = progress;
-    const FillResult result = FillHoles(mesh, points, FindHoles(mesh), options);
+    const FillResult result = FillHoles(mesh, points.View(), FindHoles(mesh), options);
     EXPECT_GT(result.NumberOfPoints(), 250000);
   }),
     0.1);
@@ -250,18 +249,11 @@ TEST(Progress, OfFillingOneLargeHoleIsNotSilent)
 TEST(Progress, OfFillingRisesWhileALatticeIsSought)
 {
   const Mesh& mesh = LargeSheet();
-  std::vector<double> coordinates;
-  for (const Point2& p : mesh.Points)
-  {
-    coordinates.insert(coordinates.end(), { p.X, p.Y, 0.1 * p.X * p.Y });
-  }
-  PointView points;
-  points.Double = coordinates.data();
-  points.Count = mesh.NumberOfPoints();
+  const testing_points::Cloud points = LargeSheetPoints();
   FillOptions options;
   const std::vector<double> fractions = FractionsOf([&](const Progress& progress) {
     options.Monitor = progress;
-    FillHoles(mesh, points, FindHoles(mesh), options);
+    FillHoles(mesh, points.View(), FindHoles(mesh), options);
   });
   // The search has the first fiftieth.
   const auto end = std::upper_bound(fractions.begin(), fractions.end(), 0.02);
