@@ -18,6 +18,7 @@ import unittest
 
 import numpy
 from in_folder import Program, draws
+from many_programs import ManyPrograms
 from meshes import by_places as triangles, sorted_rows, sorted_triangles, triangles_of
 from vtkelevationsurface.reading import vtk_files
 from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray, vtk_to_numpy
@@ -26,27 +27,6 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 HERE = sys.argv.index("--mpirun")
 MPIRUN = sys.argv[HERE + 1 :]
 DATA = sys.argv[sys.argv.index("-D") + 1]
-# The program, with a rank on which a disk is full (of files above a size), or a function fails with an error
-# of a disk. MPI has its own files by then.
-FAILING = """
-import os, resource, runpy, sys
-from vtkelevationsurface import many_processes, pieces
-rank, what, start = int(sys.argv.pop(1)), sys.argv.pop(1), many_processes.start_ranks
-
-def fail(*_):
-    raise OSError(28, "No space left on device")
-
-def started():
-    controller = start()
-    if controller.GetLocalProcessId() == rank and what.isdigit():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (int(what), int(what)))
-    elif controller.GetLocalProcessId() == rank:
-        setattr(os if what == "mkdir" else pieces, what, fail)
-    return controller
-
-many_processes.start_ranks = started
-runpy.run_module("vtkelevationsurface", run_name="__main__")
-"""
 VARY = ("times", "written", "command", "options")  # what two runs differ in
 
 
@@ -78,6 +58,15 @@ def arrays(data):
             for i in range(data.GetNumberOfArrays())}
 
 
+STARTED = {}  # ManyPrograms by the number of ranks
+
+
+def tearDownModule():
+    ends = [programs.end() for programs in STARTED.values()]
+    if any(ends):
+        raise AssertionError(f"mpirun ended with {ends}")
+
+
 def plain(output):
     """The lines without those of libraries of MPI, which report on their surroundings in brackets."""
     return [line for line in output.splitlines() if not line.startswith("[")]
@@ -90,9 +79,17 @@ class OnRanks(Program):
             return self.call(*arguments)
         return self.execute(*MPIRUN, str(ranks), *self.PROGRAM, *arguments)
 
+    def again_on(self, ranks, *arguments, full_disk=None):
+        """As on(), on ranks that are started once for all."""
+        if ranks == 0:
+            return self.call(*arguments)
+        if ranks not in STARTED:
+            STARTED[ranks] = ManyPrograms([*MPIRUN, str(ranks)])
+        return STARTED[ranks].run(self.folder, *arguments, full_disk=full_disk)
+
     def report_of(self, ranks, arguments):
         """(the report's lines, the JSON)"""
-        done = self.on(ranks, *arguments, "--report", "s.json")
+        done = self.again_on(ranks, *arguments, "--report", "s.json")
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = [line for line in plain(done.stdout) if not line.startswith("  time")]
         report = self.json("s.json")
@@ -165,7 +162,7 @@ class OnRanks(Program):
         self.assertIn(alone.stderr.strip(), together.stderr)
         self.check_same(3, "h.csv", "--where", "name=Base")
         self.check_same(3, "h.csv", "--duplicates", "keep-lowest")
-        done = self.on(3, "h.csv", "--no-picture", "--each-value", "name")
+        done = self.again_on(3, "h.csv", "--no-picture", "--each-value", "name")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(sorted(os.listdir(self.folder)),
                          ["h.csv", "h_Base_surface.vtp", "h_Top_a_surface.vtp"])
@@ -173,7 +170,7 @@ class OnRanks(Program):
             (("--each-value", "horizon"), 1, "there is no column horizon"),
             (("--each-value", "y", "--report", "a.json"), 2, "--each-value names the results"),
         ):
-            done = self.on(3, "h.csv", "--no-picture", *arguments)
+            done = self.again_on(3, "h.csv", "--no-picture", *arguments)
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertIn(expected, done.stderr)
 
@@ -246,31 +243,29 @@ class OnRanks(Program):
         numpy.save(self.path("b.npy"), rows + (5e5 + 900.0, 6e6, 0.0))
         report = self.check_pieces("a.las", "b.npy", "--no-fill", "--crs", "EPSG:32632")
         self.assertTrue(report["lattice"])
-        self.assertIn("in 3 pieces", self.on(3, "a.las", "--no-fill", "--memory", "2G").stdout)
+        self.assertIn("in 3 pieces", self.again_on(3, "a.las", "--no-fill", "--memory", "2G").stdout)
 
     def test_what_one_rank_cannot_do_ends_pieces_of_all(self):
         self.file("few.txt", "1 2 3\n4 5 6\n")
         numpy.save(self.path("a.npy"), numpy.random.default_rng(5).random((9000, 3)) * 100.0)
-        self.file("failing.py", FAILING)
         self.file("a.txt", cloud(1500))
         self.file("flat.txt", "1 1\n2 2\n3 1\n4 4\n")
         given = set(os.listdir(self.folder))
-        for failing, arguments, code, words in (
+        for full_disk, arguments, code, words in (
             ((1, 5_000), ["a.npy"], 1, "triangulating: The temporary file .*/1/.* cannot be written: File too"),
             ((0, 5_000), ["a.npy"], 1, "triangulating: The temporary file .*/0/.* cannot be written: File too"),
             ((1, 9_000), ["a.txt", "--keep-nulls"], 1, "s/s_2.vtp: cannot be written: File too large"),
             ((2, "write_vtp"), ["a.npy"], 1, "s/s_4.vtp: cannot be written: No space left"),
             ((0, "write_vtpd"), ["a.npy"], 1, "s.vtpd: cannot be written: No space left"),
             ((1, "mkdir"), ["a.npy"], 1, "/1: process 1 cannot make this folder: No space left"),
-            ((), ["a.npy", "-o", "none/s.vtpd"], 1, "there is no folder .*/none"),
-            ((), ["a.npy", "--pieces", "4"], 2, "--pieces: 4 cannot be made by 3 .*, such as 6; see --help"),
-            ((), ["few.txt"], 1, "few.txt: no surface"),
-            ((), ["a.npy", "--boundary", "flat.txt"], 1, "flat.txt: the part from line 1 to 4 is not closed"),
+            (None, ["a.npy", "-o", "none/s.vtpd"], 1, "there is no folder .*/none"),
+            (None, ["a.npy", "--pieces", "4"], 2, "--pieces: 4 cannot be made by 3 .*, such as 6; see --help"),
+            (None, ["few.txt"], 1, "few.txt: no surface"),
+            (None, ["a.npy", "--boundary", "flat.txt"], 1, "flat.txt: the part from line 1 to 4 is not closed"),
         ):
-            with self.subTest(failing=failing, arguments=arguments):
-                program = [sys.executable, "failing.py", *map(str, failing)] if failing else self.PROGRAM
-                done = self.execute(*MPIRUN, "3", *program, "--pieces=6", "-o", "s.vtpd", "--open-edge-length=0",
-                                    "--report", "s.json", *arguments)
+            with self.subTest(full_disk=full_disk, arguments=arguments):
+                done = self.again_on(3, "--pieces=6", "-o", "s.vtpd", "--open-edge-length=0",
+                                     "--report", "s.json", *arguments, full_disk=full_disk)
                 said = [line for line in done.stderr.splitlines() if "reconstruct:" in line]
                 self.assertEqual((done.returncode, len(said), plain(done.stdout)), (code, 1, []), done.stderr)
                 self.assertRegex(said[0], words)
@@ -297,7 +292,7 @@ class OnRanks(Program):
             ["a.txt", "--boundary", os.path.join(DATA, "aegean_sea_boundary.vtp")],
         ):
             with self.subTest(arguments=arguments):
-                alone, together = self.on(0, *arguments), self.on(2, *arguments)
+                alone, together = (self.again_on(ranks, *arguments) for ranks in (0, 2))
                 self.assertEqual(together.returncode, alone.returncode)
                 mine = [line for line in together.stderr.splitlines() if "reconstruct:" in line]
                 self.assertEqual(mine, alone.stderr.splitlines())
