@@ -89,7 +89,7 @@ public:
   SampledMask(const Mask& mask, const std::function<double(double, double)>& spacing,
     const Placing& placing = Placing())
   {
-    constexpr int samples = 300;
+    constexpr int samples = 150;
     for (int j = 0; j < samples; ++j)
     {
       for (int i = 0; i < samples; ++i)
@@ -103,10 +103,11 @@ public:
         bool isNear = false;
         for (int k = 0; k < 16 && !isNear; ++k)
         {
-          const double angle = k * 0.39269908169872414;
-          for (const double r : { 0.25 * s, 0.5 * s, 0.75 * s, s })
+          const double dx = s * std::cos(k * 0.39269908169872414);
+          const double dy = s * std::sin(k * 0.39269908169872414);
+          for (const double share : { 0.25, 0.5, 0.75, 1.0 })
           {
-            isNear = isNear || mask(x + r * std::cos(angle), y + r * std::sin(angle)) != isLand;
+            isNear = isNear || mask(x + share * dx, y + share * dy) != isLand;
           }
         }
         this->Near += isNear ? area : 0.0;

@@ -371,7 +371,7 @@ TEST(Progress, OfTriangulatingPointsOnFewPlacesIsNotSilent)
 TEST(Progress, OfTrimmingSeparateTrianglesIsNotSilent)
 {
   // All edges are borders, and each triangle is a ring, in no order.
-  constexpr Index side = 800;
+  constexpr Index side = 500;
   std::vector<Index> order(side * side);
   std::iota(order.begin(), order.end(), 0);
   std::mt19937 random(5);
@@ -395,10 +395,10 @@ TEST(Progress, OfTrimmingSeparateTrianglesIsNotSilent)
     options.Monitor = monitor;
     EXPECT_EQ(Trim(list, nullptr, options).Boundary.Count(), side * side);
   };
-  EXPECT_LT(testing_work::LongestSilence(extract), 1600000u); // of 424 million
+  EXPECT_LT(testing_work::LongestSilence(extract), 1600000u); // of 160 million
 
   BoundaryLines lines;
-  lines.Points = std::vector<Point2>{ { -1.0, -1.0 }, { 500.5, -1.0 }, { 300.5, 700.5 } };
+  lines.Points = std::vector<Point2>{ { -1.0, -1.0 }, { 312.5, -1.0 }, { 187.5, 437.5 } };
   lines.Lines.Vertices = { 0, 1, 2 };
   lines.Lines.Offsets.push_back(3);
   lines.IsPolygon = { 1 };
@@ -407,7 +407,7 @@ TEST(Progress, OfTrimmingSeparateTrianglesIsNotSilent)
     options.Monitor = monitor;
     Trim(list, &lines, options);
   };
-  EXPECT_LT(testing_work::LongestSilence(trim), 1600000u); // of 160 million
+  EXPECT_LT(testing_work::LongestSilence(trim), 1600000u); // of 60 million
 }
 
 TEST(Progress, OfConstraintsThatLieOnEachOtherIsNotSilent)
