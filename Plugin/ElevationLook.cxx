@@ -185,8 +185,13 @@ void WritePlainNumbers(vtkSMProxy* colours, vtkSMProxy* view, const double range
 // Colours the words of a cell array, each in its colour, unless that has been chosen.
 void ColourByWords(vtkSMProxy* representation, vtkPVXMLElement* xml)
 {
-  vtkSMPVRepresentationProxy::SetScalarColoring(
-    representation, xml->GetAttribute("array"), vtkDataObject::CELL);
+  // Not by the static function of this name, which ParaView 5.13 has moved.
+  auto* const coloured = vtkSMPVRepresentationProxy::SafeDownCast(representation);
+  if (!coloured)
+  {
+    return;
+  }
+  coloured->SetScalarColoring(xml->GetAttribute("array"), vtkDataObject::CELL);
   vtkSMProxy* colours = vtkSMPropertyHelper(representation, "LookupTable").GetAsProxy();
   vtkSMPropertyHelper annotations(colours, "Annotations");
   if (annotations.GetNumberOfElements() > 0)
