@@ -31,6 +31,7 @@ namespace elevation
 namespace
 {
 
+/** The work of InsertRings() on one mesh. Its members are the rings while they are cut. */
 class Insertion
 {
 public:

@@ -249,6 +249,7 @@ public:
   }
 
 private:
+  /** Sorts the border of the mesh for searches, and finds its vertices. */
   void SortBorder(const Progress& progress)
   {
     std::vector<BorderEdge>& border = this->Border.Edges;

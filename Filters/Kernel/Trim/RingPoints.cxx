@@ -36,6 +36,10 @@ bool IsLowerEdge(const Mesh& mesh, Index h, Index k)
   return IsLower(mesh, segmentOf(h), segmentOf(k));
 }
 
+/**
+ * Finds or makes the vertex at each point of the rings. Corners of triangles are known by their
+ * places; other points are located and inserted.
+ */
 class PointInsertion
 {
 public:
@@ -59,6 +63,10 @@ public:
   }
 
 private:
+  /**
+   * A point that is not a corner, and the triangle that holds it, which changes while others are
+   * cut.
+   */
   struct Place
   {
     Index Triangle;
@@ -262,6 +270,7 @@ private:
     open = std::move(others);
   }
 
+  /** Cuts the mesh at the located points, one after another. */
   void InsertLocated(const Progress& progress)
   {
     // In an order that depends only on the places, not on the numbers of triangles, and is random:

@@ -138,6 +138,10 @@ public:
     return this->Add(part);
   }
 
+  /**
+   * The part of which the first is and that of the second become one, at a length; nothing if they
+   * are one already.
+   */
   void Join(Index a, Index b, double length)
   {
     a = this->TopOf(a);
@@ -233,6 +237,10 @@ public:
   }
 
 private:
+  /**
+   * A part from when it is made until it joins another one. Lengths and areas are in units of the
+   * triangles: two spacings, Units.
+   */
   struct JoiningPart
   {
     Index Points = 0;
@@ -253,6 +261,7 @@ private:
     return this->Tops.back();
   }
   Index TopOf(Index part) { return RootOf(this->Tops, part); }
+  // Adds to the integral what the part has lacked since the last change.
   void Grow(Index part, double length)
   {
     JoiningPart& grown = this->Parts[part];
@@ -416,6 +425,11 @@ private:
     }
   }
 
+  /**
+   * Lists what happens as the length grows: a triangle joins the parts of its thin corners, or
+   * touches a core, at its own length; it opens when all triangles around one of its thin corners
+   * have been added.
+   */
   void FindEvents(const Progress& progress)
   {
     ForEachStretch(
@@ -469,6 +483,10 @@ private:
     Sort(this->Events.begin(), this->Events.end(), isBefore, progress.Between(0.3, 1.0));
   }
 
+  /**
+   * Goes through the events by length. Those of one length happen together; then it is measured how
+   * much of a surface the parts have become that got open triangles.
+   */
   void FollowEvents(const Progress& progress)
   {
     std::vector<char> isOpen(this->Lengths.size(), 0);

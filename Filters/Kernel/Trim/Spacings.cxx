@@ -95,6 +95,7 @@ public:
     }
   }
 
+  /** NaN if an incomplete vertex had to be expanded. */
   double SpacingAt(Index v)
   {
     this->Vertex = v;
@@ -116,6 +117,7 @@ public:
   }
 
 private:
+  /** One of the nearest vertices so far; without a vertex, an empty place, infinitely far away. */
   struct Candidate
   {
     double Squared;

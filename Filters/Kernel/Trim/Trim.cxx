@@ -486,6 +486,10 @@ void CopyCorners(const TriangleList& list, const Changes& changes, Index begin, 
   }
 }
 
+/**
+ * Writes the triangles of both sides: those of the list as their flags say, with the changes, then
+ * those that were added.
+ */
 void WriteSides(const TriangleList& list, const Changes& changes, const TrimOptions& options,
   const Progress& progress, Trimmed& result)
 {
