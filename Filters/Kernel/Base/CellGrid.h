@@ -144,13 +144,13 @@ private:
       alongX += width > 0.0 ? (box.High.X * this->Scale - box.Low.X * this->Scale) / width : 0.0;
       alongY += height > 0.0 ? (box.High.Y * this->Scale - box.Low.Y * this->Scale) / height : 0.0;
     }
-    // The last limit keeps Begins below a gigabyte.
-    // Two cells an item; fewer where items would touch more than about 30 cells each.
+    // Two cells an item; fewer where items would touch more than about 30 cells each. The last
+    // limit keeps Begins below a gigabyte.
     const double most = 30.0 * static_cast<double>(count);
     const double cells = std::min(
       { 2.0 * static_cast<double>(count), most * most / (4.0 * alongX * alongY), 100000000.0 });
-    // The ratio t : s, but at least one column and no more columns than cells.
-    // Items without width share one column.
+    // Items without width share one column. Others have the ratio t : s, but at least one column,
+    // and no more columns than cells.
     const double columns = width > 0.0
       ? std::min(std::max(std::sqrt(cells * alongY / alongX), 1.0), std::max(cells, 1.0))
       : 1.0;
@@ -239,8 +239,7 @@ private:
       return;
     }
     double first = std::min(a.X, b.X), last = std::max(a.X, b.X);
-    // Then the whole range from a to b counts.
-    // Infinite or NaN where the segment is horizontal.
+    // Infinite or NaN where the segment is horizontal: then the whole range from a to b counts.
     const double slope = (high.X - low.X) / (high.Y - low.Y);
     if (std::isfinite(slope))
     {

@@ -268,6 +268,7 @@ public:
     return result;
   }
 
+  /** Limb by limb, as on paper. */
   BigInteger operator+(const BigInteger& other) const
   {
     BigInteger result;
@@ -304,6 +305,7 @@ public:
 
   BigInteger operator-(const BigInteger& other) const { return *this + (-other); }
 
+  /** Each limb of one by each of the other, as on paper: at most some 300 limbs. */
   BigInteger operator*(const BigInteger& other) const
   {
     CountWork(8 + this->Limbs.size() * other.Limbs.size() / 8);
@@ -368,6 +370,7 @@ public:
   }
 
 private:
+  /** Not for zero. */
   int NumberOfBits() const
   {
     int bits = 0;
@@ -392,6 +395,7 @@ private:
 
   std::uint32_t Limb(std::size_t i) const { return i < this->Limbs.size() ? this->Limbs[i] : 0; }
 
+  /** Drops leading zeros; zero has no limbs and no sign. */
   void Trim()
   {
     while (!this->Limbs.empty() && this->Limbs.back() == 0)

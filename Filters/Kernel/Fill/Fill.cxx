@@ -51,8 +51,10 @@ constexpr double BytesPerPoint = 500.0; // of memory, while and after it is inse
 /** What a thread takes at a time: patches of about this many points in all, or a larger one. */
 constexpr double PointsPerPiece = 250.0;
 
-// It limits how small a spacing may be: see LeastStepsPerSpacing.
-/** Distance between neighbouring numbers near x, in the precision of the points. */
+/**
+ * Distance between neighbouring numbers near x, in the precision of the points. It limits how small
+ * a spacing may be (LeastStepsPerSpacing).
+ */
 double StepAt(double x, bool singlePrecision)
 {
   if (singlePrecision)
@@ -112,11 +114,11 @@ void CheckNumbers(bool isTouched, HoleReport& report)
 
 /** Finds elevations and attributes; of each attribute one vector, in the order of vertices. */
 void Elevate(const Mesh& mesh, const VertexStars* stars, const PointView& points,
-  // The first values are the elevations, by which Adaptive chooses; attributes follow the same
-  // choice.
   const FillOptions& options, const Progress& progress, Patch& patch, HoleReport& report,
   std::vector<std::vector<double>>& attributes, std::vector<double>& errors)
 {
+  // The first values are the elevations, by which Adaptive chooses; attributes follow the same
+  // choice.
   const Values elevation = [&points](Index id) { return points.Elevation(id); };
   const Heights heights(mesh, stars, patch, options.Method, elevation, progress.Between(0.0, 0.5));
   const std::size_t count = options.Attributes.size() + 1;
@@ -234,8 +236,8 @@ public:
     {
       const double before = done;
       const Index end = this->BatchEnd(begin, done);
+      // The work of a hole is known only about, so the sum may pass 1.
       const Progress ofBatch =
-        // The work of a hole is known only about, so the sum may pass 1.
         filling.Between(std::min(1.0, before / all), std::min(1.0, done / all));
       Report(ofBatch, 0.0);
       this->FillBatch(begin, end, ofBatch);
@@ -466,9 +468,9 @@ private:
       MakePatch(this->Plans[hole], progress.Between(0.0, 0.4), patch);
       if (this->GivenHoles.IsRegion(hole) && patch.NumberOfNewVertices() == 0)
       {
+        // It keeps its long triangles, which cover it as well.
         this->HasRoom[hole] = 0;
         return;
-        // It keeps its long triangles, which cover it as well.
       }
       FindNeighbors(patch, progress.Between(0.4, 0.45));
       FindNearest(patch, progress.Between(0.45, 0.5));

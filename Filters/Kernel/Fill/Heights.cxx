@@ -666,10 +666,10 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
   std::vector<double> missed = rim;
   if (this->HasSpline())
   {
+    // The splines' weights carry their shares. So what they leave at the boundary is the
+    // membrane's share of it, and what centres left out or dropped miss there: one solution gives
+    // both.
     const std::vector<double> sums =
-      // The splines' weights carry their shares. So what they leave at the boundary is the
-      // membrane's share of it, and what centres left out or dropped miss there: one solution gives
-      // both.
       this->SplineSum(known, progress.Between(0.0, this->NeedsHarmonic() ? 0.3 : 0.8));
     std::transform(rim.begin(), rim.end(), sums.begin(), missed.begin(), std::minus<double>());
     std::copy(sums.begin() + static_cast<std::ptrdiff_t>(boundary), sums.end(), result.begin());

@@ -49,9 +49,9 @@ Multigrid::Matrix MatrixOf(const Adjacency& graph, const Progress& progress)
 }
 } // namespace
 
+// Making the matrix has no share of the progress: it is short, compared with factorising it.
 Membrane::Membrane(const Adjacency& graph, const Progress& progress)
   : Graph(graph)
-  // Making the matrix is short, compared with factorising it.
   , Equations(std::make_unique<Multigrid>(MatrixOf(graph, progress.Between(0.0, 0.0)), progress))
 {
 }

@@ -44,10 +44,10 @@ class Aggregates
 {
 public:
   Aggregates(const Matrix& a, const Progress& progress)
-    // All entries of a row are itself and its neighbours.
     : A(a)
     , RowAggregates(a.rows(), None)
   {
+    // All entries of a row are itself and its neighbours.
     for (const Index i : Counted(a.rows()))
     {
       ReportStep(progress, i, a.rows());

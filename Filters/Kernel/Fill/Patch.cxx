@@ -150,8 +150,8 @@ Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
   }
   std::vector<char> isInside(ids.size(), 1);
   for (const Segment& edge : patch.Edges)
-  // Each vertex of the boundary is the origin of one of its edges.
   {
+    // Each vertex of the boundary is the origin of one of its edges.
     isInside[edge.A] = 0;
   }
   patch.NumberOfPointsInside = static_cast<Index>(std::count(isInside.begin(), isInside.end(), 1));

@@ -182,7 +182,6 @@ void VisitRows(
 
 void PlaceNodes(const PatchPlan& plan, const Progress& progress, Patch& patch)
 {
-  // Exact in the numbers of nodes, as long as they are small.
   // Nodes are counted from one on the boundary, so that their numbers are small.
   Point2 first;
   FindNode(plan.Steps, patch.At(0), first);

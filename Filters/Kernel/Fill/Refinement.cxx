@@ -182,7 +182,7 @@ private:
     }
     const double clearance = RefinementClearance * spacing;
     // Three reasons to leave it: it is good; its circle is smaller than the distance that points
-    // keep; or doubles would not tell such points apart.
+    // keep; or doubles could not keep such points apart.
     if ((lengths.LongestInside <= LongestEdge * LongestEdge * mean * mean &&
           lengths.Shortest >= LeastEdgeToRadius * square) ||
       square < clearance * clearance ||
@@ -393,14 +393,17 @@ private:
       mesh.PointOf(mesh.Apex(h)), mesh.PointOf(mesh.Apex(mesh.Twin(h))));
   }
 
-  /** Flips edge h of the polygon: the apex behind it becomes a corner of the polygon. */
-  //         corner                  corner
-  //        /      \                /  |   \       h keeps its origin and leads to the corner; the
-  //       / other  \              /   |    \      other triangle goes from there to the old
-  //   from ---h---> to    ->   from h | other to  destination. Both have the vertex as their third
-  //       \        /              \   |    /      corner, as all triangles around it do.
-  //        \      /                \  |   /
-  //         vertex                  vertex
+  /**
+   * Flips edge h of the polygon: the apex behind it becomes a corner of the polygon.
+   *
+   *         corner                  corner
+   *        /      \                /  |   \       h keeps its origin and leads to the corner; the
+   *       / other  \              /   |    \      other triangle goes from there to the old
+   *   from ---h---> to    ->   from h | other to  destination. Both have the vertex as their third
+   *       \        /              \   |    /      corner, as all triangles around it do.
+   *        \      /                \  |   /
+   *         vertex                  vertex
+   */
   void Flip(Index h)
   {
     Mesh& mesh = this->Surface;

@@ -417,8 +417,10 @@ private:
     return predicted;
   }
 
-  /** The probes by a method: 0 is the membrane, then come the splines. */
-  // The same as Heights::Apply(), for the probes alone and roughly.
+  /**
+   * The probes by a method: 0 is the membrane, then come the splines. The same as Heights::Apply(),
+   * for the probes alone and roughly.
+   */
   std::vector<double> Predict(int method, const Progress& progress) const
   {
     std::vector<double> rim(

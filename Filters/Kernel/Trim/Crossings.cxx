@@ -376,13 +376,13 @@ private:
     last = p.Node;
     Index other = q.Node;
     const bool fromLeft = this->IsLeftOf(last, this->At(this->Step(other, After + Before - q.Way)));
-    // This ends: otherwise both would return to where they had not met yet.
+    // Along the edges that both share. This ends: otherwise both would return to where they had not
+    // met yet.
     do
     {
       work.Tick();
       last = this->Step(last, p.Way);
       other = this->Step(other, q.Way);
-    // Along the edges that both share.
     } while (this->At(this->Step(last, p.Way)) == this->At(this->Step(other, q.Way)));
     return fromLeft != this->IsLeftOf(last, this->At(this->Step(other, q.Way)));
   }

@@ -80,7 +80,6 @@ public:
         const Index crossed = FirstCrossed(this->Surface, this->Stars, vertex, ends.B);
         if (crossed == None && vertex == ends.A)
         {
-          // A step along an edge that is there costs no cut.
           return; // it begins outside
         }
         segment.IsMissing = true;
@@ -290,8 +289,8 @@ private:
     for (const Index end : { this->Surface.Origin(h), this->Surface.Destination(h) })
     {
       const Point2& p = this->Surface.PointOf(end);
+      // Coming back to a vertex of the chain would make it a loop, and the walk without end.
       if (std::fabs(p.X - place.X) <= near && std::fabs(p.Y - place.Y) <= near &&
-        // Coming back to a vertex of the chain would make it a loop, and the walk without end.
         end != followed.Ends.A && std::find(chain.begin(), chain.end(), end) == chain.end())
       {
         return end;
@@ -418,8 +417,8 @@ void FollowSurface(
   {
     work.Step(i, segments.size());
     following.Follow(segments[i], work);
-    // Only now: segments that came later have cut the chains of earlier ones.
   }
+  // Only now: segments that came later have cut the chains of earlier ones.
   for (FollowedSegment& segment : segments)
   {
     following.AddLaterCuts(segment);

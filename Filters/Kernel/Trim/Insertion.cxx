@@ -201,14 +201,14 @@ private:
             return;
           }
           const Point2 place = RoundedCrossing(segment[0], segment[1], edge[0], edge[1]);
+          // Where along the border the triangle's apex is: on which side of it a place can move
+          // outwards. See CutBorder().
           crossings.push_back(
-            // Where along the border the triangle's apex is: on which side of it a place can move
-            // outwards. See CutBorder().
             { k, place, i, IsBefore(segment[0], segment[1], mesh.PointOf(mesh.Apex(h)), place) });
         }
-        // Only the origin: each vertex of the border is the origin of one border edge.
         else if (IsInside(edge, segment[0]))
         {
+          // Only the origin: each vertex of the border is the origin of one border edge.
           this->AddStop(i, edge, h, mesh.Origin(h));
         }
         else if (this->MayInsert && IsInside(segment, edge[0]))
@@ -358,7 +358,8 @@ private:
       return;
     }
     const Mesh& mesh = this->Surface;
-    // Pieces that cross no border stay as they are: vertices on them are the business of recovery.
+    // Pieces that cross no border stay as they are: passes that follow step through the vertices on
+    // them.
     std::sort(this->IsCut.begin(), this->IsCut.end());
     this->IsCut.erase(std::unique(this->IsCut.begin(), this->IsCut.end()), this->IsCut.end());
     std::vector<Ends> segments;
@@ -442,13 +443,13 @@ private:
           {
             cut.pop_back(); // it has no length
           }
-          // Two different vertices at the same place: the ring steps from one border to another
-          // that lies on it. That is in order between parts of the mesh, when it leaves one and
-          // enters the other.
           else if ((last || at) && vertex >= 0 && piece.Vertex >= 0 &&
             mesh.PointOf(vertex) == mesh.PointOf(piece.Vertex) &&
             (!last || !at || last->Into || at->From))
           {
+            // Two different vertices at the same place: the ring steps from one border to another
+            // that lies on it. That is in order between parts of the mesh, when it leaves one and
+            // enters the other.
             this->RefuseDoubleBorder(piece.Edge, mesh.PointOf(vertex));
           }
         }
@@ -515,8 +516,8 @@ private:
       followed.push_back(piece);
       const Segment segment = segmentOf(i);
       if (segment.A >= 0 && segment.B >= 0)
-      // Its place in the sorted list, instead of a map.
       {
+        // Its place in the sorted list, instead of a map.
         const std::vector<Index>& between =
           std::lower_bound(segments.begin(), segments.end(), FollowedSegment(segment), isBefore)
             ->Between;

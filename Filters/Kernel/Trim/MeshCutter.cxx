@@ -164,9 +164,9 @@ InsertedVertex MeshCutter::WeightsOf(
   double sum = 0.0;
   const auto add = [&](Index corner, double weight) {
     if (weight > 0.0)
-    // The corner's own place, or the first free one. There are never more than three: all shares
-    // lie in one original triangle.
     {
+      // The corner's own place, or the first free one. There are never more than three: all shares
+      // lie in one original triangle.
       int i = 0;
       while (i < 2 && vertex.Corners[i] != corner && vertex.Corners[i] != None)
       {

@@ -45,12 +45,12 @@ public:
     const Point2 low = box.Low, high = box.High;
     const double size = std::max({ -low.X, -low.Y, high.X, high.Y });
     const double width = box.Width(), height = box.Height();
-    // At most 512 x 512 of them: kinds and sums then take 1.5 MB, which caches hold.
-    // A few triangles per cell.
+    // A few triangles per cell. At most 512 x 512 cells, whose kinds and sums take 1.5 MB: caches
+    // hold them.
     const double cells = std::min(262144.0, std::max(64.0, numberOfTriangles / 8.0));
     const double columns = std::sqrt(cells * (width / height));
-    // Of a flat box, the width or height may be 0: the larger of the other limits applies.
-    // Cells must be so large that the rounding of coordinates does not matter, and not too many.
+    // Cells must be so large that the rounding of coordinates does not matter, and not too many. Of
+    // a flat box, the width or height may be 0: the larger of the other limits applies.
     this->Side = std::max(
       { width / std::min(512.0, std::max(1.0, columns)), height / 4096.0, 1e-9 * size, 1e-100 });
     this->Usable = size < 1e100;

@@ -46,8 +46,10 @@ struct Opening
   bool ReachesBorder = false;
 };
 
-// Components are of surface and of openings alike; isOpen tells the triangles of openings.
-/** Calls look(t, opening) for each triangle that has a place in an opening. */
+/**
+ * Calls look(t, opening) for each triangle that has a place in an opening. The components are those
+ * of the surface, too; isOpen says which triangles belong to openings.
+ */
 template <typename IsOpen, typename Look>
 void VisitOpenings(const Components& parts, std::vector<Opening>& openings, IsOpen&& isOpen,
   const Progress& progress, Look&& look)
@@ -79,10 +81,10 @@ void CloseSmallLakes(
       {
         opening.ReachesBorder |= mesh.IsBorder(h);
       }
-    // Large enough for bays of its own: it stays as it is.
     });
   VisitOpenings(
     parts, openings, isOpen, progress.Between(0.8, 1.0), [&](Index t, Opening& opening) {
+      // A lake that is large enough for bays stays as it is.
       if (!opening.ReachesBorder && opening.Share < LakeWithBays * FixedOne)
       {
         flags[t] = opening.Share < FixedOne ? Surface : Outside;
@@ -156,8 +158,8 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
         Prefetch(&sums[ahead[k]]);
         const Index other = RootOf(parents, corners[k]);
         if (other != root)
-        // The lower root takes over the sum of the other one.
         {
+          // The lower root takes over the sum of the other one.
           parents[std::max(root, other)] = std::min(root, other);
           sums[std::min(root, other)] += sums[std::max(root, other)];
           root = std::min(root, other);

@@ -219,8 +219,8 @@ public:
     for (const Index v : lonely.List())
     {
       near.Add(v);
-      // A spacing for which a vertex at the border had to be expanded stays unknown, too.
     }
+    // A spacing for which a vertex at the border had to be expanded stays unknown, too.
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     std::fill(this->Spacings.begin(), this->Spacings.end(), unknown);
     FindSpacings(list, neighbors, CornersOf(list, doubtful, progress.Between(0.4, 0.45)),
@@ -511,8 +511,8 @@ private:
       {
         const Index t = doubtful[i];
         const double longest = std::sqrt(this->Measured.Longest[t]);
+        // What is too long for surface may still be surface as a part of a small bay.
         this->Result.IsSurface[t] = longest <= this->ToleranceOf(t) ? Surface
-          // What is too long for surface may still be surface as a part of a small bay.
           : longest <= this->BayTolerance(t)                        ? Bay
                                                                     : Outside;
       }
@@ -560,8 +560,8 @@ private:
     std::vector<std::pair<double, Index>> ratios;
     for (const Index t : outward)
     {
+      // Without the scale: a tolerance that the user gives has none.
       ratios.emplace_back(
-        // Without the scale: a tolerance that the user gives has none.
         std::sqrt(this->Measured.Longest[t]) / SpacingOf(this->Spacings, list.CornersOf(t)), t);
     }
     std::sort(ratios.begin(), ratios.end());

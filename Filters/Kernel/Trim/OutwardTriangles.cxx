@@ -56,8 +56,8 @@ void MarkEdges(const Mesh& mesh, VertexStars& stars, const std::vector<Segment>&
   isOdd.assign(mesh.Triangles.size(), 0);
   std::size_t done = 0;
   for (const Segment& segment : Counted(segments))
-  // Along a segment that was cut there are several edges, one after the other.
   {
+    // Along a segment that was cut there are several edges, one after the other.
     ReportStep(progress, done++, segments.size(), 256);
     Index vertex = segment.A;
     while (vertex != segment.B)
@@ -125,12 +125,12 @@ OutwardTriangles FindOutward(
   return result;
 }
 
-void ApplyInwardNormalTest(const Mesh& mesh, const std::vector<char>& isOnBoundary,
-  std::vector<char>& isOutward, const Progress& progress)
 //        p3                The walk comes along p1 p2 and goes on along p2 p3, surface on the
 //       .  ^               right. Triangle p1 p2 p3 is on the left of both edges. When it is taken,
 //     .   t  \             p1 p3 replaces the two, and the triangle beyond p1 p3 has one edge more
 //   p1 ----> p2            on the walk.
+void ApplyInwardNormalTest(const Mesh& mesh, const std::vector<char>& isOnBoundary,
+  std::vector<char>& isOutward, const Progress& progress)
 {
   // A walk with the surface on the right has outward triangles on its left. Two edges of such a
   // triangle are consecutive on the walk if and only if the triangle is on the left of both, as

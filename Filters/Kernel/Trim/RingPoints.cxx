@@ -256,7 +256,8 @@ private:
         h = this->Cutter.CurrentHalfEdge(border.HalfEdges[taken[i].Piece]);
       }
       const Point2 p = this->Points[taken[i].Vertex];
-      // In a triangle thinner than that, it may lie inside or outside after all.
+      // Beside a triangle with no width but rounding there is no place: the point is located as
+      // others are.
       if (!this->Cutter.CanCut(h, p))
       {
         others.push_back(taken[i].Vertex);

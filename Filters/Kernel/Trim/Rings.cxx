@@ -107,7 +107,6 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines)
     if (piece.Points.empty())
     {
       continue;
-      // A closed piece of two points would be an edge there and back.
     }
     const bool returns = lines.Points[piece.Points.front()] == lines.Points[piece.Points.back()];
     piece.IsClosed = lines.IsPolygon[line] || returns;
@@ -115,6 +114,7 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines)
     {
       piece.Points.pop_back();
     }
+    // A closed piece of two points would be an edge there and back.
     if (piece.IsClosed && piece.Points.size() < 3)
     {
       throw Error("The boundary's " + LineName(lines, line) + " has only " +
@@ -172,9 +172,10 @@ Message DropRepeated(const BoundaryLines& lines, std::vector<Piece>& pieces)
     : MakeMessage<sentences::RingsRepeated>(count, "the " + LineName(lines, firstLine));
 }
 
-/** Chains open pieces at their ends: the front of piece i is end 2 i, its back is end 2 i + 1. */
-// Open pieces become rings where their ends meet. Each end has a partner, the end of the piece that
-// goes on there.
+/**
+ * Chains open pieces at their ends: the front of piece i is end 2 i, its back is end 2 i + 1. Each
+ * end gets a partner, the end of the piece with which the ring goes on there.
+ */
 class Chains
 {
 public:

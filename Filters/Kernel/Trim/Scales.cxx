@@ -30,16 +30,26 @@ namespace
 // The constants of the rule (Scales.h), found by trials: survey lines 2 to 200 times as far apart
 // as their points, even and uneven, with and without cross lines, jittered by up to half a spacing;
 // tracks that cross at random; roads of 3 to 15 rows of points; swaths beside and across lines.
+//
+// Scales are looked for if more than one in so many vertices, of whole blocks, are lonely, or a
+// group of so many connected ones.
 constexpr Index ManyLonely = 50;
 constexpr std::int64_t Block = 1024;
 constexpr std::size_t LonelyGroup = 30;
+// A core: at least so many inner vertices, and at least so many for each other one.
 constexpr Index LeastInner = 50;
 constexpr Index InnerPerOther = 2;
+// Edges that join vertices, and parts to cores, from the start are shorter than this.
 constexpr double LongestShortEdge = 6.0; // spacings
+// The unit of lengths and areas, in spacings.
 constexpr double UnitSpacings = 2.0;
+// The width that a part needs to be a surface, in units: so much at least, and so much for what the
+// length is above 1.
 constexpr double LeastWidth = 1.2;
 constexpr double WidthPerLength = 2.5;
+// The area that each point of a surface has, in square units.
 constexpr double PointShare = 0.2;
+// The greatest length at which touching a core makes a part a surface.
 constexpr double LongestJoin = 5.0;
 
 // 0 up to half of what is asked for, 1 from all of it on; rising evenly between, so that the scale
@@ -58,9 +68,9 @@ bool HasGroup(const Neighbors& neighbors, const IdSet& vertices, Index count, st
   {
     if (!vertices.Has(v) || seen.Has(v))
     {
-      // A flood that stops at the first group that is large enough.
       continue;
     }
+    // A flood that stops at the first group that is large enough.
     group.assign(1, v);
     seen.Add(v);
     for (std::size_t i = 0; i < group.size(); ++i)
@@ -184,8 +194,8 @@ public:
 
   /** Adds an open triangle. */
   void Open(Index part, double area, double border)
-  // The border of the union of open triangles: edges between two of them have been subtracted.
   {
+    // The border of the union of open triangles: edges between two of them have been subtracted.
     JoiningPart& top = this->Parts[this->TopOf(part)];
     top.Area += area;
     top.Border += border;
@@ -399,9 +409,9 @@ private:
           // Lower roots, so that below a root comes before its members.
           parents[std::max(p, q)] = std::min(p, q);
         }
-        // A short edge from a thin vertex to a core.
         else
         {
+          // A short edge from a thin vertex to a core.
           isAttached[ofA > 0.0 ? a : b] = 1;
         }
       }

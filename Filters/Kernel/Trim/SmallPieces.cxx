@@ -37,8 +37,10 @@ struct PieceSizes
     });
   }
 
-  /** Whether it has more triangles than so few vertices can form. */
-  // Six vertices form at most eight triangles; the limit is generous, as larger pieces are counted.
+  /**
+   * Whether it has more triangles than so few vertices can form. The limit is generous: six form at
+   * most seven. The vertices of smaller pieces are counted.
+   */
   bool IsLarge(Index piece) const { return this->Triangles[piece] > 3 * SpacingNeighbor; }
 
   std::vector<Index> Triangles;
@@ -48,8 +50,8 @@ struct PieceSizes
 /** The pairs (piece, vertex) of pieces that may be small, each once; sorted. */
 std::vector<std::pair<Index, Index>> CornersOfSmall(const Mesh& mesh, const Components& pieces,
   const PieceSizes& sizes, const std::vector<char>& keep, const Progress& progress)
-// Listing the corners of pieces that may be small is cheap; counting all vertices would not be.
 {
+  // Listing the corners of pieces that may be small is cheap; counting all vertices would not be.
   std::vector<std::pair<Index, Index>> corners;
   ForEachStretch(mesh.NumberOfTriangles(), progress.Between(0.0, 0.7), [&](Index begin, Index end) {
     for (Index h = 3 * begin; h < 3 * end; ++h)

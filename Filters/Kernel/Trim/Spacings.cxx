@@ -84,11 +84,11 @@ public:
     const Index next = ahead(8);
     this->List.PrefetchPoint(next);
     const Index soon = ahead(4);
+    // Eight neighbours: most vertices of a Delaunay triangulation have fewer.
     for (std::uint32_t i = 0; i < 8; ++i)
     {
       const std::uint32_t j = std::min(offsets[next] + i, offsets[next + 1] - 1);
       this->List.PrefetchPoint(ids[j]);
-      // Eight neighbours: most vertices of a Delaunay triangulation have fewer.
       Prefetch(offsets + ids[j]);
       const std::uint32_t k = std::min(offsets[soon] + i, offsets[soon + 1] - 1);
       Prefetch(ids + offsets[ids[k]]);
@@ -109,7 +109,6 @@ public:
     int k = Last;
     while (k > 0 && this->Nearest[k].Vertex == None)
     {
-      // The sixth, or where fewer were reached, the last of these.
       --k; // fewer than six were reached
     }
     return this->IsCut ? std::numeric_limits<double>::quiet_NaN()

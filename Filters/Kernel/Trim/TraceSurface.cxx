@@ -66,8 +66,8 @@ bool TraceSurface(const MeasuredTriangles& measured, const MeshBorder& border, I
   near = atEdge;
   double begin = 0.1; // of the round, in the progress
   for (;;)
-  // Each round gets half of the progress that is left.
   {
+    // Each round gets half of the progress that is left.
     // A second round is rare, a third even rarer.
     const double end = 0.5 * (1.0 + begin);
     const Progress round = progress.Between(begin, end);

@@ -417,17 +417,17 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
 {
   const bool isExact = options.Test == OutwardTest::Exact;
   MeasuredTriangles measured;
-  // The sweep proves and measures the triangles in one pass without making half-edges.
   ExtractedBoundary found;
   Mesh mesh; // of all triangles, if the sweep fails
+  // The sweep proves and measures the triangles in one pass without making half-edges.
   if (isExact &&
     MeasureBySweep(list, options.NumberOfThreads, progress.Between(0.0, 0.6), measured))
   {
     found = FindOutline(std::move(measured), ExtractionOf(options, progress.Between(0.6, 1.0)));
   }
   else
-  // The sweep may have filled a part of it.
   {
+    // The sweep may have filled a part of it.
     measured = MeasuredTriangles();
     // After a sweep that failed, or from the start.
     const double begin = isExact ? 0.6 : 0.0, proven = isExact ? 0.7 : 0.45;
@@ -441,9 +441,9 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   TakeOutline(std::move(found), result);
   std::vector<char> isOutward = OutwardOf(std::move(found.IsSurface));
   if (!isExact)
-  // The outline's own test decided by area; the published one decides by the rings, so a warning
-  // about what the outline leaves out would not be of this result.
   {
+    // The outline's own test decided by area; the published one decides by the rings, so a warning
+    // about what the outline leaves out would not be of this result.
     result.Warning = Message();
     OutwardTriangles outward =
       FindOutward(mesh, result.Boundary, options.RecoverBoundary, progress.Between(0.9, 0.95));
