@@ -356,6 +356,7 @@ private:
     }
   }
 
+  /** The work for a hole, in points; 0 if it is not filled. */
   double WorkOf(Index hole) const
   {
     const HoleReport& report = this->Result.Reports[hole];

@@ -292,6 +292,8 @@ std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& va
       return true;
     });
   }
+  // Twice the same joining: by the edges that are not steep, and by all. A point whose part of the
+  // first is much smaller than that of the second is cut off by steep edges.
   const double limit = SteepEdge * Median(std::move(slopes));
   const std::vector<Index> gentle = PartSizes(count, edges, limit);
   // What the edges join at all: points may be in several parts, as on islands.
@@ -436,6 +438,7 @@ void Heights::TryBeside(Trials& trials, const Progress& progress) const
 /** Finds the candidates' shares, and their errors. */
 void Heights::Choose(const VertexStars& stars, const Values& values, const Progress& progress)
 {
+  // A single candidate is tried as well, for its errors.
   Trials trials(*this, stars, values);
   this->TryBeside(trials, progress);
   int best = -1;

@@ -110,7 +110,11 @@ private:
   }
 };
 
-/** The coarse matrix: sums of the entries between aggregates. */
+/**
+ * The coarse matrix: sums of the entries between aggregates. That is P' A P, with a P that gives
+ * each row the value of its aggregate. Symmetry, sign pattern and positive definiteness are
+ * inherited.
+ */
 Matrix Coarsen(const Aggregates& aggregates, const Progress& progress)
 {
   const Matrix& a = aggregates.A;
@@ -247,6 +251,7 @@ Vector Multigrid::Solve(Vector right, double accuracy, const Progress& progress)
   {
     return this->Coarsest.solve(right);
   }
+  // Conjugate gradients from x = 0. @a right is the residual from here on.
   const Matrix& a = this->Levels.front().A;
   Vector x = Vector::Zero(a.rows());
   Vector direction = x;

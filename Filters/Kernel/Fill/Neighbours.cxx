@@ -21,7 +21,15 @@ namespace
 constexpr double LargestWeight = 1e6;
 constexpr double LeastWeight = 1e-12;
 
-/** The cotangent of the angle at c. */
+/**
+ * The cotangent of the angle at c, from the dot and cross product of its sides.
+ *
+ *        c             The weight of edge ab is (cot c + cot d) / 2. On a square lattice diagonals
+ *      /   \           have weight 0, as the angles opposite to them are right.
+ *    a-------b
+ *      \   /
+ *        d
+ */
 double Cotangent(const Point2& a, const Point2& b, const Point2& c)
 {
   const double ux = a.X - c.X;

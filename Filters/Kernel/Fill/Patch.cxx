@@ -182,11 +182,13 @@ void MakePatch(const PatchPlan& plan, const Progress& progress, Patch& patch)
   {
     PlaceEvenly(plan, placing, patch);
   }
+  // Nodes are left as they are: triangles of a lattice are good, and points off it would not fit.
   Mesh mesh = Connect(patch, plan.NumberOfThreads, progress.Between(0.1, 0.7));
   if (plan.Kind != Arrangement::Nodes)
   {
     Refine(plan, patch, progress.Between(0.7, 1.0), mesh);
   }
+  // Those that refinement has added.
   for (Index v = patch.NumberOfVertices(); v < mesh.NumberOfPoints(); ++v)
   {
     patch.AddPoint(mesh.PointOf(v));

@@ -191,6 +191,10 @@ double GradedPoints(
   const EdgeLengths& lengths, const EdgeLengths& spacings, double area, double mean, double largest)
 {
   constexpr double perSide = 1.0 / SpacingGrowth;
+  // Around a point the spacing at distance r is m + g r, with g = SpacingGrowth, and a ring of
+  // width dr has 2 pi r dr / (m + g r)^2 points; up to the size of the hole, this is about 2 pi /
+  // g^2 times the logarithm of 1 + g r / m. Beside an edge the integral of dr / (m + g r)^2 over r
+  // is 1 / (g m).
   const double reach = SpacingGrowth * std::sqrt(area) / mean;
   const double perPoint = 6.3 / (SpacingGrowth * SpacingGrowth) * std::log1p(reach);
   double points = area / largest / largest / RowHeight;
@@ -261,6 +265,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
     return plan;
   }
 
+  // Graded, if spacings differ enough.
   plan.Spacings = SpacingsAlong(holes, hole, spacings.Boundary);
   AddInnerSpacings(holes, hole, spacings.Inner, plan.Spacing, plan.Spacings);
   const auto range = std::minmax_element(plan.Spacings.begin(), plan.Spacings.end());

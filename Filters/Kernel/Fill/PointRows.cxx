@@ -144,6 +144,7 @@ void VisitRows(
   }
   std::vector<Blocked> blocked = BlockRows(rows, points, patch, progress.Between(0.0, 0.6));
   const Progress placing = progress.Between(0.6, 1.0);
+  // From the left along each row: inside or not behind the stretches that have been passed.
   bool isInside = false;
   StepCount placed;
   for (std::size_t i = 0; i < blocked.size(); ++i)

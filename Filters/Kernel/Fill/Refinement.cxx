@@ -50,6 +50,7 @@ public:
     {
       return;
     }
+    // The plan has them by edge, in the order of the patch's edges.
     this->Spacings.resize(mesh.NumberOfPoints(), std::numeric_limits<double>::infinity());
     const double* next = plan.Spacings.data();
     const auto set = [&](Index vertex) {

@@ -162,6 +162,10 @@ private:
   static constexpr int Before = 0;
   static constexpr int After = 1;
 
+  /**
+   * A place of a walk. Where several walks, or a walk several times, come to a place, it has a node
+   * for each of them.
+   */
   struct Node
   {
     Point2 Position;

@@ -49,12 +49,15 @@ public:
 
   void Run(const Progress& progress)
   {
+    // Lines may cross: what comes later cuts what is there already, as it cuts any edge of the
+    // mesh.
     if (this->Follow != Following::Lines)
     {
       CheckCrossings(this->Points, this->Drawn, progress.Between(0.0, 0.1));
     }
     this->VertexAt = InsertPoints(this->Surface, this->Points, this->Drawn, this->MayInsert,
       this->Follow != Following::None, this->Cutter, progress.Between(0.1, 0.8));
+    // Every point of the rings is now a vertex, or known to be outside.
     this->StartRings();
     // An edge or a border that is cut at a rounded place moves slightly: all are tested again. As
     // the move rarely causes a crossing, one more round is usually enough. The limit turns a search
@@ -78,6 +81,8 @@ public:
     {
       this->FollowSurface(progress.Between(0.9, 1.0));
     }
+    // Points outside come last: no vertex may be added after them, or the numbers of vertices would
+    // not be those of Result.Inserted.
     this->FinishRings();
   }
 

@@ -77,6 +77,7 @@ bool MeshCutter::MoveToCut(
 bool MeshCutter::MoveInside(
   Index h, Point2& place, const std::function<bool(const Point2&)>& isUsable) const
 {
+  // All around, so that CutTriangle() makes three proper triangles.
   const std::array<Point2, 3> corners = this->CornersOf(Mesh::Triangle(h));
   return this->MoveNear(h, place, false, [&](const Point2& p) {
     return isUsable(p) && Orientation(corners[0], corners[1], p) == Positive &&

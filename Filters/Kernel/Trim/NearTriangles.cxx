@@ -283,6 +283,8 @@ std::optional<SweptAlongRings> SweepAlongRings(const TriangleList& list,
   const std::vector<Point2>& points, const Rings& rings, double numberOfTriangles, int threads,
   const Progress& progress)
 {
+  // The raster depends on the rings and the number of all triangles alone: parts of a mesh have the
+  // same.
   const RingRaster raster(points, rings, numberOfTriangles);
   if (!raster.IsUsable())
   {
@@ -309,6 +311,7 @@ std::optional<SweptAlongRings> SweepAlongRings(const TriangleList& list,
   {
     swept.Near.insert(swept.Near.end(), visitor->Near.begin(), visitor->Near.end());
   }
+  // Which thread found a triangle no longer shows.
   std::sort(swept.Near.begin(), swept.Near.end());
   return swept;
 }

@@ -212,6 +212,7 @@ public:
       this->Result.IsSurface[t] = Outside; // not all edges are known there
     }
     const std::vector<Index> doubtful = this->FindDoubtful(progress.Between(0.25, 0.4));
+    // A tolerance that the user gives has no scale, so lonely vertices do not matter.
     const IdSet lonely = this->IsAutomatic
       ? LonelyVertices(neighbors, this->CornersNear(doubtful), list.Points.Count)
       : IdSet(0);
@@ -227,6 +228,8 @@ public:
       this->Threads, progress.Between(0.45, 0.6), this->Spacings.data(), &border);
     // Of groups that reach the border, other parts may have more.
     std::vector<char> isInside(list.Count, 0);
+    // Groups away from the border are known whole, and all such groups count as small here: what is
+    // asked is only which ones are.
     const auto nothing = [](Index) { return 0.0; };
     DropSmallGroups(list, border, doubtful, nothing, isInside, progress.Between(0.6, 0.65));
     std::vector<Known> states(list.Count, Known::Surface);

@@ -97,6 +97,8 @@ OutwardTriangles FindOutward(
     result.NumberOfRecoveredEdges =
       RecoverSegments(mesh, stars, segments, isOnBoundary, progress.Between(0.4, 0.5));
   }
+  // Recovery has marked each edge of the rings once. What counts is how often: an edge of two is
+  // none.
   MarkEdges(mesh, stars, segments, isOnBoundary, progress.Between(0.5, 0.6));
 
   // Within a component, crossing an odd edge changes sides; so two labels for each component, and a

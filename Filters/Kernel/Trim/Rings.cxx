@@ -84,6 +84,7 @@ struct Piece
   bool IsClosed;
 };
 
+/** The lines as pieces, without those that have no point. @throws Error as JoinLines() */
 std::vector<Piece> MakePieces(const BoundaryLines& lines)
 {
   std::vector<Piece> pieces;

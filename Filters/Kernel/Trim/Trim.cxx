@@ -280,6 +280,7 @@ NearTriangles FindNear(const TriangleList& list, const NamedPoints& points, cons
   const std::vector<BorderEdge>* known, const TrimOptions& options, const Progress& progress,
   std::vector<BorderEdge>& border, Changes& changes)
 {
+  // Where the sweep gives no answer, near stays without a value, and IsOutward is set later.
   NearTriangles near;
   if (known)
   {
