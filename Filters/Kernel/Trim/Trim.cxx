@@ -5,7 +5,7 @@
 //
 //   Trim()             along lines            TrimAlongRings > TrimAlong > WriteSides
 //   TrimNear()         the same in parts      TrimAlongRings > TrimAlong > WriteSides
-//   SplitAlong()       along open lines                        TrimAlong > WriteSides
+//   SplitAlong()       along any lines                         TrimAlong > WriteSides
 //   Trim()             without lines                       TrimExtracted > WriteSides
 //   TrimNearOutline()  the same in parts               FindSharedOutline > WriteSides
 //
