@@ -3,6 +3,14 @@
 /**
  * @file
  * Points, predicates, memory, threads and progress: what every room of the kernel builds on.
+ *
+ *   Points, Predicates, SnapRounding   ids and places; exact signs; what rounding can move
+ *   Duplicates, EdgeLimit              two rules that the user sets, on points and on edges
+ *   Work, Progress, Threads            how much is done, who hears of it, who does it
+ *   Extent, CellGrid                   the box of a cloud; which items touch a place
+ *   IdSet, UnionFind, Memory           sets of ids, disjoint sets, large arrays
+ *
+ * All but Predicates.cxx are headers: most of these functions run once for each point.
  */
 #ifndef elevation_Base_Base_h
 #define elevation_Base_Base_h

@@ -6,6 +6,15 @@
  * and perhaps some that miss it by a millionth of a cell. The only spatial index for items that
  * span many cells: BinGrid, BoxTree and LatticeNodes store points, each in one place.
  *
+ *   +-----+-----+-----+-----+   In each row of cells, a segment enters those between its leftmost
+ *   |     |     |     |# x #|   and rightmost point in that row (#), not all cells of its bounding
+ *   +-----+-----+-----+-x---+   box. Of long oblique ones, the boxes would hold nearly all cells.
+ *   |     |#    |#x x |#x   |   A triangle enters those between the leftmost and rightmost points
+ *   +-----+---x-+-----+-----+   of all its sides, and so its inside as well.
+ *   |# x x|# x  |     |     |
+ *   +-----+-----+-----+-----+
+ *
+ * Begins says where the items of each cell begin in Items, as in a sparse matrix stored by rows.
  * Cost: linear in the items and the cells that they touch, at most about 30 an item on average.
  */
 #ifndef elevation_Base_CellGrid_h
@@ -30,6 +39,8 @@ public:
   {
     this->SetExtent(count, cornersOf);
     // Count, sum, fill.
+    // Begins is one longer than the cells, and counts are entered one place further on. So after
+    // the sums each entry is where its cell begins, and needs no shift.
     this->Begins.assign(static_cast<std::size_t>(this->Columns) * this->Rows + 1, 0);
     for (const std::size_t i : Counted(count))
     {
@@ -57,6 +68,8 @@ public:
   /** Finds the cell of a point. @return false outside the bounding box of all items */
   bool FindCell(const Point2& p, std::size_t& cell) const
   {
+    // A place outside touches no item. Without this test it would be moved into a cell at the
+    // border.
     // NaN counts as outside.
     if (!this->Bounds.Contains(p))
     {
@@ -95,7 +108,14 @@ private:
     std::for_each(this->Begin(cell), this->End(cell), visit);
   }
 
-  /** Fits columns and rows to the items' extents in x and y: parallel lines share few cells. */
+  /**
+   * Fits columns and rows to the items' extents in x and y: parallel lines share few cells.
+   *
+   * With s the sum of the items' widths in parts of the whole width, and t that of their heights,
+   * items touch about s * columns + t * rows cells. For a given number of cells, that is least
+   * where both terms are equal, columns : rows = t : s, and then it is 2 sqrt(cells s t). The
+   * number of cells for 30 touched cells an item follows from this.
+   */
   template <typename CornersOf>
   void SetExtent(std::size_t count, CornersOf& cornersOf)
   {
@@ -112,6 +132,7 @@ private:
       std::fabs(this->Bounds.High.X), std::fabs(this->Bounds.High.Y) });
     this->Scale = largest > 1e150 ? 0x1p-600 : (largest < 1e-150 ? 0x1p600 : 1.0);
     this->Corner = { this->Bounds.Low.X * this->Scale, this->Bounds.Low.Y * this->Scale };
+    // A power of two scales without rounding.
     const double width = this->Bounds.High.X * this->Scale - this->Corner.X;
     const double height = this->Bounds.High.Y * this->Scale - this->Corner.Y;
 
@@ -123,11 +144,13 @@ private:
       alongX += width > 0.0 ? (box.High.X * this->Scale - box.Low.X * this->Scale) / width : 0.0;
       alongY += height > 0.0 ? (box.High.Y * this->Scale - box.Low.Y * this->Scale) / height : 0.0;
     }
-    // Two cells an item; fewer where items would touch more than about 30 cells each.
+    // Two cells an item; fewer where items would touch more than about 30 cells each. The last
+    // limit keeps Begins below a gigabyte.
     const double most = 30.0 * static_cast<double>(count);
     const double cells = std::min(
       { 2.0 * static_cast<double>(count), most * most / (4.0 * alongX * alongY), 100000000.0 });
-    // Items without width share one column.
+    // Items without width share one column. Others have the ratio t : s, but at least one column,
+    // and no more columns than cells.
     const double columns = width > 0.0
       ? std::min(std::max(std::sqrt(cells * alongY / alongX), 1.0), std::max(cells, 1.0))
       : 1.0;
@@ -145,6 +168,8 @@ private:
     return { (p.X * this->Scale - this->Corner.X) * this->PerX,
       (p.Y * this->Scale - this->Corner.Y) * this->PerY };
   }
+  // Positions beyond the grid count to its nearest cell. The comparisons come before the
+  // conversion, because the conversion of a double that no int can hold is undefined.
   static int CellOf(double position, int count)
   {
     return position > 0.0 ? (position < count ? static_cast<int>(position) : count - 1) : 0;
@@ -154,11 +179,15 @@ private:
   template <std::size_t Count, typename Visitor>
   void ForEachCell(const std::array<Point2, Count>& corners, Visitor&& visit) const
   {
+    // The grid may be asked for items far outside: these touch nothing. Of others, only what is
+    // inside the grid is walked.
     const Box box = BoxOf(corners);
     if (!this->Bounds.Intersects(box))
     {
       return;
     }
+    // The same place may be rounded into two cells, once as part of an item and once as a point
+    // that is looked up. The margin enters items on both sides of a border between cells.
     constexpr double margin = 1e-6; // of a cell
     constexpr double far = 1e8;     // in cells; within it rounding errors are far below the margin
     const Point2 low = this->InCells(box.Low), high = this->InCells(box.High);
@@ -166,6 +195,9 @@ private:
     const int lastRow = CellOf(high.Y + margin, this->Rows);
     const int firstColumn = CellOf(low.X - margin, this->Columns);
     const int lastColumn = CellOf(high.X + margin, this->Columns);
+    // An item in one row or one column has nothing to clip. One with a corner very far away is
+    // entered in all cells of its box, because the rounding error of its slope would exceed the
+    // margin.
     const bool isClippedToRows = firstRow < lastRow && firstColumn < lastColumn &&
       std::max({ -low.X, -low.Y, high.X, high.Y }) < far;
     std::array<Point2, Count> at = corners;
@@ -178,7 +210,10 @@ private:
       int begin = firstColumn, end = lastColumn;
       if (isClippedToRows)
       {
+        // The wrong way around, so the first side replaces both.
         double left = high.X, right = low.X;
+        // A segment is one side, not also its way back; a triangle has three; a point is a side to
+        // itself.
         for (std::size_t i = 0; i + (Count == 2) < Count; ++i)
         {
           Widen(at[i], at[(i + 1) % Count], row - margin, row + 1.0 + margin, left, right);
@@ -197,17 +232,19 @@ private:
   static void Widen(
     const Point2& a, const Point2& b, double bottom, double top, double& left, double& right)
   {
+    // From the low end, so that a side has the same range in both directions.
     const Point2 &low = b.Y < a.Y ? b : a, &high = b.Y < a.Y ? a : b;
     if (high.Y < bottom || low.Y > top)
     {
       return;
     }
     double first = std::min(a.X, b.X), last = std::max(a.X, b.X);
-    // Infinite or NaN where the segment is horizontal.
+    // Infinite or NaN where the segment is horizontal: then the whole range from a to b counts.
     const double slope = (high.X - low.X) / (high.Y - low.Y);
     if (std::isfinite(slope))
     {
       const double x0 = low.X + (bottom - low.Y) * slope, x1 = low.X + (top - low.Y) * slope;
+      // Rounding may carry x0 and x1 beyond the ends of the segment.
       first = std::max(first, std::min(x0, x1));
       last = std::min(last, std::max(x0, x1));
     }

@@ -21,7 +21,10 @@ enum class DuplicatePolicy
   KeepHighest
 };
 
-/** Whether the policy prefers point @a id to another one with the same x,y. */
+/**
+ * Whether the policy prefers point @a id to another one with the same x,y. Of two different ids
+ * exactly one is preferred, so the choice does not depend on the order in which threads compare.
+ */
 inline bool IsPreferred(const PointView& points, DuplicatePolicy policy, Index id, Index other)
 {
   if (policy == DuplicatePolicy::KeepLowest || policy == DuplicatePolicy::KeepHighest)

@@ -39,6 +39,9 @@ public:
   bool IsShort(const Point2& p, const Point2& q) const
   {
     const double dx = p.X - q.X, dy = p.Y - q.Y;
+    // The square of a plain limit is a normal double. Where the square of dx then overflows or
+    // becomes 0, the comparison is right all the same. std::hypot is right over the whole range,
+    // but slow.
     return this->IsPlain ? dx * dx + dy * dy <= this->Length * this->Length
                          : std::hypot(dx, dy) <= this->Length;
   }

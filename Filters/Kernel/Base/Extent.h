@@ -20,7 +20,11 @@
 namespace elevation
 {
 
-/** An axis-parallel bounding box; empty at first. */
+/**
+ * An axis-parallel bounding box; empty at first. The empty box has its corners the wrong way
+ * around, so it contains and intersects nothing, and joining it changes nothing. Width() and
+ * Height() are infinite for a box wider than the largest double.
+ */
 struct Box
 {
   Point2 Low{ DBL_MAX, DBL_MAX }, High{ -DBL_MAX, -DBL_MAX };
@@ -82,6 +86,7 @@ constexpr Index PointsPerRange = 1 << 16;
 
 inline Index NumberOfRanges(Index count, Index size = PointsPerRange)
 {
+  // Not (count + size - 1) / size, which could overflow.
   return count / size + (count % size != 0 ? 1 : 0);
 }
 
@@ -101,7 +106,11 @@ void ForEachRange(
   });
 }
 
-/** Calls visit(id, point) for the points of a range but those in the sorted list @a skip. */
+/**
+ * Calls visit(id, point) for the points of a range but those in the sorted list @a skip. The inner
+ * loops run from one skipped point to the next and test neither for skipped points nor for the
+ * type.
+ */
 template <typename Visit>
 void ForEachPoint(
   const PointView& points, Index begin, Index end, const std::vector<Index>& skip, Visit&& visit)
@@ -143,7 +152,8 @@ void AddToExtent(const T* points, Index begin, Index end, Extent& extent, Visit&
   for (Index id = begin; id < end; ++id, p += 3)
   {
     const double x = p[0], y = p[1], z = p[2];
-    // x - x is 0 for finite x, else NaN.
+    // x - x is 0 for finite x, else NaN, which no addition removes: one comparison tests three
+    // coordinates. A point with a bad elevation alone is not used either.
     if (!((x - x) + (y - y) + (z - z) == 0.0))
     {
       extent.NotFinite.push_back(id);
@@ -173,6 +183,7 @@ Extent FindExtent(const PointView& points, int threads, const Progress& progress
     }
     pieces[piece] = std::move(here);
   });
+  // Ranges are joined in their order, so the ids of non-finite points increase without sorting.
   Extent extent;
   std::size_t notFinite = 0;
   for (const Extent& piece : pieces)
@@ -185,6 +196,7 @@ Extent FindExtent(const PointView& points, int threads, const Progress& progress
   {
     if (!piece.NotFinite.empty())
     {
+      // Such lists are long only where a cloud is full of NaN.
       Report(progress, 1.0);
     }
     extent.NotFinite.insert(extent.NotFinite.end(), piece.NotFinite.begin(), piece.NotFinite.end());

@@ -21,7 +21,11 @@
 namespace elevation
 {
 
-/** Number of bits that are set. */
+/**
+ * Number of bits that are set: sums of pairs of bits, of fours and of bytes side by side in one
+ * word, then all bytes in the highest one by a multiplication. (Compiled for any x86-64, a program
+ * may not use the instruction for this.)
+ */
 inline int CountBits(std::uint64_t bits)
 {
   bits -= (bits >> 1) & 0x5555555555555555u;
@@ -40,6 +44,7 @@ inline int LowestBit(std::uint64_t bits)
   _BitScanForward64(&position, bits);
   return static_cast<int>(position);
 #else
+  // Isolates the lowest bit, and counts the zeros below it.
   return CountBits((bits & (~bits + 1)) - 1);
 #endif
 }
@@ -50,6 +55,7 @@ inline int HighestBit(std::uint64_t bits)
 #if defined(__GNUC__) || defined(__clang__)
   return 63 - __builtin_clzll(bits);
 #else
+  // Sets all bits below the highest one.
   for (int shift : { 1, 2, 4, 8, 16, 32 })
   {
     bits |= bits >> shift;
@@ -58,7 +64,10 @@ inline int HighestBit(std::uint64_t bits)
 #endif
 }
 
-/** A set of ids as a bitmap: small, so that lookups in any order are fast. */
+/**
+ * A set of ids as a bitmap: small, so that lookups in any order are fast. Threads may look up ids
+ * together, but must not add to one set, not even different ids: these may share a word.
+ */
 class IdSet
 {
 public:
@@ -69,6 +78,7 @@ public:
   }
 
   void Add(Index id) { this->Words[WordOf(id)] |= BitOf(id); }
+  // Three ids are those of a triangle's corners.
   void AddAll(const Index* three)
   {
     std::for_each(three, three + 3, [this](Index id) { this->Add(id); });
@@ -90,6 +100,7 @@ public:
   /** Whether any of three ids is in the set; without branches. */
   bool HasAny(const Index* three) const
   {
+    // Unsigned, so that division and remainder are a shift and a mask.
     const std::uint32_t a = three[0], b = three[1], c = three[2];
     return ((this->Words[a / 64] >> a % 64) | (this->Words[b / 64] >> b % 64) |
              (this->Words[c / 64] >> c % 64)) &
@@ -106,7 +117,7 @@ public:
     return count;
   }
 
-  /** The ids, increasing; faster than sorting a long list. */
+  /** The ids, increasing; faster than sorting a long list. Linear in the limit of ids, too. */
   std::vector<Index> List(const Progress& progress = Progress()) const
   {
     std::vector<Index> ids;
@@ -114,6 +125,7 @@ public:
     for (const std::size_t word : Counted(this->Words.size()))
     {
       ReportStep(progress, word, this->Words.size());
+      // left & (left - 1) clears the lowest bit.
       for (std::uint64_t left = this->Words[word]; left != 0; left &= left - 1)
       {
         ids.push_back(static_cast<Index>(64 * word) + LowestBit(left));
@@ -122,7 +134,10 @@ public:
     return ids;
   }
 
-  /** Lists the ids, increasing; from then on RankOf() gives the place of an id in the list. */
+  /**
+   * Lists the ids, increasing. From then on RankOf() gives the place of an id in the list, until an
+   * id is added or removed. So a part of a mesh numbers its points anew without a map.
+   */
   std::vector<Index> ListAndRank()
   {
     this->Before.resize(this->Words.size());

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
+ *
+ * A std::vector fills new values with zeros, copies all when it grows, and cannot hand its memory
+ * to VTK; for arrays as long as the cloud each of these costs a pass over memory.
  * Large arrays of plain values.
  */
 #ifndef elevation_Base_Memory_h
@@ -30,6 +33,8 @@ namespace elevation
 inline void* Allocate(std::size_t size)
 {
 #ifdef MADV_HUGEPAGE
+  // Without this alignment the ends of the block would have small pages. std::free frees both
+  // kinds.
   constexpr std::size_t page = 4096, largePage = std::size_t(1) << 21;
   void* memory = nullptr;
   if (size >= largePage && posix_memalign(&memory, largePage, size) == 0)
@@ -41,7 +46,10 @@ inline void* Allocate(std::size_t size)
   return std::malloc(size);
 }
 
-/** Prefetches memory that is needed soon, where accesses in no order would miss the cache. */
+/**
+ * Prefetches memory that is needed soon, where accesses in no order would miss the cache. A
+ * prefetch never faults, so the address may be beyond the array.
+ */
 template <typename T>
 inline void Prefetch(const T* memory)
 {
@@ -73,6 +81,7 @@ public:
   }
   ~Buffer() { std::free(this->Begin); }
 
+  // In lower case as in std::vector: for range-based loops, and templates that take either.
   std::size_t size() const { return this->Length; }
   std::size_t capacity() const { return this->Capacity; }
   bool empty() const { return this->Length == 0; }
@@ -103,6 +112,8 @@ public:
   {
     if (this->Length == this->Capacity)
     {
+      // A factor, so that copying costs constant time per value; a half, so that less is unused at
+      // the end.
       this->Reallocate(this->Capacity + this->Capacity / 2 + 64);
     }
     this->Begin[this->Length++] = value;
@@ -115,7 +126,10 @@ public:
       this->Reallocate(this->Length);
     }
   }
-  /** Replaces its memory by that of another buffer; the values of both are lost. */
+  /**
+   * Replaces its memory by that of another buffer; the values of both are lost. The system has
+   * provided the pages of that memory already, so filling it causes no page faults.
+   */
   template <typename Other>
   void Recycle(Buffer<Other>&& other)
   {
@@ -147,6 +161,7 @@ private:
       throw std::bad_alloc();
     }
     const std::size_t size = capacity * sizeof(T);
+    // If this fails, the old memory still belongs to the buffer, whose destructor frees it.
     void* memory = this->Begin ? std::realloc(this->Begin, size) : Allocate(size);
     if (!memory)
     {
@@ -165,6 +180,7 @@ private:
  * Writes to each page of the memory of values [begin, end), clipped to the buffer, with reports.
  * The system allocates a page on its first use: values that come in no order would fault in all
  * pages at the start, without a report.
+ * Each page gets one zero: call it before values are written.
  */
 template <typename T>
 void TouchPages(Buffer<T>& values, Index begin, Index end, const Progress& progress = Progress())

@@ -29,6 +29,7 @@ constexpr Index MaximumNumberOfPoints = std::numeric_limits<Index>::max() / 6;
 /** No vertex, no triangle, no neighbour. */
 constexpr Index None = -1;
 
+/** A place in the plane, in the units of the input. Comparison is exact; 0.0 equals -0.0. */
 struct Point2
 {
   double X;
@@ -66,9 +67,13 @@ struct PointHash
 {
   std::size_t operator()(const Point2& p) const
   {
+    // -0.0 + 0.0 is 0.0, so points that are equal have equal hashes.
     const double coordinates[2] = { p.X + 0.0, p.Y + 0.0 };
     std::uint64_t bits[2];
     std::memcpy(bits, coordinates, sizeof(bits));
+    // Coordinates of surveys are often multiples of a step, with many zero bits at their low end. A
+    // multiplication moves information to higher bits only, so the shift brings it down in between:
+    // callers use the lowest bits of a hash or the highest ones.
     const std::uint64_t mixed = (bits[0] * 0x9E3779B97F4A7C15ull) ^ bits[1];
     return (mixed ^ (mixed >> 32)) * 0xD6E8FEB86659FD93ull;
   }
@@ -80,6 +85,8 @@ struct PointHash
  */
 inline double ScaleToOne(double largest)
 {
+  // The exponent is clamped because the power of two would overflow for the smallest denormal
+  // numbers.
   return largest > 0.0 ? std::ldexp(1.0, -std::max(-1000, std::min(1000, std::ilogb(largest))))
                        : 1.0;
 }

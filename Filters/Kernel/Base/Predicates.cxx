@@ -1,5 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The second and third stage of the predicates, for what Predicates.h leaves open:
+//
+// 1. Expansions: sums of doubles that hold a number exactly as long as no product over- or
+//    underflows. ExactOrientation() and ExactInCircle() check this by the size of the coordinates.
+// 2. Integers of any length, for all other coordinates and for RoundedCrossing().
+//
+// OrientationOf() and InCircleOf() are the determinants, written once for both kinds of numbers.
 #include "Predicates.h"
 
 #include "Work.h"
@@ -21,7 +29,10 @@ namespace
 // has the sign of the sum [Shewchuk 1997, sections 2.2 to 2.7]. Zero components are left out.
 //------------------------------------------------------------------------------------------------
 
-/** sum + error == a + b exactly. */
+/**
+ * sum + error == a + b exactly, whichever is larger [Shewchuk 1997, theorem 7]. A compiler that may
+ * reorder these lines, as with -ffast-math, makes the error 0.
+ */
 inline void TwoSum(double a, double b, double& sum, double& error)
 {
   sum = a + b;
@@ -30,7 +41,10 @@ inline void TwoSum(double a, double b, double& sum, double& error)
   error = (a - aRounded) + (b - bRounded);
 }
 
-/** high + low == a, both of at most 26 bits. */
+/**
+ * high + low == a, both of at most 26 bits, so that products of two of them are exact [theorem 17].
+ * Overflows beyond 2^996; the callers' limits are far below.
+ */
 inline void Split(double a, double& high, double& low)
 {
   const double c = 134217729.0 * a; // 2^27 + 1
@@ -48,6 +62,10 @@ inline void TwoProduct(double a, double b, double& product, double& error)
   error = aLow * bLow - (((product - aHigh * bHigh) - aLow * bHigh) - aHigh * bLow);
 }
 
+/**
+ * A number as an expansion. Its type says how many components it may have, so that no memory is
+ * allocated.
+ */
 template <int Capacity>
 struct Expansion
 {
@@ -71,6 +89,7 @@ struct Expansion
   }
 };
 
+// a - b without rounding.
 Expansion<2> Difference(double a, double b)
 {
   double sum, error;
@@ -81,7 +100,11 @@ Expansion<2> Difference(double a, double b)
   return result;
 }
 
-/** Adds two expansions by merging them by magnitude and summing from the small end. */
+/**
+ * Adds two expansions by merging them by magnitude and summing from the small end. The running sum
+ * takes component after component; the rounding error of each addition is the next component of the
+ * result [theorem 13].
+ */
 template <int M, int N>
 Expansion<M + N> operator+(const Expansion<M>& e, const Expansion<N>& f)
 {
@@ -125,6 +148,7 @@ Expansion<M + N> operator-(const Expansion<M>& e, const Expansion<N>& f)
   return e + (-f);
 }
 
+/** The product of an expansion and a double [Shewchuk 1997, theorem 19]. */
 template <int N>
 Expansion<2 * N> Scale(const Expansion<N>& e, double factor)
 {
@@ -155,6 +179,8 @@ struct Product
 {
   static Expansion<2 * M * N> Of(const Expansion<M>& e, const double* part, int count)
   {
+    // The type counts components at compile time, as the worst case; @a count is how many there
+    // are.
     constexpr int half = (N + 1) / 2;
     if (count <= half)
     {
@@ -193,6 +219,10 @@ Expansion<2 * M * N> operator*(const Expansion<M>& e, const Expansion<N>& f)
 // of one predicate are multiples of one power of two.
 //------------------------------------------------------------------------------------------------
 
+/**
+ * Sign and magnitude, the magnitude in digits ("limbs") of 32 bits. Slow, but a cloud whose
+ * coordinates need it is rare, and so is a crossing of lines compared with a point.
+ */
 class BigInteger
 {
 public:
@@ -208,6 +238,8 @@ public:
     }
     int valueExponent;
     const double fraction = std::frexp(std::fabs(value), &valueExponent);
+    // The 53 bits of the fraction, shifted into three limbs above as many zero limbs as the
+    // exponent asks for.
     std::uint64_t bits = static_cast<std::uint64_t>(std::ldexp(fraction, 53));
     int shift = valueExponent - 53 - exponent;
     if (shift < 0)
@@ -218,6 +250,7 @@ public:
     this->Limbs.assign(shift / 32, 0);
     const int rest = shift % 32;
     this->Limbs.push_back(static_cast<std::uint32_t>(bits << rest));
+    // Shifts in two steps, and none by 64, which would be undefined.
     this->Limbs.push_back(static_cast<std::uint32_t>((bits >> 1) >> (31 - rest)));
     this->Limbs.push_back(rest ? static_cast<std::uint32_t>(bits >> (64 - rest)) : 0);
     this->Trim();
@@ -235,6 +268,7 @@ public:
     return result;
   }
 
+  /** Limb by limb, as on paper. */
   BigInteger operator+(const BigInteger& other) const
   {
     BigInteger result;
@@ -252,6 +286,7 @@ public:
     }
     else
     {
+      // Magnitudes of opposite signs: the smaller one is subtracted from the larger one.
       const bool isLarger = this->HasLargerMagnitudeThan(other);
       const BigInteger& large = isLarger ? *this : other;
       const BigInteger& small = isLarger ? other : *this;
@@ -270,6 +305,7 @@ public:
 
   BigInteger operator-(const BigInteger& other) const { return *this + (-other); }
 
+  /** Each limb of one by each of the other, as on paper: at most some 300 limbs. */
   BigInteger operator*(const BigInteger& other) const
   {
     CountWork(8 + this->Limbs.size() * other.Limbs.size() / 8);
@@ -327,11 +363,14 @@ public:
       quotient += static_cast<std::uint64_t>(digit) << digitShift;
     }
     quotient |= rest.Limbs.empty() ? 0 : 1;
+    // The conversion rounds the quotient once, to the nearest; scaling rounds a second time only
+    // where the result is denormal.
     const double value = std::ldexp(static_cast<double>(quotient), exponent - shift);
     return this->IsNegative != divisor.IsNegative ? -value : value;
   }
 
 private:
+  /** Not for zero. */
   int NumberOfBits() const
   {
     int bits = 0;
@@ -356,6 +395,7 @@ private:
 
   std::uint32_t Limb(std::size_t i) const { return i < this->Limbs.size() ? this->Limbs[i] : 0; }
 
+  /** Drops leading zeros; zero has no limbs and no sign. */
   void Trim()
   {
     while (!this->Limbs.empty() && this->Limbs.back() == 0)
@@ -394,6 +434,7 @@ int CommonExponent(std::initializer_list<Point2> points)
       {
         int exponent;
         std::frexp(value, &exponent);
+        // Denormal numbers have fewer than 53 bits: all are multiples of 2^-1074.
         least = std::min(least, std::max(exponent - 53, -1074));
       }
     }
@@ -424,7 +465,10 @@ inline bool IsSmallInteger(double difference)
     difference == static_cast<double>(static_cast<int>(difference));
 }
 
-/** Whether p - d is free of rounding errors for each p. */
+/**
+ * Whether p - d is free of rounding errors for each p. Differences that are small integers may be
+ * so by rounding alone.
+ */
 bool AreExact(std::initializer_list<Point2> points, const Point2& d)
 {
   for (const Point2& p : points)
@@ -440,7 +484,10 @@ bool AreExact(std::initializer_list<Point2> points, const Point2& d)
   return true;
 }
 
-/** The determinants themselves, for any exact number type. */
+/**
+ * The determinants themselves, for any exact number type. Both subtract the last point first, as
+ * the filters do: differences of near points are short expansions.
+ */
 template <typename Number>
 Sign OrientationOf(const Number& acx, const Number& acy, const Number& bcx, const Number& bcy)
 {
@@ -463,6 +510,7 @@ namespace detail
 
 Sign IntegerOrientation(const Point2& a, const Point2& b, const Point2& c)
 {
+  // Divided by this power of two all coordinates are integers, and the sign stays the same.
   const int e = CommonExponent({ a, b, c });
   const BigInteger cx(c.X, e), cy(c.Y, e);
   return OrientationOf(BigInteger(a.X, e) - cx, BigInteger(a.Y, e) - cy, BigInteger(b.X, e) - cx,
@@ -518,6 +566,8 @@ Sign ExactInCircle(const Point2& a, const Point2& b, const Point2& c, const Poin
 
 Point2 RoundedCrossing(const Point2& a, const Point2& b, const Point2& c, const Point2& d)
 {
+  // By Cramer's rule t = part / whole with two determinants. With one common divisor, a coordinate
+  // is a quotient of two integers and is rounded once.
   const int e = CommonExponent({ a, b, c, d });
   const BigInteger ax(a.X, e), ay(a.Y, e), cx(c.X, e), cy(c.Y, e);
   const BigInteger abx = BigInteger(b.X, e) - ax, aby = BigInteger(b.Y, e) - ay;

@@ -48,6 +48,8 @@ Sign IntegerInCircle(const Point2& a, const Point2& b, const Point2& c, const Po
  */
 inline Sign Orientation(const Point2& a, const Point2& b, const Point2& c)
 {
+  // Twice the area of the triangle, with c as the origin: where two of the points are near each
+  // other, little is lost.
   const double left = (a.X - c.X) * (b.Y - c.Y);
   const double right = (a.Y - c.Y) * (b.X - c.X);
   const double determinant = left - right;
@@ -79,6 +81,7 @@ inline Sign Orientation(const Point2& a, const Point2& b, const Point2& c)
  */
 inline Sign InCircle(const Point2& a, const Point2& b, const Point2& c, const Point2& d)
 {
+  // The determinant of the points lifted onto a paraboloid, with d as the origin.
   const double adx = a.X - d.X, ady = a.Y - d.Y;
   const double bdx = b.X - d.X, bdy = b.Y - d.Y;
   const double cdx = c.X - d.X, cdy = c.Y - d.Y;

@@ -4,6 +4,14 @@
  * @file
  * Whether a point is so near a segment that rounding alone may separate them, and the order of such
  * points along the segment. As in snap rounding, a point in reach may become a vertex of the
+ *
+ *                p                  p is in reach of the segment from a to b if it is at most that
+ *   a -----------:------------> b   many units off (:), across the axis along which the segment is
+ *                                   longer.
+ *
+ * Lines, and edges that follow a ring, are cut at rounded crossings. Without a reach, such a cut
+ * could put two vertices where one is meant, with a triangle between them too thin for the next
+ * cut.
  * segment, so that vertices do not cluster. Topology is decided in Predicates.h, not here.
  */
 #ifndef elevation_Base_SnapRounding_h
@@ -41,6 +49,7 @@ inline RoundingUnits UnitsOf(const Point2& a, const Point2& b)
   // Rounding one coordinate moves a crossing along the other one, too; but less than that where
   // extents, and so the slope, are very unequal.
   constexpr double part = 0x1p-40;
+  // Of the larger end: a crossing in between is rounded by no more.
   const double x = detail::LastPlaceOf(a.X, b.X), y = detail::LastPlaceOf(a.Y, b.Y);
   // Halves, so that no difference overflows.
   const double width = std::fabs(0.5 * b.X - 0.5 * a.X), height = std::fabs(0.5 * b.Y - 0.5 * a.Y);
@@ -91,6 +100,7 @@ inline bool IsInReach(
   {
     return false;
   }
+  // Always from the lower end, or rounding could decide otherwise for the segment from b to a.
   const Point2& from = IsLower(b, a) ? b : a;
   const Point2& to = IsLower(b, a) ? a : b;
   // Quarters, so that no difference overflows.
@@ -103,6 +113,8 @@ inline bool IsInReach(
     std::swap(px, py);
     std::swap(unitX, unitY);
   }
+  // From here on x is the axis along which the segment is longer, so the slope is at most 1. The
+  // tolerance is a unit across, and what a unit along the segment changes by the slope.
   const double slope = dy / dx;
   return std::fabs(py - px * slope) <= 0.25 * reach * (unitY + std::fabs(slope) * unitX);
 }

@@ -63,6 +63,8 @@ void ForEachPiece(Index count, int threads, Work&& work)
     }
     return;
   }
+  // One place for each piece, so threads write without a lock, and which failure is thrown does not
+  // depend on which thread is faster. After a failure the other pieces run all the same.
   std::vector<std::exception_ptr> failures(count);
   CallOnThreads(count, ThreadsAtOnce(threads), [&](Index i) {
     try
@@ -120,6 +122,8 @@ void InRounds(int threads, const Progress& progress, Fraction&& fraction, Work&&
   {
     Report(progress, fraction());
     isMoreLeft = false;
+    // Between rounds all threads have joined: only here may Aborted be thrown. A round of 30 ms is
+    // short enough for an abort, and long compared with the start of the threads.
     const Round::Clock::time_point end = Round::Clock::now() + std::chrono::milliseconds(30);
     ForEachPiece(used, used, [&](Index thread) {
       if (work(thread, Round(end, used == 1)))
@@ -171,6 +175,7 @@ void ForEachPiece(Index count, int threads, const Progress& progress, Work&& wor
         catch (...)
         {
           const std::lock_guard<std::mutex> lock(failing);
+          // The other threads finish the piece they are at, and end.
           next = count;
           if (i < failed)
           {

@@ -29,6 +29,9 @@ struct ThreadWork
 {
   std::size_t Done, Summed;
 };
+// Counting touches memory of its own thread, and the common sum once in 65,536 steps: threads that
+// write to one place all the time slow each other down. The sum orders no other accesses to memory,
+// hence memory_order_relaxed.
 inline thread_local ThreadWork OwnWork = { 0, 0 };
 inline std::atomic<std::size_t> SummedWork{ 0 };
 } // namespace detail
@@ -62,7 +65,10 @@ inline std::size_t TotalWork()
   return detail::SummedWork.load(std::memory_order_relaxed) + (own.Done - own.Summed);
 }
 
-/** Counts the steps of a loop. */
+/**
+ * Counts the steps of a loop, and adds them to the account by the thousand, the rest at its end.
+ * One thread makes, uses and ends it. Not copyable, or steps would count twice.
+ */
 class StepCount
 {
 public:
@@ -85,7 +91,10 @@ private:
   std::size_t Steps = 0;
 };
 
-/** See Counted(). */
+/**
+ * What Counted() returns, for a range-based loop. The positions add to a count in the range, which
+ * such a loop keeps until its end.
+ */
 template <typename Iterator, bool AreAddresses = false>
 class CountedRange
 {

@@ -1,5 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// HoleFilling::Run() goes through the holes twice:
+//
+// 1. PlanAll() measures each hole and plans its patch; GrantPoints() compares what all of them need
+//    with the limits. After this it is certain which holes are filled and how large they are, so
+//    the work can be divided and progress is known.
+// 2. Batches of holes, in their order. The patches of a batch are made on several threads, each
+//    into a place of its own (FillOne), and appended by one thread in the order of the holes
+//    (Append). So the result depends neither on the number of threads nor on which is faster.
 #include "Fill.h"
 
 #include "Kernel/Base/Base.h"
@@ -23,7 +32,8 @@ constexpr double LargestLength = 1e150;
 
 /**
  * Patches of more than PointsAlone points (on one thread, a quarter of that) are made one by one
- * and report progress; others together, up to PointsTogether points per thread.
+ * and report progress; others together, up to PointsTogether points per thread, which bounds the
+ * memory of patches that wait to be appended.
  */
 constexpr double PointsAlone = 10000.0;
 constexpr double PointsTogether = 50000.0;
@@ -41,7 +51,10 @@ constexpr double BytesPerPoint = 500.0; // of memory, while and after it is inse
 /** What a thread takes at a time: patches of about this many points in all, or a larger one. */
 constexpr double PointsPerPiece = 250.0;
 
-/** Distance between neighbouring numbers near x, in the precision of the points. */
+/**
+ * Distance between neighbouring numbers near x, in the precision of the points. It limits how small
+ * a spacing may be (LeastStepsPerSpacing).
+ */
 double StepAt(double x, bool singlePrecision)
 {
   if (singlePrecision)
@@ -59,6 +72,7 @@ bool IsMeasurable(double length)
   return length >= LeastLength && length <= LargestLength;
 }
 
+// Whole numbers without an exponent, as long as a double holds them exactly.
 std::string CountToText(double value)
 {
   return value < 1e15 ? std::to_string(std::llround(value)) : ToText(value);
@@ -103,6 +117,8 @@ void Elevate(const Mesh& mesh, const VertexStars* stars, const PointView& points
   const FillOptions& options, const Progress& progress, Patch& patch, HoleReport& report,
   std::vector<std::vector<double>>& attributes, std::vector<double>& errors)
 {
+  // The first values are the elevations, by which Adaptive chooses; attributes follow the same
+  // choice.
   const Values elevation = [&points](Index id) { return points.Elevation(id); };
   const Heights heights(mesh, stars, patch, options.Method, elevation, progress.Between(0.0, 0.5));
   const std::size_t count = options.Attributes.size() + 1;
@@ -157,6 +173,8 @@ void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
   {
     room(values, points);
   }
+  // From the numbers of the patch to ids: known vertices have theirs, new ones follow in
+  // patch.Order.
   std::vector<Index> ids(patch.NumberOfVertices());
   std::copy(patch.BoundaryIds.begin(), patch.BoundaryIds.end(), ids.begin());
   for (std::size_t k = 0; k < points; ++k)
@@ -200,10 +218,12 @@ public:
   FillResult Run()
   {
     const Progress& monitor = this->Options.Monitor;
+    // The neighbours' mean looks at the patch alone; all other methods are tried around the hole.
     const bool needsStars = this->Options.Method != Interpolation::NeighborMean;
     this->Least = needsStars ? PointsPerTrial : PointsPerPatch;
     this->PlanAll();
     this->GrantPoints();
+    // On a lattice they are there already, for the plans.
     if (this->AllWork > 0.0 && needsStars && !this->Stars)
     {
       this->Stars = std::make_unique<VertexStars>(this->Surface, monitor.Between(0.02, 0.06));
@@ -216,6 +236,7 @@ public:
     {
       const double before = done;
       const Index end = this->BatchEnd(begin, done);
+      // The work of a hole is known only about, so the sum may pass 1.
       const Progress ofBatch =
         filling.Between(std::min(1.0, before / all), std::min(1.0, done / all));
       Report(ofBatch, 0.0);
@@ -286,6 +307,8 @@ private:
       plan = PlanPatch(this->Surface, this->Stars.get(), this->GivenHoles, hole, report.Area,
         options.Spacing, lattice.Found ? &lattice.Steps : nullptr);
       report.Spacing = plan.Spacing;
+      // Any point of the rim will do: with the hole's size added, no coordinate of the hole is
+      // larger.
       const Point2& p =
         this->Surface.PointOf(*this->GivenHoles.Walks.Begin(this->GivenHoles.Rim(hole)));
       plan.Precision =
@@ -302,9 +325,11 @@ private:
   void GrantPoints()
   {
     const Index limit = this->Options.MaximumInsertedPoints;
+    // Ids must suffice whatever the user's limit is.
     const Index ofIds = MaximumNumberOfPoints - this->Surface.NumberOfPoints();
     const std::vector<HoleNeed> needs = this->Needs();
     std::vector<double> quotas = this->Context.Quotas;
+    // Quotas of a surface in parts were found for all of its holes together.
     if (quotas.empty())
     {
       CheckEffort(needs, this->Surface.NumberOfPoints(), this->Options);
@@ -331,6 +356,7 @@ private:
     }
   }
 
+  /** The work for a hole, in points; 0 if it is not filled. */
   double WorkOf(Index hole) const
   {
     const HoleReport& report = this->Result.Reports[hole];
@@ -348,6 +374,7 @@ private:
     const double alone = this->Threads > 1 ? PointsAlone : PointsAlone / 4.0;
     const double before = done;
     Index end = begin;
+    // Holes that are not filled count as no work; the number limits how many of them a batch has.
     do
     {
       done += this->WorkOf(end++);
@@ -394,6 +421,7 @@ private:
   {
     const Batch batch = this->DivideBatch(begin, end);
     std::vector<FilledHole> filled(end - begin);
+    // A patch that is alone uses all threads itself, to triangulate.
     const bool isAlone = end - begin == 1;
     if (isAlone)
     {
@@ -410,6 +438,7 @@ private:
     for (Index hole = begin; hole < end; ++hole)
     {
       HoleReport& report = this->Result.Reports[hole];
+      // A region without room leaves no trace: no offsets, and its report goes in the end.
       if (!this->HasRoom[hole])
       {
         continue;
@@ -440,6 +469,7 @@ private:
       MakePatch(this->Plans[hole], progress.Between(0.0, 0.4), patch);
       if (this->GivenHoles.IsRegion(hole) && patch.NumberOfNewVertices() == 0)
       {
+        // It keeps its long triangles, which cover it as well.
         this->HasRoom[hole] = 0;
         return;
       }
@@ -502,6 +532,7 @@ HoleReport MeasureHole(const Mesh& mesh, const Holes& holes, Index hole, const F
   const auto visitEdges = [&](auto&& visit) {
     holes.VisitEdges(hole, [&](Index a, Index b) { visit(mesh.PointOf(a), mesh.PointOf(b)); });
   };
+  // Relative to a point of the rim, as differences of large coordinates' products would be rounded.
   const Point2 origin = mesh.PointOf(*holes.Walks.Begin(holes.Rim(hole)));
   Point2 low = origin;
   Point2 high = origin;
@@ -519,6 +550,7 @@ HoleReport MeasureHole(const Mesh& mesh, const Holes& holes, Index hole, const F
   {
     report.Status = FillStatus::TooManyEdges;
   }
+  // A region is made of triangles of the surface; nothing was cut out there.
   if (!options.FillCutOuts && !options.OnBoundary.empty() && !holes.IsRegion(hole))
   {
     holes.VisitEdges(hole, [&](Index a, Index b) {
@@ -532,6 +564,7 @@ HoleReport MeasureHole(const Mesh& mesh, const Holes& holes, Index hole, const F
     return report;
   }
   double twiceArea = 0.0;
+  // The hole is on the right of its edges, so this is positive.
   visitEdges([&](const Point2& a, const Point2& b) {
     twiceArea += (a.Y - origin.Y) * (b.X - origin.X) - (a.X - origin.X) * (b.Y - origin.Y);
   });
@@ -572,6 +605,7 @@ void CheckEffort(
   {
     return;
   }
+  // At this spacing, the expected number is the limit; rounded up, a little less.
   const double better = RoundedUp(PointSpacing(area, limit));
   if (chosen > 0.0)
   {
@@ -582,6 +616,8 @@ void CheckEffort(
     CountToText(limit), CountToText(numberOfPoints), better);
 }
 
+// From the smallest on: as many holes as possible are filled, and whether one is does not depend on
+// the order of holes. One that finds too little left takes nothing.
 std::vector<double> QuotasFor(const std::vector<HoleNeed>& needs, Index limit)
 {
   std::vector<std::pair<double, std::size_t>> order;

@@ -11,6 +11,12 @@
  *   3. Find elevations, and other attributes in the same way (Heights.h).
  * Where a hole is a region of long triangles, the patch replaces them; of a region that is not
  * filled, the caller keeps them. They are no evidence: elevations are found from the other ones,
+ *
+ *   o---o---o---o       The rim o and the island i are known. The patch has new points (.) and
+ *   | . . . . . |       triangles between all of these; no edge of rim or island is split.
+ *   o . i-i . . o
+ *   | . i-i . . |
+ *   o---o---o---o
  * and the points inside the region. A region whose patch would have no new point has no room: it
  * stays as it is and is not a hole.
  *

@@ -1,5 +1,15 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Heights.h says what the methods are and why. The order of the work:
+//
+//   Heights()         CollectRing, CollectSlopes    the known points around the hole
+//                     MakeCandidates                ChooseCenters, without strays; MakeSpline
+//                     Choose                        TryBeside: Trials.h; shares, errors by distance
+//   Apply()           SplineSum, then the membrane of what they miss, then Bound
+//   StandardErrors()  from the errors by distance
+//
+// The first three are done once for a hole, Apply() for its elevations and for each attribute.
 #include "Heights.h"
 
 #include "Spline.h"
@@ -116,6 +126,8 @@ std::vector<Index> PartSizes(Index count, const std::vector<SlopingEdge>& edges,
   return sizes;
 }
 
+// By reversing the bits of k: 0, 1/2, 1/4, 3/4, ... of a turn, so that the first few places, which
+// may be enough, are around the hole.
 /** The k-th of 0 to count - 1, a power of two, in an order whose beginnings are evenly spread. */
 int Spread(int k, int count)
 {
@@ -140,6 +152,7 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
     this->Method = Interpolation::NeighborMean;
     return;
   }
+  // The box of the boundary becomes [-1, 1] in its longer direction: splines want numbers about 1.
   const Box box = patch.BoundaryBox();
   this->Center = box.Center();
   this->Scale = 2.0 / std::max(box.Width(), box.Height());
@@ -157,6 +170,7 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
     }
   }
   this->IsByTrials = wanted == Interpolation::Adaptive;
+  // No share of progress: centres and splines are small, at most MostCentersWithPointsInside.
   this->MakeCandidates(wanted, *stars, values, progress.Between(0.0, 0.0));
   if (this->IsCandidate[0] || !this->AllBoundaryIsCenter)
   {
@@ -196,6 +210,7 @@ void Heights::CollectSlopes(const VertexStars& stars)
   {
     last.push_back({ id, id });
   }
+  // The layer of the innermost new vertex: how many edges deep the hole is.
   const Index depth =
     this->Patch.Layers[this->Patch.Order.back() - this->Patch.NumberOfBoundaryVertices()];
   const Index rings = std::max<Index>(1, std::min<Index>(depth / 2, MostRings));
@@ -210,6 +225,7 @@ void Heights::CollectSlopes(const VertexStars& stars)
         return true;
       });
     }
+    // Stable: of several pairs to the same point, the one that came from the lowest point counts.
     std::stable_sort(found.begin(), found.end(), isBefore);
     found.erase(std::unique(found.begin(), found.end(),
                   [](const Pair& a, const Pair& b) { return a.Away == b.Away; }),
@@ -227,6 +243,7 @@ void Heights::CollectSlopes(const VertexStars& stars)
     }
     before = std::move(last);
     last = std::move(found);
+    // The last ring that has points: the farthest evidence of how the surface slopes.
     this->Slopes = last;
   }
 }
@@ -238,6 +255,7 @@ void Heights::CollectSlopes(const VertexStars& stars)
 std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& values) const
 {
   const Index count = static_cast<Index>(this->KnownVertices.size());
+  // The ids with their places, sorted: a map for few look-ups.
   std::vector<std::pair<Index, Index>> places; // by id
   for (Index i = 0; i < count; ++i)
   {
@@ -274,8 +292,11 @@ std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& va
       return true;
     });
   }
+  // Twice the same joining: by the edges that are not steep, and by all. A point whose part of the
+  // first is much smaller than that of the second is cut off by steep edges.
   const double limit = SteepEdge * Median(std::move(slopes));
   const std::vector<Index> gentle = PartSizes(count, edges, limit);
+  // What the edges join at all: points may be in several parts, as on islands.
   const std::vector<Index> all = PartSizes(count, edges, std::numeric_limits<double>::infinity());
   std::vector<char> isStray(count);
   for (Index i = 0; i < count; ++i)
@@ -300,12 +321,15 @@ void Heights::ChooseCenters(
     y[i] = p.Y;
   }
   const double least = LeastDistance * this->Patch.Spacing * this->Scale;
+  // Each point's squared distance to the nearest centre so far; infinite before there is one, so
+  // the first point is the first centre. Strays are below any limit.
   std::vector<double> squares(count, std::numeric_limits<double>::infinity());
   const std::vector<char> isStray = this->FindStrays(stars, values);
   for (std::size_t i = 0; i < count; ++i)
   {
     squares[i] = isStray[i] ? -1.0 : squares[i];
   }
+  // The point farthest from all centres is the next one, until it would be too near to one.
   const auto choose = [&](std::size_t end, std::size_t most) {
     while (this->Centers.size() < most)
     {
@@ -329,8 +353,10 @@ void Heights::ChooseCenters(
   };
   const std::size_t most =
     std::min(MostCentersWithPointsInside, MostCenters + this->Patch.NumberOfPointsInside);
+  // Half of them on the boundary, where patch and surface meet; then wherever points are farthest.
   choose(boundary, most / 2);
   choose(count, most);
+  // By place: the boundary's come first, in the order of its vertices, as Trials.h expects.
   std::sort(this->Centers.begin(), this->Centers.end());
   this->AllBoundaryIsCenter = this->Centers.size() >= boundary &&
     this->Centers[boundary - 1] == static_cast<Index>(boundary) - 1;
@@ -357,6 +383,7 @@ void Heights::MakeCandidates(
     this->ChooseCenters(stars, values, progress);
     for (int k = 0; k < 2; ++k)
     {
+      // Without the thin plate, the cubic spline has no chance either.
       if (this->IsByTrials ? k == 0 || this->Splines[0] : wanted == Methods[k + 1])
       {
         this->Splines[k] = this->MakeSpline(k);
@@ -392,7 +419,9 @@ void Heights::TryBeside(Trials& trials, const Progress& progress) const
   int placesForGrowth = 0;
   for (const double size : ReducedSizes)
   {
+    // Only as many as are still missing; none, if there are enough.
     const int found = tryAt(size, std::min(number, EnoughPlaces) - places, true);
+    // Growth is measured from half of the largest reduced size with enough places to that size.
     if (placesForGrowth < LeastPlacesForGrowth)
     {
       sizeForGrowth = 0.5 * size;
@@ -409,6 +438,7 @@ void Heights::TryBeside(Trials& trials, const Progress& progress) const
 /** Finds the candidates' shares, and their errors. */
 void Heights::Choose(const VertexStars& stars, const Values& values, const Progress& progress)
 {
+  // A single candidate is tried as well, for its errors.
   Trials trials(*this, stars, values);
   this->TryBeside(trials, progress);
   int best = -1;
@@ -422,6 +452,7 @@ void Heights::Choose(const VertexStars& stars, const Values& values, const Progr
   double sum = 0.0;
   for (int i = 0; i < 3; ++i)
   {
+    // Relative to the best, so exp() can neither overflow nor make all of them 0.
     const double share =
       this->IsCandidate[i] ? std::exp(trials.Scores[i] - trials.Scores[best]) : 0.0;
     this->Shares[i] = share < LeastShare ? 0.0 : share;
@@ -430,6 +461,7 @@ void Heights::Choose(const VertexStars& stars, const Values& values, const Progr
   for (int i = 0; i < 3; ++i)
   {
     this->Shares[i] /= sum;
+    // A spline without a share needs no memory and is evaluated nowhere.
     if (i > 0 && !(this->Shares[i] > 0.0))
     {
       this->Splines[i - 1].reset();
@@ -451,6 +483,7 @@ std::vector<double> Heights::StandardErrors() const
     const double distance = std::hypot(p.X - q.X, p.Y - q.Y);
     const auto after = std::upper_bound(this->ErrorCurve.begin(), this->ErrorCurve.end(), distance,
       [](double d, const std::pair<double, double>& entry) { return d < entry.first; });
+    // Nearer than the nearest class, or farther than the farthest: that one's error.
     if (after == this->ErrorCurve.begin() || after == this->ErrorCurve.end())
     {
       result[i] = (after == this->ErrorCurve.begin() ? *after : after[-1]).second;
@@ -476,6 +509,7 @@ std::vector<double> Heights::Mean(const Values& values, const Progress& progress
     for (std::size_t j = neighbors.Offsets[i]; j < neighbors.Offsets[i + 1]; ++j)
     {
       const Index other = neighbors.Neighbors[j];
+      // Layer by layer, so the result does not depend on what has been found in the same layer.
       if (other < boundary || this->Patch.Layers[other - boundary] < this->Patch.Layers[i])
       {
         const double value =
@@ -507,6 +541,7 @@ std::vector<double> Heights::SplineSum(
   for (int s = 0; s < 2; ++s)
   {
     weights[s] = this->Splines[s] ? this->Splines[s]->Interpolate(atCenters) : Spline::Weights();
+    // Weighted here, so that each point is evaluated once for the sum.
     for (double& weight : weights[s])
     {
       weight *= this->Shares[s + 1];
@@ -541,6 +576,8 @@ Heights::RimSlopes Heights::MeasureSlopes(const Values& values, double unit) con
   {
     const Point2& a = this->Surface.PointOf(pair.Boundary);
     const Point2& b = this->Surface.PointOf(pair.Away);
+    // Of scaled values and lengths, so that it stays in the range of double; then for the caller's
+    // unit of length.
     const double slope = (values(pair.Boundary) - values(pair.Away)) / unit /
       (std::hypot(b.X - a.X, b.Y - a.Y) * this->Scale);
     if (std::isfinite(slope))
@@ -564,6 +601,7 @@ void Heights::Bound(const std::vector<double>& scaled, const Values& values, dou
   double unit, const Progress& progress, std::vector<double>& result) const
 {
   const Index boundary = this->Patch.NumberOfBoundaryVertices();
+  // The bounds are in the caller's units, so that rounding in scaled ones does not break them.
   double lowest = values(this->KnownVertices[0]);
   double highest = lowest;
   for (Index i = 1; i < boundary; ++i)
@@ -589,6 +627,7 @@ void Heights::Bound(const std::vector<double>& scaled, const Values& values, dou
       const double room = SlopeLimit * slopes.Steepness * distance;
       result[i] = std::max(flat[i] - room, std::min(flat[i] + room, result[i]));
     }
+    // The range of the boundary, widened only in the direction in which the surface heads.
     result[i] = std::max(lowest + unit * std::min(0.0, rise),
       std::min(highest + unit * std::max(0.0, rise), middle + unit * result[i]));
   }
@@ -601,6 +640,7 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
     return this->Mean(values, progress);
   }
   const std::size_t boundary = this->Patch.BoundaryIds.size();
+  // Without splines, the ring has no part in the result and need not be finite.
   std::vector<double> known(this->HasSpline() ? this->KnownVertices.size() : boundary);
   std::transform(this->KnownVertices.begin(),
     this->KnownVertices.begin() + static_cast<std::ptrdiff_t>(known.size()), known.begin(), values);
@@ -611,6 +651,7 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
   // Scaled to [-1, 1], nothing overflows, and offsets cost no digits.
   const double low = *std::min_element(known.begin(), known.end());
   const double high = *std::max_element(known.begin(), known.end());
+  // Half of each, as the difference of two large values may overflow.
   const double middle = 0.5 * low + 0.5 * high;
   const double unit = std::max(high - middle, middle - low);
   std::vector<double> result(this->Patch.NumberOfNewVertices(), unit == 0.0 ? low : 0.0);
@@ -628,6 +669,9 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
   std::vector<double> missed = rim;
   if (this->HasSpline())
   {
+    // The splines' weights carry their shares. So what they leave at the boundary is the
+    // membrane's share of it, and what centres left out or dropped miss there: one solution gives
+    // both.
     const std::vector<double> sums =
       this->SplineSum(known, progress.Between(0.0, this->NeedsHarmonic() ? 0.3 : 0.8));
     std::transform(rim.begin(), rim.end(), sums.begin(), missed.begin(), std::minus<double>());

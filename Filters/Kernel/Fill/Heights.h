@@ -9,6 +9,12 @@
  *
  *   NeighborMean  the mean of the known neighbours, layer by layer from the boundary inwards
  *                 [Nguyen, eq. 2];
+ *
+ *      r   r   r   r       b  boundary of the hole   b and r are the known points of splines; the
+ *    r   b---b---b   r     r  ring around it         membrane and the mean know b alone. Slopes are
+ *      r b o   o b r       o  new points             measured from b outwards, over r and beyond.
+ *    r   b---b---b   r
+ *      r   r   r   r
  *   Membrane      the mean of all neighbours: eq. 2 repeated until nothing changes (Membrane.h);
  *   ThinPlate     continues slope and curvature of the surface: a spline (Spline.h) through the
  *                 hole's boundary and the ring of points around it;

@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// One equation for each unknown: its sum of weights times its value, less the weighted values of
+// unknown neighbours, is the weighted sum of known ones. Any path to a known vertex makes the
+// matrix positive definite; see Adjacency.
 #include "Membrane.h"
 
 #include "Multigrid.h"
@@ -23,6 +27,7 @@ Multigrid::Matrix MatrixOf(const Adjacency& graph, const Progress& progress)
   for (const Index i : Counted(size))
   {
     ReportStep(progress, i, size);
+    // The diagonal comes first and is sorted in with the others below.
     row.assign(1, { i, 0.0 });
     for (std::size_t k = graph.Offsets[i]; k < graph.Offsets[i + 1]; ++k)
     {
@@ -44,6 +49,7 @@ Multigrid::Matrix MatrixOf(const Adjacency& graph, const Progress& progress)
 }
 } // namespace
 
+// Making the matrix has no share of the progress: it is short, compared with factorising it.
 Membrane::Membrane(const Adjacency& graph, const Progress& progress)
   : Graph(graph)
   , Equations(std::make_unique<Multigrid>(MatrixOf(graph, progress.Between(0.0, 0.0)), progress))

@@ -47,6 +47,7 @@ public:
     : A(a)
     , RowAggregates(a.rows(), None)
   {
+    // All entries of a row are itself and its neighbours.
     for (const Index i : Counted(a.rows()))
     {
       ReportStep(progress, i, a.rows());
@@ -60,6 +61,8 @@ public:
         this->Begin(i);
       }
     }
+    // Rows without a free neighbourhood join aggregates that are there before they begin their own:
+    // the fewer aggregates, the smaller the coarse system.
     this->JoinStrongest();
     for (Index i = 0; i < a.rows(); ++i)
     {
@@ -88,9 +91,12 @@ private:
   /** Rows that are left join the neighbouring aggregate with the strongest connection. */
   void JoinStrongest()
   {
+    // Of the state before, or rows would join others that have just joined, and long chains would
+    // form.
     const std::vector<Index> whole = this->RowAggregates;
     for (Index i = 0; i < this->A.rows(); ++i)
     {
+      // Off the diagonal entries are negative, so the strongest connection is the least.
       double least = 0.0;
       for (Matrix::InnerIterator entry(this->A, i); whole[i] == None && entry; ++entry)
       {
@@ -104,7 +110,11 @@ private:
   }
 };
 
-/** The coarse matrix: sums of the entries between aggregates. */
+/**
+ * The coarse matrix: sums of the entries between aggregates. That is P' A P, with a P that gives
+ * each row the value of its aggregate. Symmetry, sign pattern and positive definiteness are
+ * inherited.
+ */
 Matrix Coarsen(const Aggregates& aggregates, const Progress& progress)
 {
   const Matrix& a = aggregates.A;
@@ -123,6 +133,7 @@ Matrix Coarsen(const Aggregates& aggregates, const Progress& progress)
   }
 
   Matrix coarse(aggregates.Count, aggregates.Count);
+  // Sums for all columns at once, set back to 0 after each row.
   std::vector<double> sums(aggregates.Count, 0.0);
   std::vector<Index> columns;
   for (const Index c : Counted(aggregates.Count))
@@ -178,7 +189,16 @@ Multigrid::Multigrid(Matrix matrix, const Progress& progress)
   this->Coarsest.compute(this->Levels.back().A);
 }
 
-/** Gauss-Seidel forwards, a correction on the coarser levels, Gauss-Seidel backwards. */
+/**
+ * One cycle for a residual: Gauss-Seidel forwards, a correction on the coarser levels, Gauss-Seidel
+ * backwards. With three levels, G for Gauss-Seidel and S for a solution by the factor:
+ *
+ *   level 0    G                     G      Gauss-Seidel removes errors that change from neighbour
+ *               \                   /       to neighbour. What is left is smooth, so the sums of
+ *   level 1      G   G   G   G             aggregates are enough to find it, at a small part of
+ *                 \ /     \ /              the size.
+ *   coarsest       S       S
+ */
 Vector Multigrid::Cycle(std::size_t level, const Vector& right, const Progress& progress) const
 {
   if (level + 1 == this->Levels.size())
@@ -191,9 +211,11 @@ Vector Multigrid::Cycle(std::size_t level, const Vector& right, const Progress& 
   const Matrix& next = this->Levels[level + 1].A;
   CountWork(entries / 2);
   Report(progress, 0.0);
+  // From x = 0, one forward sweep of Gauss-Seidel is a solution with the lower triangle.
   Vector x = a.triangularView<Eigen::Lower>().solve(right);
   CountWork(entries / 2);
   Report(progress, 0.0);
+  // The lower triangle gives right, so what A x has too much is the part of the upper one.
   Vector rest = a.triangularView<Eigen::StrictlyUpper>() * x; // the negative residual
   Vector nextRest = Vector::Zero(next.rows());
   for (Index i = 0; i < a.rows(); ++i)
@@ -213,6 +235,8 @@ Vector Multigrid::Cycle(std::size_t level, const Vector& right, const Progress& 
   }
   CountWork(entries / 2);
   Report(progress, 0.0);
+  // The backward sweep, mirror image of the forward one, so that the cycle is symmetric: conjugate
+  // gradients need that of a preconditioner.
   rest = right;
   rest -= a.triangularView<Eigen::StrictlyLower>() * x;
   CountWork(entries / 2);
@@ -222,10 +246,12 @@ Vector Multigrid::Cycle(std::size_t level, const Vector& right, const Progress& 
 
 Vector Multigrid::Solve(Vector right, double accuracy, const Progress& progress) const
 {
+  // Solved without iterations, to rounding.
   if (!this->IsLarge())
   {
     return this->Coarsest.solve(right);
   }
+  // Conjugate gradients from x = 0. @a right is the residual from here on.
   const Matrix& a = this->Levels.front().A;
   Vector x = Vector::Zero(a.rows());
   Vector direction = x;
@@ -240,12 +266,14 @@ Vector Multigrid::Solve(Vector right, double accuracy, const Progress& progress)
     const Vector preconditioned = this->Cycle(0, right, progress.Between(done, done));
     const double now = right.dot(preconditioned);
     first = step == 0 ? now : first;
+    // Also ends for NaN, and where rounding makes the measure negative.
     if (!(now > accuracy * accuracy * first))
     {
       break;
     }
     // Each step reduces the error by about the same factor.
     done = std::max(done, 0.5 * std::log(now / first) / std::log(accuracy));
+    // The next direction is conjugate to all before it, by the last two residuals alone.
     direction = preconditioned + (step == 0 ? 0.0 : now / before) * direction;
     before = now;
     CountWork(static_cast<std::size_t>(a.nonZeros()));

@@ -21,13 +21,22 @@ namespace
 constexpr double LargestWeight = 1e6;
 constexpr double LeastWeight = 1e-12;
 
-/** The cotangent of the angle at c. */
+/**
+ * The cotangent of the angle at c, from the dot and cross product of its sides.
+ *
+ *        c             The weight of edge ab is (cot c + cot d) / 2. On a square lattice diagonals
+ *      /   \           have weight 0, as the angles opposite to them are right.
+ *    a-------b
+ *      \   /
+ *        d
+ */
 double Cotangent(const Point2& a, const Point2& b, const Point2& c)
 {
   const double ux = a.X - c.X;
   const double uy = a.Y - c.Y;
   const double vx = b.X - c.X;
   const double vy = b.Y - c.Y;
+  // Of a triangle without area, the largest cotangent instead of infinity.
   const double dot = ux * vx + uy * vy;
   const double cross = std::fabs(ux * vy - uy * vx);
   return std::fabs(dot) < LargestWeight * cross ? dot / cross : std::copysign(LargestWeight, dot);
@@ -39,6 +48,7 @@ void CollectNeighbors(PatchMesh& patch, const Progress& progress)
   const Index boundary = patch.NumberOfBoundaryVertices();
   const Index count = patch.NumberOfNewVertices();
   std::vector<std::size_t>& offsets = patch.Neighbors.Offsets;
+  // Count, sum, fill, as in CellGrid.h; only new vertices have rows.
   offsets.assign(static_cast<std::size_t>(count) + 1, 0);
   for (const Index vertex : patch.Triangles)
   {
@@ -76,6 +86,7 @@ void WeighNeighbors(PatchMesh& patch, const Progress& progress)
   const auto add = [&](Index from, Index to, double weight) {
     if (from >= boundary)
     {
+      // A vertex has about six neighbours: a search is cheaper than a map.
       std::size_t k = patch.Neighbors.Offsets[from - boundary];
       while (neighbors[k] != to)
       {
@@ -90,6 +101,7 @@ void WeighNeighbors(PatchMesh& patch, const Progress& progress)
     const Index edge = static_cast<Index>(h);
     const Index a = patch.Triangles[h];
     const Index b = patch.Triangles[static_cast<std::size_t>(Mesh::Next(edge))];
+    // Edges between two known vertices are in no equation.
     if (a >= boundary || b >= boundary)
     {
       const Index c = patch.Triangles[static_cast<std::size_t>(Mesh::Previous(edge))];
@@ -98,6 +110,7 @@ void WeighNeighbors(PatchMesh& patch, const Progress& progress)
       add(b, a, weight);
     }
   }
+  // Where rounding gives 0 or less, a tiny weight keeps the system positive definite.
   for (double& weight : weights)
   {
     weight = std::max(weight, LeastWeight);
@@ -120,6 +133,7 @@ void FindLayers(PatchMesh& patch, const Progress& progress)
     patch.Outward[i] = from;
     patch.Order.push_back(boundary + i);
   };
+  // The first layer: what has a neighbour on the boundary.
   for (Index i = 0; i < count; ++i)
   {
     const auto end = neighbors.begin() + static_cast<std::ptrdiff_t>(offsets[i + 1]);
@@ -131,6 +145,7 @@ void FindLayers(PatchMesh& patch, const Progress& progress)
     }
   }
   StepCount steps;
+  // Order is the queue as well.
   for (std::size_t k = 0; k < patch.Order.size(); ++k)
   {
     steps.Add();
@@ -187,6 +202,7 @@ private:
     return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
   }
 
+  // Turn by turn along x and along y. No memory but the array itself.
   void Build(std::size_t begin, std::size_t end, bool byX)
   {
     if (end - begin < 2)
@@ -210,11 +226,15 @@ private:
     const std::size_t middle = begin + (end - begin) / 2;
     const Node& node = this->Tree[middle];
     const double square = Square(this->P, node.At);
+    // The lower number of equally near ones: vertices are sorted by position, so this is the
+    // lowest.
     if (square < this->BestSquare || (square == this->BestSquare && node.Vertex < this->Best))
     {
       this->BestSquare = square;
       this->Best = node.Vertex;
     }
+    // First the side of the dividing line on which p is, then the other one if something nearer, or
+    // equally near, can be there.
     const double beyond = byX ? this->P.X - node.At.X : this->P.Y - node.At.Y;
     const bool isLow = beyond < 0.0;
     this->Look(isLow ? begin : middle + 1, isLow ? middle : end, !byX);

@@ -16,8 +16,10 @@ namespace
 {
 
 /**
- * One flag per triangle: 1 inside the hole, else 0. The triangulation covers the convex hull. Only
- * crossing a boundary edge leads from inside to outside or back.
+ * One flag per triangle: 1 inside the hole, else 0. The triangulation covers the convex hull of the
+ * hole's points. Only crossing a boundary edge leads from inside to outside or back, so the side of
+ * one triangle decides for all: one at the hull is outside, unless its border edge is the
+ * boundary's.
  */
 std::vector<char> FindInside(
   const Mesh& mesh, const std::vector<char>& constrained, const Progress& progress)
@@ -40,6 +42,7 @@ bool IsBoundedBy(const std::vector<Segment>& edges, const Mesh& mesh)
 {
   std::vector<std::pair<Index, Index>> expected;
   std::vector<std::pair<Index, Index>> found;
+  // The hole is on the right of its edges, the triangles in it are on the left of theirs.
   for (const Segment& edge : edges)
   {
     expected.emplace_back(edge.B, edge.A);
@@ -65,6 +68,7 @@ void CutAlong(const std::vector<Segment>& edges, Mesh& mesh, const Progress& pro
   }
   std::vector<char> constrained;
   RecoverSegments(mesh, edges, constrained, progress);
+  // Afterwards no flip of the refinement crosses them, and no circumcentre is inserted beyond them.
   for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
   {
     mesh.Twins[h] = constrained[h] ? Mesh::Border : mesh.Twins[h];
@@ -81,6 +85,8 @@ Mesh Connect(const Patch& patch, int threads, const Progress& progress)
   options.NumberOfThreads = threads;
   options.Monitor = progress.Between(0.0, 0.6);
   const Triangulation triangulation = Triangulate(view, options);
+  // Points that coincide with others: of the boundary, two borders touch without a common vertex;
+  // of the new ones, rounding has pushed two onto each other.
   if (!triangulation.UnusedPoints.empty())
   {
     throw triangulation.UnusedPoints.front() < patch.NumberOfBoundaryVertices()
@@ -98,6 +104,7 @@ Mesh Connect(const Patch& patch, int threads, const Progress& progress)
   std::vector<char> constrained;
   RecoverSegments(mesh, patch.Edges, constrained, progress.Between(0.8, 0.9));
   KeepTriangles(FindInside(mesh, constrained, progress.Between(0.9, 1.0)), mesh);
+  // Where borders cross or overlap, recovery may succeed and yet enclose something else.
   if (!IsBoundedBy(patch.Edges, mesh))
   {
     throw BordersTouch();
@@ -126,6 +133,7 @@ Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
     patch.BoundaryIds.insert(patch.BoundaryIds.end(), { a, b });
     patch.InnerEdges.push_back({ a, b });
   });
+  // By position, which makes the patch independent of the ids in the surface.
   std::vector<Index>& ids = patch.BoundaryIds;
   const IsLowerPoint isLower{ mesh };
   std::sort(ids.begin(), ids.end(), isLower);
@@ -143,6 +151,7 @@ Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
   std::vector<char> isInside(ids.size(), 1);
   for (const Segment& edge : patch.Edges)
   {
+    // Each vertex of the boundary is the origin of one of its edges.
     isInside[edge.A] = 0;
   }
   patch.NumberOfPointsInside = static_cast<Index>(std::count(isInside.begin(), isInside.end(), 1));
@@ -173,11 +182,13 @@ void MakePatch(const PatchPlan& plan, const Progress& progress, Patch& patch)
   {
     PlaceEvenly(plan, placing, patch);
   }
+  // Nodes are left as they are: triangles of a lattice are good, and points off it would not fit.
   Mesh mesh = Connect(patch, plan.NumberOfThreads, progress.Between(0.1, 0.7));
   if (plan.Kind != Arrangement::Nodes)
   {
     Refine(plan, patch, progress.Between(0.7, 1.0), mesh);
   }
+  // Those that refinement has added.
   for (Index v = patch.NumberOfVertices(); v < mesh.NumberOfPoints(); ++v)
   {
     patch.AddPoint(mesh.PointOf(v));

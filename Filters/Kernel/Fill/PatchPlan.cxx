@@ -63,6 +63,7 @@ std::vector<double> SpacingsAlong(
 {
   std::vector<double> spacings;
   spacings.reserve(lengths.size());
+  // The boundary's lengths come walk by walk, as the spacings are to be.
   const double* length = lengths.data();
   for (Index loop = holes.Offsets[hole]; loop < holes.Offsets[hole + 1]; ++loop)
   {
@@ -73,6 +74,7 @@ std::vector<double> SpacingsAlong(
       double sum = 0.0;
       for (Index k = 0; k < around; ++k)
       {
+        // Half of the edges before the vertex and half after it, around the end of the walk.
         sum += length[(i + k + count - around / 2) % count];
       }
       spacings.push_back(sum / around);
@@ -89,6 +91,7 @@ std::vector<double> SpacingsAlong(
 void AddInnerSpacings(const Holes& holes, Index hole, const std::vector<double>& lengths,
   double mean, std::vector<double>& spacings)
 {
+  // Two passes over the same edges: a vertex has several, and all of them count.
   std::unordered_map<Index, std::pair<double, double>> sums; // of lengths, and their number
   const double* length = lengths.data();
   holes.VisitInnerEdges(hole, [&](Index a, Index b) {
@@ -103,6 +106,7 @@ void AddInnerSpacings(const Holes& holes, Index hole, const std::vector<double>&
     for (const Index end : { a, b })
     {
       const auto& [sum, number] = sums[end];
+      // a == b stands for a lone point inside, which has no edge.
       spacings.push_back(a == b ? mean : sum / number);
     }
   });
@@ -163,6 +167,7 @@ EdgeLengths EdgeSpacings(
   }
   double* next = spacings.Boundary.data();
   const auto raise = [&](Index a, Index b) {
+    // Long edges stay as they are: MeanWithin() leaves them out.
     if (*next > 0.0 && *next <= holes.LongestEdge)
     {
       const double gap = std::min({ holes.Gaps[a], holes.Gaps[b], regionWidth });
@@ -186,6 +191,10 @@ double GradedPoints(
   const EdgeLengths& lengths, const EdgeLengths& spacings, double area, double mean, double largest)
 {
   constexpr double perSide = 1.0 / SpacingGrowth;
+  // Around a point the spacing at distance r is m + g r, with g = SpacingGrowth, and a ring of
+  // width dr has 2 pi r dr / (m + g r)^2 points; up to the size of the hole, this is about 2 pi /
+  // g^2 times the logarithm of 1 + g r / m. Beside an edge the integral of dr / (m + g r)^2 over r
+  // is 1 / (g m).
   const double reach = SpacingGrowth * std::sqrt(area) / mean;
   const double perPoint = 6.3 / (SpacingGrowth * SpacingGrowth) * std::log1p(reach);
   double points = area / largest / largest / RowHeight;
@@ -222,6 +231,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
   const EdgeLengths lengths = MeasureEdges(mesh, holes, hole);
   const double edges = static_cast<double>(lengths.Boundary.size() + lengths.Inner.size());
   const double perimeter = std::accumulate(lengths.Boundary.begin(), lengths.Boundary.end(), 0.0);
+  // Twice the area over the perimeter: the width of a long strip.
   const EdgeLengths spacings = EdgeSpacings(holes, hole, lengths, 2.0 * area / perimeter);
   if (spacing > 0.0)
   {
@@ -237,6 +247,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
   }
   const double length = std::accumulate(lengths.Inner.begin(), lengths.Inner.end(), perimeter);
   plan.MostRows = length / plan.Spacing - edges;
+  // One point for each cell of a spacing times the height of a row.
   plan.ExpectedPoints = plan.MostPoints = area / plan.Spacing / plan.Spacing / RowHeight;
   if (spacing > 0.0)
   {
@@ -254,6 +265,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
     return plan;
   }
 
+  // Graded, if spacings differ enough.
   plan.Spacings = SpacingsAlong(holes, hole, spacings.Boundary);
   AddInnerSpacings(holes, hole, spacings.Inner, plan.Spacing, plan.Spacings);
   const auto range = std::minmax_element(plan.Spacings.begin(), plan.Spacings.end());

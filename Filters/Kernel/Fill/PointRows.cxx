@@ -1,5 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+//   row   ------[//////]x x x[////]------[///]x x x x x[/////]-----
+//
+//   [//] blocked: within the clearance of an edge     x  points are set     -  outside
+//
+// No exact arithmetic is needed: where rounding could decide, an edge is near and blocks.
 #include "PointRows.h"
 
 #include "Kernel/Messages/Messages.h"
@@ -45,6 +51,7 @@ Blocked BlockRow(const Rows& rows, Index row, const Point2& a, const Point2& b)
   const double ux = (b.X - a.X) / length;
   const double uy = (b.Y - a.Y) / length; // >= 0
   const double y = row * rows.RowHeight;
+  // Half-open: a vertex on the row belongs to the edge below it or above it, once.
   Blocked stretch{ row, std::numeric_limits<double>::infinity(),
     -std::numeric_limits<double>::infinity(), (a.Y <= y) != (b.Y <= y) };
   const auto include = [&stretch](double begin, double end) {
@@ -54,6 +61,7 @@ Blocked BlockRow(const Rows& rows, Index row, const Point2& a, const Point2& b)
   // The discs around both ends.
   for (const Point2& p : { a, b })
   {
+    // The row at height y cuts a disc in a chord around the disc's centre.
     const double square = clearance * clearance - (y - p.Y) * (y - p.Y);
     if (square >= 0.0)
     {
@@ -89,6 +97,7 @@ std::vector<Blocked> BlockRows(
     const bool isUpwards = points[edge.A].Y <= points[edge.B].Y;
     const Point2& a = points[isUpwards ? edge.A : edge.B];
     const Point2& b = points[isUpwards ? edge.B : edge.A];
+    // Only rows that the edge, widened by the clearance, can meet.
     const double from = std::ceil((a.Y - rows.Clearance) / rows.RowHeight);
     const double to = std::floor((b.Y + rows.Clearance) / rows.RowHeight);
     for (Index row = static_cast<Index>(from); row <= static_cast<Index>(to); ++row)
@@ -135,6 +144,7 @@ void VisitRows(
   }
   std::vector<Blocked> blocked = BlockRows(rows, points, patch, progress.Between(0.0, 0.6));
   const Progress placing = progress.Between(0.6, 1.0);
+  // From the left along each row: inside or not behind the stretches that have been passed.
   bool isInside = false;
   StepCount placed;
   for (std::size_t i = 0; i < blocked.size(); ++i)
@@ -148,6 +158,7 @@ void VisitRows(
     {
       continue;
     }
+    // A stretch may end within the one before; from here on the end is that of both.
     blocked[i + 1].End = std::max(blocked[i].End, blocked[i + 1].End);
     if (!isInside)
     {
@@ -180,10 +191,12 @@ void PlaceNodes(const PatchPlan& plan, const Progress& progress, Patch& patch)
     FindNode(plan.Steps, patch.At(vertex), node);
     return Point2{ node.X - first.X, node.Y - first.Y };
   };
+  // In numbers of nodes: the step and the height of a row are 1, whatever the shape of a cell.
   VisitRows({ 1.0, 1.0, 0.0, NodeClearance }, patch, progress, inRows, [&](Index row, double x) {
     const Point2 node{ first.X + x, first.Y + row };
     const Point2 p = plan.Rounded(plan.Steps.Node(node.X, node.Y));
     Point2 found;
+    // Written back in the precision of the points, a node must still be found.
     if (!FindNode(plan.Steps, p, found) || found != node)
     {
       throw MakeError<sentences::SpacingTooSmall>(plan.Spacing);
@@ -201,6 +214,7 @@ void PlaceEvenly(const PatchPlan& plan, const Progress& progress, Patch& patch)
   const double d = plan.Spacing;
   VisitRows(
     { d, RowHeight * d, 0.5, Clearance * d }, patch, progress, inRows, [&](Index row, double x) {
+      // Here and not before, because a patch without new points is no error.
       if (d < LeastStepsPerSpacing * plan.Precision)
       {
         throw MakeError<sentences::SpacingTooSmall>(d);

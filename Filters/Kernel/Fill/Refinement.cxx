@@ -1,5 +1,16 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Refine(t) for each triangle in a queue: measure it, find its circumcentre, look whether a point
+// may be there, insert it, flip until all is Delaunay, and put the triangles around the new point
+// into the next queue.
+//
+//        q              The circumcentre p of triangle q a b is in it or beyond its longest edge.
+//       / \             Locate() walks from q through that edge to the triangle that holds p. If it
+//      / t \            meets the border, p is not visible from t, and t stays as it is.
+//     a-----b
+//       \ . p
+//        \/
 #include "Refinement.h"
 
 #include <algorithm>
@@ -39,10 +50,12 @@ public:
     {
       return;
     }
+    // The plan has them by edge, in the order of the patch's edges.
     this->Spacings.resize(mesh.NumberOfPoints(), std::numeric_limits<double>::infinity());
     const double* next = plan.Spacings.data();
     const auto set = [&](Index vertex) {
       double& spacing = this->Spacings[vertex];
+      // A vertex with several edges gets the least of their spacings.
       spacing = std::min(spacing, *next * this->Unit);
       this->Largest = std::max(this->Largest, *next++ * this->Unit);
     };
@@ -60,6 +73,7 @@ public:
   void Run(const Progress& progress)
   {
     const double count = static_cast<double>(this->Surface.NumberOfPoints());
+    // A fraction of a point is no point.
     const double most = this->BoundaryVertices + std::floor(this->Plan.MostPoints);
     std::vector<Index> queue(this->Surface.NumberOfTriangles());
     std::iota(queue.begin(), queue.end(), 0);
@@ -79,10 +93,12 @@ public:
           Report(progress,
             first > 0.0 ? std::min(1.0, steps / first) : (points - count) / (most - count));
         }
+        // The plan's limit holds whatever the order was; what is left stays as it is.
         if (this->Surface.NumberOfPoints() + 1 > most)
         {
           return;
         }
+        // The triangle may have changed since it was queued; it is measured as it is now.
         if (this->Refine(t))
         {
           next.insert(next.end(), this->Star.begin(), this->Star.end());
@@ -146,6 +162,7 @@ private:
     const double uu = u.X * u.X + u.Y * u.Y;
     const double vv = v.X * v.X + v.Y * v.Y;
     const double twice = 2.0 * (u.X * v.Y - u.Y * v.X);
+    // The solution of |c|^2 = |c - u|^2 = |c - v|^2, with q as the origin.
     const Point2 center{ (v.Y * uu - u.Y * vv) / twice, (u.X * vv - v.X * uu) / twice };
     const double square = center.X * center.X + center.Y * center.Y;
     if (!(square < std::numeric_limits<double>::infinity()))
@@ -159,10 +176,14 @@ private:
       const double s[3] = { this->Spacings[corners[0]], this->Spacings[corners[1]],
         this->Spacings[corners[2]] };
       mean = (s[0] + s[1] + s[2]) / 3.0;
+      // At the circumcentre, the spacing grows from the least of the corners by the distance to
+      // them, which is the circle's radius.
       spacing = std::min(
         this->Largest, std::min(s[0], std::min(s[1], s[2])) + SpacingGrowth * std::sqrt(square));
     }
     const double clearance = RefinementClearance * spacing;
+    // Three reasons to leave it: it is good; its circle is smaller than the distance that points
+    // keep; or doubles could not keep such points apart.
     if ((lengths.LongestInside <= LongestEdge * LongestEdge * mean * mean &&
           lengths.Shortest >= LeastEdgeToRadius * square) ||
       square < clearance * clearance ||
@@ -197,6 +218,8 @@ private:
       h = Orientation(from, p, mesh.PointOf(mesh.Apex(twin))) == Negative ? Mesh::Previous(twin)
                                                                           : Mesh::Next(twin);
     }
+    // The walk has ended at an edge with p on its left; only exact tests prove that p is in the
+    // triangle.
     const Index t = Mesh::Triangle(h);
     for (Index side = 3 * t; side < 3 * t + 3; ++side)
     {
@@ -219,6 +242,7 @@ private:
     constexpr int mostEdges = 10000;
     int edges = 0;
     std::vector<Index>& stack = this->Stack;
+    // Edges around the point, outwards, as long as they are closer than the limit.
     stack.assign({ 3 * t, 3 * t + 1, 3 * t + 2 });
     while (!stack.empty())
     {
@@ -258,6 +282,7 @@ private:
     Mesh& mesh = this->Surface;
     Index on = None;
     int edges = 0;
+    // On one edge, both of its triangles are cut; on two, it would be a vertex.
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
       if (Orientation(mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)), p) == Zero)
@@ -277,6 +302,8 @@ private:
       this->Spacings.push_back(spacing);
     }
     this->Split(t, on, vertex);
+    // Lawson's flips: only edges opposite the new vertex can have become illegal, and each flip
+    // puts two more of these on the stack.
     while (!this->Stack.empty())
     {
       const Index h = this->Stack.back();
@@ -286,6 +313,7 @@ private:
         this->Flip(h);
       }
     }
+    // Around the new vertex, which is the third corner of each of its triangles.
     this->Star.clear();
     const Index first = 3 * t + 1;
     Index h = first;
@@ -301,6 +329,12 @@ private:
    * Replaces a triangle, or the two at an edge, by triangles from the vertex to the polygon around.
    * The vertex is their third corner; their first half-edges are those of the polygon.
    */
+  //        P2         Triangle i is P_i P_i+1 v, in slot i. Its first half-edge is a side of the
+  //       /  \        polygon; the second one, P_i+1 v, and the third one of the next triangle are
+  //      / v  \       twins.
+  //    P0------P1
+  //
+  // The polygon is the triangle, or the quadrilateral of the two at an edge.
   void Split(Index t, Index on, Index vertex)
   {
     Mesh& mesh = this->Surface;
@@ -360,7 +394,17 @@ private:
       mesh.PointOf(mesh.Apex(h)), mesh.PointOf(mesh.Apex(mesh.Twin(h))));
   }
 
-  /** Flips edge h of the polygon: the apex behind it becomes a corner of the polygon. */
+  /**
+   * Flips edge h of the polygon: the apex behind it becomes a corner of the polygon.
+   *
+   *         corner                  corner
+   *        /      \                /  |   \       h keeps its origin and leads to the corner; the
+   *       / other  \              /   |    \      other triangle goes from there to the old
+   *   from ---h---> to    ->   from h | other to  destination. Both have the vertex as their third
+   *       \        /              \   |    /      corner, as all triangles around it do.
+   *        \      /                \  |   /
+   *         vertex                  vertex
+   */
   void Flip(Index h)
   {
     Mesh& mesh = this->Surface;

@@ -1,5 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Prepare() does what is cubic in the number of centres, once for a hole. Interpolate() needs n^2
+// for each set of values, so trying the spline at 32 places, and interpolating attributes, is
+// cheap.
+//
+//   Q' [1 x y] = [R; 0]         QR of the plane's columns. The side conditions say that the weights
+//   w = Q [0; v]                are orthogonal to these columns, so only n - 3 of them are free, v.
+//   Q' A Q = [S T'; T B]        B is positive definite: LLT. B v = the last n - 3 of Q' values;
+//   R plane = (Q' values)_3 - T' v   the first three then give the plane.
 #include "Spline.h"
 
 #include "Kernel/Base/Base.h"
@@ -30,6 +39,8 @@ inline double TimesLog(double x)
   // x = m 2^e with m in [sqrt 1/2, sqrt 2).
   constexpr std::uint64_t root = 0x3fe6a09e667f3bcdu;
   constexpr std::uint64_t one = std::uint64_t(1) << 52;
+  // The exponent alone: subtracting the bits of sqrt 1/2 makes it change there, not at powers of
+  // two.
   const std::uint64_t shifted = (bits - root + 1024 * one) >> 52; // e + 1024, positive
   bits -= (shifted - 1024) << 52;
   double m;
@@ -39,6 +50,8 @@ inline double TimesLog(double x)
   double e;
   std::memcpy(&e, &number, sizeof e);
   e -= 4503599627370496.0 + 1024.0;
+  // log m = 2 artanh((m - 1) / (m + 1)), by its series: f is at most 0.172, so ten terms give 15
+  // digits.
   const double f = (m - 1.0) / (m + 1.0);
   const double g = f * f;
   double series = 1.0 / 19.0;
@@ -109,6 +122,8 @@ bool Spline::Prepare(const std::vector<Point2>& centers, Kernel kernel)
     plane.row(i) << 1.0, this->X[i] = centers[i].X, this->Y[i] = centers[i].Y;
   }
   this->Plane.compute(plane);
+  // The second and third diagonal entry of R: the spread of the centres along x and, without what x
+  // explains, along y.
   const auto spread = this->Plane.matrixQR().diagonal().cwiseAbs();
   const double least = LeastSpread * std::max(spread[1], std::sqrt(static_cast<double>(n)));
   if (!(spread[1] > least && spread[2] > least))
@@ -121,6 +136,7 @@ bool Spline::Prepare(const std::vector<Point2>& centers, Kernel kernel)
   a.resize(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
   {
+    // The diagonal is f(0) = 0. Entries above it are never read.
     a.col(i).tail(n - i).setZero();
     AddKernel(kernel, this->X[i], this->Y[i], 1.0, &this->X[i], &this->Y[i], n - i, &a(i, i));
   }
@@ -142,8 +158,10 @@ bool Spline::Prepare(const std::vector<Point2>& centers, Kernel kernel)
   {
     return true;
   }
+  // A pivot near the rounding errors of the entries means that centres nearly depend on each other.
   const double leastPivot = LeastPivot * a.diagonal().tail(n - 3).maxCoeff();
   Eigen::Ref<Matrix> rest = a.bottomRightCorner(n - 3, n - 3);
+  // In place: a second matrix of n^2 numbers would be the largest memory of all.
   const Eigen::LLT<Eigen::Ref<Matrix>> inPlace(rest);
   return inPlace.info() == Eigen::Success &&
     a.diagonal().tail(n - 3).cwiseAbs2().minCoeff() > leastPivot;
@@ -155,11 +173,13 @@ Spline::Weights Spline::Interpolate(const std::vector<double>& values) const
   const auto factor = this->Factor.bottomRightCorner(n - 3, n - 3).triangularView<Eigen::Lower>();
   Eigen::VectorXd w = Eigen::Map<const Eigen::VectorXd>(values.data(), n);
   w.applyOnTheLeft(this->Plane.householderQ().transpose());
+  // The first three are kept for the plane; v comes from the others.
   Eigen::Vector3d plane = w.head<3>();
   w.head<3>().setZero();
   auto rest = w.tail(n - 3);
   factor.solveInPlace(rest);
   factor.transpose().solveInPlace(rest);
+  // B v = c is solved; the plane takes what the radial functions leave.
   plane -= this->Factor.bottomLeftCorner(n - 3, 3).transpose() * rest;
   this->Plane.matrixQR().topRows<3>().triangularView<Eigen::Upper>().solveInPlace(plane);
   w.applyOnTheLeft(this->Plane.householderQ());
@@ -171,6 +191,8 @@ Spline::Weights Spline::Interpolate(const std::vector<double>& values) const
 void Spline::Add(
   const Weights& weights, const Point2* points, std::size_t count, double* values) const
 {
+  // In blocks that fit into registers and the first cache: the inner loop is over points, not
+  // centres, and is vectorized.
   constexpr std::size_t block = 64;
   double x[block];
   double y[block];

@@ -96,6 +96,9 @@ public:
   }
 
   /**
+   * Tries the candidates where hole, ring and probes have been moved in a direction.
+   * @param angle      of the direction, in radians
+   * @param size       1, or smaller: of the moved points
    * @param isCounted  else the place only shows how errors grow, from here to twice the size
    * @return false if a moved point misses the surface
    */
@@ -107,6 +110,7 @@ public:
     {
       return false;
     }
+    // Relative to one of the points, offsets cost no digits.
     const double shift = this->Moved[0];
     double range = 0.0;
     for (double& value : this->Moved)
@@ -126,6 +130,7 @@ public:
     }
     // The smoothing is one half on average for points anywhere in triangles.
     this->Places.push_back({ -std::log2(size), unit, isCounted });
+    // Either effect flattens the surface as seen by the moved points; the larger one counts.
     const double halvings = std::max(smoothing, this->Places.back().Halvings);
     double squares[3] = { 0.0, 0.0, 0.0 };
     double least = std::numeric_limits<double>::infinity();
@@ -144,6 +149,7 @@ public:
       }
       least = std::min(least, squares[method]);
     }
+    // The noise is common to the methods, so it is subtracted from all of them before logarithms.
     const double noise = NoiseShare * least;
     for (int method = 0; method < 3 && isCounted; ++method)
     {
@@ -174,6 +180,7 @@ public:
       order.emplace_back(std::hypot(p.X - q.X, p.Y - q.Y), k);
     }
     std::sort(order.begin(), order.end());
+    // Fewer classes for few probes, or a class would have too few errors for quantiles.
     const std::size_t classes =
       std::max<std::size_t>(1, std::min(MostClasses, probes / ProbesPerClass));
     std::vector<std::pair<double, double>> result;
@@ -186,6 +193,7 @@ public:
     }
     for (std::size_t c = 0; c < classes && !this->Places.empty(); ++c)
     {
+      // Classes of equal numbers of probes, by distance.
       const std::size_t end = (c + 1) * probes / classes;
       double distance = 0.0;
       std::vector<double> errors;
@@ -237,6 +245,7 @@ private:
       this->Places.empty() || this->Places.back().IsCounted ? 0.0 : this->Places.back().Halvings;
     double sums[2] = { 0.0, 0.0 };
     int counts[2] = { 0, 0 };
+    // Pairs of sizes: places that only show growth, and places at twice their size.
     for (std::size_t k = 0; k < this->Places.size(); ++k)
     {
       const Place& place = this->Places[k];
@@ -248,6 +257,7 @@ private:
         {
           squares += (misses[i] / place.Unit) * (misses[i] / place.Unit);
         }
+        // In the values' own unit again, or places with a small range would look precise.
         sums[which] += 0.5 * std::log(squares) + std::log(place.Unit);
         ++counts[which];
       }
@@ -275,6 +285,7 @@ private:
     {
       this->Points.push_back(this->Hole.Surface.PointOf(id));
     }
+    // Centres on the boundary are among the points already.
     for (const Index place : this->Hole.Centers)
     {
       const bool isAdded = static_cast<std::size_t>(place) < this->Boundary;
@@ -287,6 +298,7 @@ private:
     this->FirstProbe = this->Points.size();
     const Index count = patch.NumberOfNewVertices();
     const Index number = std::min({ count, LeastProbes + count / PointsPerProbe, MostProbes });
+    // Evenly by number: new vertices were made row by row, or all over the hole.
     for (Index k = 0; k < number; ++k)
     {
       this->Probes.push_back(static_cast<Index>((2 * std::int64_t(k) + 1) * count / (2 * number)));
@@ -306,6 +318,7 @@ private:
     std::vector<std::pair<double, std::size_t>> byAngle;
     for (std::size_t i = 0; i < this->FirstProbe; ++i)
     {
+      // A stand-in for atan2(), the same on every system: monotone in the angle, and quicker.
       // Grows with the angle from -2 to 2.
       const Point2& p = this->Normalized[i];
       const double sum = std::fabs(p.X) + std::fabs(p.Y);
@@ -340,6 +353,9 @@ private:
    */
   bool Move(const Point2& direction, double size, double& smoothing)
   {
+    //         direction -->        The hole with its ring moves along the direction, until its
+    //    ( hole )( moved )         hindmost point is beside where the foremost point of the
+    //          end     target      boundary (end) was: as near as it can be without overlap.
     const auto along = [&](std::size_t i) {
       return this->Normalized[i].X * direction.X + this->Normalized[i].Y * direction.Y;
     };
@@ -358,6 +374,8 @@ private:
       return false; // the surface has no triangle there
     }
     Walk walk(this->Hole.Surface, Mesh::Triangle(start), this->Hole.Patch.Surroundings);
+    // That point is moved on to the nearest corner there, and all others by the same way: on a
+    // lattice, they then are at nodes.
     if (!walk.To({ origin.X + distance * direction.X, origin.Y + distance * direction.Y }))
     {
       return false;
@@ -373,6 +391,7 @@ private:
       smoothing += walk.Smoothing() / static_cast<double>(this->Points.size());
       return true;
     };
+    // From the point whose new place is known, around the hole: a short walk each time.
     const std::size_t first = static_cast<std::size_t>(
       std::find(this->Order.begin(), this->Order.end(), end) - this->Order.begin());
     for (std::size_t k = 0; k < this->Points.size(); ++k)
@@ -398,7 +417,10 @@ private:
     return predicted;
   }
 
-  /** The probes by a method: 0 is the membrane, then come the splines. */
+  /**
+   * The probes by a method: 0 is the membrane, then come the splines. The same as Heights::Apply(),
+   * for the probes alone and roughly.
+   */
   std::vector<double> Predict(int method, const Progress& progress) const
   {
     std::vector<double> rim(

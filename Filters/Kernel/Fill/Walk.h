@@ -46,6 +46,7 @@ public:
   /** @return false if the walk comes to the border of the surface. @throws BeyondSurroundings */
   bool To(const Point2& p)
   {
+    // A limit in case rounding leads in a circle in spite of the changing first edge.
     constexpr int mostSteps = 1 << 16;
     Index t = this->Triangle;
     for (int step = 0; step < mostSteps; ++step)
@@ -56,6 +57,7 @@ public:
       const Point2& c = this->Surface.PointOf(this->Surface.Apex(first));
       // Twice the areas that p makes with the three edges.
       const double area = (b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X);
+      // A place outside by a billionth of the triangle counts as inside: values hardly differ.
       const double tolerance = -1e-9 * area;
       const double w[3] = { (a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X),
         (b.X - p.X) * (c.Y - p.Y) - (b.Y - p.Y) * (c.X - p.X),
@@ -67,6 +69,8 @@ public:
         const int edge = (k + step) % 3;
         across = w[edge] < tolerance ? edge : -1;
       }
+      // Each corner's share is the area opposite to it: w[1] belongs to the edge opposite the
+      // first.
       if (across < 0)
       {
         const double sum = w[0] + w[1] + w[2];
@@ -79,6 +83,8 @@ public:
         return true;
       }
       const Index twin = this->Surface.Twin(HalfEdge(first, across));
+      // At the border of the part, one end at least is where all is known: then it is the surface's
+      // own.
       if (twin == Mesh::Border)
       {
         const Index edge = HalfEdge(first, across);

@@ -1,5 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Two tests. VisitCrossings() finds edges that cross between their ends. What is left are rings
+// that meet at points, or run together along edges; RingWalks finds whether they cross there:
+//
+//      A   B           A         B       Left: at a point, two passages cross if their four
+//       \ /             \       /        directions alternate around it. Right: along shared edges,
+//        x               s=====t         two walks cross if the one that comes from the left of the
+//       / \             /       \        other at s is on the right of it after t.
+//      B   A           B         A
 #include "Crossings.h"
 
 #include "Kernel/Base/Base.h"
@@ -35,6 +44,7 @@ public:
       const Index first = static_cast<Index>(this->Nodes.size());
       const auto append = [&](Index point) {
         const Index node = static_cast<Index>(this->Nodes.size());
+        // Consecutive points at one place are one node.
         if (node == first || this->At(node - 1) != points[point])
         {
           this->Nodes.push_back({ points[point], point, ring, { node - 1, node + 1 } });
@@ -49,6 +59,7 @@ public:
           append(cut->Vertex);
         }
       }
+      // The end is where the ring started.
       if (this->At(first) == this->Nodes.back().Position && this->Nodes.size() > first + 1u)
       {
         this->Nodes.pop_back();
@@ -57,6 +68,7 @@ public:
       this->Nodes[first].Neighbors[Before] = last;
       this->Nodes[last].Neighbors[After] = first;
     }
+    // In a second loop, because a spur may run across the start of a ring.
     for (Index node = 0; node < static_cast<Index>(this->Nodes.size()); ++node)
     {
       this->RemoveSpur(node);
@@ -81,6 +93,7 @@ public:
     std::vector<Index> order; // nodes at the same place are consecutive
     for (Index node = 0; node < static_cast<Index>(this->Nodes.size()); ++node)
     {
+      // Nodes of spurs are gone.
       if (this->Nodes[node].Neighbors[After] != None)
       {
         order.push_back(node);
@@ -125,6 +138,7 @@ private:
       work.Step(i, edges.size());
       const Point2& p = edges[i][0];
       std::size_t cell = 0;
+      // Any cell will do: p is an end of an edge in the grid.
       grid.FindCell(p, cell); // there is one
       if (grid.End(cell) - grid.Begin(cell) > many && !known.insert(p).second)
       {
@@ -148,6 +162,10 @@ private:
   static constexpr int Before = 0;
   static constexpr int After = 1;
 
+  /**
+   * A place of a walk. Where several walks, or a walk several times, come to a place, it has a node
+   * for each of them.
+   */
   struct Node
   {
     Point2 Position;
@@ -169,6 +187,9 @@ private:
 
   void RemoveSpur(Index node)
   {
+    // The neighbours on both sides are at the same place: the walk goes out to this node and
+    // straight back. Without node and one of these neighbours, the one before may be the tip of the
+    // spur's rest.
     while (this->Step(node, After) != None &&
       this->At(this->Step(node, Before)) == this->At(this->Step(node, After)))
     {
@@ -195,6 +216,7 @@ private:
       strands.push_back({ *node, Before, 0, 0 });
       strands.push_back({ *node, After, 0, 0 });
     }
+    // By angle: the upper half plane first, as in Rings.cxx, and exact; equal edges by number.
     const auto to = [&](const Strand& s) { return this->At(this->Step(s.Node, s.Way)); };
     std::sort(strands.begin(), strands.end(), [&](const Strand& s, const Strand& t) {
       work.Tick();
@@ -229,14 +251,18 @@ private:
     std::vector<Span> spans, open;
     for (std::size_t i = 0; i < passages.size(); ++i)
     {
+      // Which strand comes before and which after does not matter here.
       const auto [from, last] = std::minmax(passages[i][Before], passages[i][After]);
       spans.push_back({ from, last, nodes[i] });
     }
+    // Outer brackets before inner ones that open at the same direction.
     std::sort(spans.begin(), spans.end(), [](const Span& s, const Span& t) {
       return s.From != t.From ? s.From < t.From : s.To != t.To ? s.To > t.To : s.Node < t.Node;
     });
     for (const Span& span : spans)
     {
+      // Closed before or where this one opens. Passages that share a direction share an edge: that
+      // is left to the second test.
       while (!open.empty() && open.back().To <= span.From)
       {
         open.pop_back();
@@ -263,6 +289,7 @@ private:
     };
     for (const Strand& strand : strands)
     {
+      // Strands along the same edge have the same direction.
       passageOf(strand.Node)[strand.Way] = strand.Direction;
     }
     if (this->FindCrossingSpans(begin, passages, crossing))
@@ -274,10 +301,13 @@ private:
     {
       strand.Other = passageOf(strand.Node)[Before + After - strand.Way];
     }
+    // Groups of strands along one edge.
     for (auto first = strands.begin(), last = first; first != strands.end(); first = last)
     {
       last = std::find_if(
         first, strands.end(), [&](const Strand& s) { return s.Direction != first->Direction; });
+      // Up to so many walks, all pairs are tested. Of more, as on a seam that many rings use, pairs
+      // of neighbours by angle decide most cases.
       constexpr std::ptrdiff_t many = 8;
       if (!(last - first > many && this->KeepSides({ first, last }, work)) &&
         this->FindCrossingAlong(&*first, &*first + (last - first), crossing, work))
@@ -294,12 +324,16 @@ private:
   {
     for (const Strand* p = begin; p < end; ++p)
     {
+      // At the beginning of what they share, seen along p; pairs that begin elsewhere are found
+      // there.
       for (const Strand* q = p + 1; q < end && p->Way == After; ++q)
       {
         work.Tick();
         const Node &first = this->Nodes[p->Node], &second = this->Nodes[q->Node];
         const bool isOneRing = first.Ring == second.Ring;
         Index last = None;
+        // A common edge before this one: they met earlier. One ring that runs back along its own
+        // edge cancels out.
         if (p->Other != q->Other && !(isOneRing && q->Way == Before) &&
           this->ChangeSides(*p, *q, work, last))
         {
@@ -317,6 +351,7 @@ private:
    */
   bool KeepSides(std::vector<Strand> together, WorkReporter& work) const
   {
+    // Counter-clockwise from the shared edge on.
     std::sort(together.begin(), together.end(), [](const Strand& s, const Strand& t) {
       const bool isAfter = s.Other > s.Direction;
       return isAfter != (t.Other > t.Direction) ? isAfter : s.Other < t.Other;
@@ -326,6 +361,8 @@ private:
     {
       const Strand &p = together[i - 1], &q = together[i];
       Index last = None;
+      // Walks that come from the same edge met before, and the order by angle does not show their
+      // sides.
       if (p.Other == q.Other || this->ChangeSides(p, q, work, last))
       {
         return false;
@@ -343,7 +380,8 @@ private:
     last = p.Node;
     Index other = q.Node;
     const bool fromLeft = this->IsLeftOf(last, this->At(this->Step(other, After + Before - q.Way)));
-    // This ends: otherwise both would return to where they had not met yet.
+    // Along the edges that both share. This ends: otherwise both would return to where they had not
+    // met yet.
     do
     {
       work.Tick();
@@ -359,6 +397,8 @@ private:
     const Point2 &before = this->At(this->Step(node, Before)), &at = this->At(node),
                  &after = this->At(this->Step(node, After));
     const Sign first = Orientation(before, at, p), second = Orientation(at, after, p);
+    // At a left turn, the left side is what is left of both edges; at any other, what is left of
+    // one.
     return Orientation(before, at, after) == Positive ? first == Positive && second == Positive
                                                       : first != Negative || second != Negative;
   }

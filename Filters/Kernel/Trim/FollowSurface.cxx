@@ -1,5 +1,17 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// FollowSurface.h says what comes out. A segment is walked from vertex to vertex of its chain:
+//
+// - StepAlong() looks for an edge that lies on the segment.
+// - If there is none, Pass() goes from triangle to triangle. An edge between two original triangles
+//   is cut where the segment crosses it, and the cut is the next vertex of the chain. An edge
+//   within one original triangle, which is flat, is only passed.
+// - Link() makes the edge between the two vertices, replacing edges that were passed.
+//
+// A triangle is "loose" if it is too thin to be cut, or has replaced such a one. Each loose
+// triangle counts as an original triangle of its own, so every edge of it is tried for a cut; where
+// there is no place for a cut, the edge is passed and replaced.
 #include "FollowSurface.h"
 
 #include "Kernel/Base/Base.h"
@@ -22,6 +34,7 @@ namespace
 /** Where an edge crosses a line, within rounding of both. */
 Point2 CrossingOf(const Ends& edge, const Ends& line)
 {
+  // The usual case in double: signed distances of both ends, times the length of the line.
   const double dx = line[1].X - line[0].X, dy = line[1].Y - line[0].Y;
   const auto sideOf = [&](const Point2& p) {
     return DifferenceOfProducts(dx, p.Y - line[0].Y, dy, p.X - line[0].X);
@@ -54,6 +67,7 @@ public:
   {
     const Segment ends = segment.Ends;
     this->Line = { this->Surface.PointOf(ends.A), this->Surface.PointOf(ends.B) };
+    // Of the whole segment, not of what is left of it: reach is the same all the way.
     this->Units = UnitsOf(this->Line[0], this->Line[1]);
     Index vertex = ends.A;
     while (vertex != ends.B)
@@ -72,6 +86,7 @@ public:
         next = crossed == None ? this->NextToBorder(vertex, ends)
                                : this->Pass(vertex, crossed, segment, work);
       }
+      // Fixed from now on, so a later segment that crosses it cuts it, and does not replace it.
       this->Link(vertex, next);
       vertex = next;
       if (vertex != ends.B)
@@ -84,6 +99,8 @@ public:
   /** Adds the vertices at which segments that came later have cut the edges of a chain. */
   void AddLaterCuts(FollowedSegment& segment) const
   {
+    // What is still ahead, the next one last. A cut edge is replaced by its two parts until none is
+    // cut; parts may have been cut again.
     std::vector<Index> ahead(1, segment.Ends.B);
     ahead.insert(ahead.end(), segment.Between.rbegin(), segment.Between.rend());
     segment.Between.clear();
@@ -106,6 +123,7 @@ public:
   }
 
 private:
+  // An edge by its ends, whichever half-edge it is seen from.
   static std::pair<Index, Index> EdgeOf(Index a, Index b) { return std::minmax(a, b); }
 
   /**
@@ -116,6 +134,7 @@ private:
   {
     std::vector<Index> replaced;
     RecoverSegments(this->Surface, this->Stars, { { from, to } }, this->Fixed, {}, &replaced);
+    // Triangles of several original ones were replaced: the new ones belong to none of them.
     if (std::any_of(replaced.begin(), replaced.end(),
           [&](Index t) { return this->OriginalOf(t) != this->OriginalOf(replaced.front()); }))
     {
@@ -135,10 +154,12 @@ private:
   {
     const Segment& segment = followed.Ends;
     const Mesh& mesh = this->Surface;
+    // To come back to, where a later edge turns out to be uncuttable.
     const Index first = crossed;
     bool isWithin = false; // whether the edge before is within one original triangle
     for (;; work.Tick())
     {
+      // Vertices within rounding of the segment come first: a cut next to one would leave a needle.
       const Index reached =
         this->FirstReached(from, segment, { mesh.Origin(crossed), mesh.Destination(crossed) });
       if (reached != None)
@@ -166,6 +187,8 @@ private:
         {
           return vertex;
         }
+        // The triangle that was entered across the edge before has just become loose, so that edge
+        // is not within one original triangle any more.
         if (isWithin && this->IsLoose(Mesh::Triangle(crossed)))
         {
           crossed = first; // the edge before is to be cut after all
@@ -178,6 +201,7 @@ private:
       {
         isWithin = true;
       }
+      // Nothing to cut here: through the side of the triangle beyond that the segment leaves by.
       const Index apex = mesh.Apex(beyond);
       const Sign side = Orientation(rest[0], rest[1], mesh.PointOf(apex));
       if (side == Zero)
@@ -194,6 +218,7 @@ private:
     const Mesh& mesh = this->Surface;
     std::vector<Index> around;
     this->Stars.Visit(mesh, from, [&](Index h) {
+      // All neighbours; those behind are not ahead, so FirstReached() leaves them out.
       around.insert(around.end(), { mesh.Destination(h), mesh.Apex(h) });
       return true;
     });
@@ -213,6 +238,7 @@ private:
   Index CutNear(Index h, Point2 place, const std::function<bool(const Point2&)>& isUsable)
   {
     const Index twin = this->Surface.Twin(h);
+    // Between two loose triangles an edge has no original surface on either side: it is replaced.
     if (!this->Fixed[h] && this->IsLoose(Mesh::Triangle(h)) && this->IsLoose(Mesh::Triangle(twin)))
     {
       return None;
@@ -222,16 +248,19 @@ private:
     {
       return this->Cut(h, place);
     }
+    // An edge of another chain must stay where it is.
     if (this->Fixed[h])
     {
       return None;
     }
+    // Of both sides, the one with more room comes last, so that @a inside is then a place in it.
     const double area = this->Cutter.TwiceArea(Mesh::Triangle(h));
     const Index thicker = area > this->Cutter.TwiceArea(Mesh::Triangle(twin)) ? h : twin;
     Point2 inside = rounded;
     for (const Index side : { h == thicker ? twin : h, thicker })
     {
       inside = rounded;
+      // Not even one double within 64 units lies inside: the triangle has no width but rounding.
       if (!this->Cutter.MoveInside(side, inside, [](const Point2&) { return true; }))
       {
         this->Loose.insert(Mesh::Triangle(side));
@@ -242,6 +271,7 @@ private:
       return None;
     }
     place = rounded;
+    // A place ahead on the way if there is one, else any inside.
     return this->CutBeside(
       thicker, this->Cutter.MoveInside(thicker, place, isUsable) ? place : inside);
   }
@@ -252,12 +282,14 @@ private:
    */
   Index EndAt(Index h, const Point2& place, const FollowedSegment& followed) const
   {
+    // As far as MoveToCut() looks for a place.
     const double near = 64.0 * std::numeric_limits<double>::epsilon() *
       std::max(std::fabs(place.X), std::fabs(place.Y));
     const std::vector<Index>& chain = followed.Between;
     for (const Index end : { this->Surface.Origin(h), this->Surface.Destination(h) })
     {
       const Point2& p = this->Surface.PointOf(end);
+      // Coming back to a vertex of the chain would make it a loop, and the walk without end.
       if (std::fabs(p.X - place.X) <= near && std::fabs(p.Y - place.Y) <= near &&
         end != followed.Ends.A && std::find(chain.begin(), chain.end(), end) == chain.end())
       {
@@ -288,8 +320,10 @@ private:
     const Mesh& mesh = this->Surface;
     const Index twin = mesh.Twin(crossed);
     const Index vertex = this->AddVertex(crossed, place);
+    // The chain of an earlier segment may contain this edge; AddLaterCuts() finds the vertex by it.
     this->CutAt.emplace(EdgeOf(mesh.Origin(crossed), mesh.Destination(crossed)), vertex);
     const Index after = this->Cutter.CutEdge(crossed, vertex);
+    // New triangles have been appended: the flags grow with them.
     this->Fixed.resize(mesh.Triangles.size(), 0);
     this->KeepUp(crossed, after);
     this->KeepUp(twin, mesh.Twin(crossed));
@@ -306,6 +340,8 @@ private:
     const Index vertex = this->AddVertex(h, place);
     this->Cutter.CutTriangle(t, vertex);
     this->Fixed.resize(this->Surface.Triangles.size(), 0);
+    // CutTriangle() moved two sides of the triangle into the new parts: their stars and flags
+    // follow.
     for (const Index k : { 0, 1 })
     {
       const Index before = 3 * t + 1 + k, moved = 3 * (added + k);
@@ -319,6 +355,7 @@ private:
   /** After half-edge h was cut, with its second half in a new triangle. */
   void KeepUp(Index h, Index after)
   {
+    // The half-edge after h moved into the new triangle, see MeshCutter::Halve().
     const Index before = Mesh::Next(h);
     if (this->IsLoose(Mesh::Triangle(h)))
     {
@@ -332,6 +369,7 @@ private:
   /** Whether a place is before another one on the way, and the other before the end. */
   bool IsAhead(Index from, const Point2& place) const
   {
+    // Strictly ahead, and strictly before the end, so that the walk ends.
     return IsBefore(this->Line[0], this->Line[1], this->Surface.PointOf(from), place) &&
       IsBefore(this->Line[0], this->Line[1], place, this->Line[1]);
   }
@@ -343,6 +381,7 @@ private:
     for (const Index vertex : vertices)
     {
       const Point2& place = this->Surface.PointOf(vertex);
+      // The end counts also where rounding puts it behind.
       const bool isReached = vertex == segment.B ||
         (IsInReach(this->Line[0], this->Line[1], this->Units, SnappingReach, place) &&
           this->IsAhead(from, place));
@@ -379,6 +418,7 @@ void FollowSurface(
     work.Step(i, segments.size());
     following.Follow(segments[i], work);
   }
+  // Only now: segments that came later have cut the chains of earlier ones.
   for (FollowedSegment& segment : segments)
   {
     following.AddLaterCuts(segment);

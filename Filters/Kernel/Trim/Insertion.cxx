@@ -1,5 +1,16 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Insertion.h lists the passes: CheckCrossings() is pass 1, InsertPoints() 2 and 3, CutAtBorder()
+// 4; FollowSurface() threads what pass 5 inserts into the rings.
+//
+// During the work a ring is a list of pieces. A piece is the part of one edge of the given rings
+// from one vertex to the next. Pieces are cut at stops into more pieces, and remember the edge that
+// was given, which messages name. Numbers of vertices:
+//
+//   0, 1, ...     vertices of the mesh, given and new
+//   -3, -4, ...   points of the rings outside the mesh, from FirstOutside down; in the end they are
+//                 appended to the mesh's points and get numbers like these
 #include "Insertion.h"
 
 #include "Crossings.h"
@@ -20,6 +31,7 @@ namespace elevation
 namespace
 {
 
+/** The work of InsertRings() on one mesh. Its members are the rings while they are cut. */
 class Insertion
 {
 public:
@@ -37,15 +49,19 @@ public:
 
   void Run(const Progress& progress)
   {
+    // Lines may cross: what comes later cuts what is there already, as it cuts any edge of the
+    // mesh.
     if (this->Follow != Following::Lines)
     {
       CheckCrossings(this->Points, this->Drawn, progress.Between(0.0, 0.1));
     }
     this->VertexAt = InsertPoints(this->Surface, this->Points, this->Drawn, this->MayInsert,
       this->Follow != Following::None, this->Cutter, progress.Between(0.1, 0.8));
+    // Every point of the rings is now a vertex, or known to be outside.
     this->StartRings();
     // An edge or a border that is cut at a rounded place moves slightly: all are tested again. As
-    // the move rarely causes a crossing, one more round is usually enough.
+    // the move rarely causes a crossing, one more round is usually enough. The limit turns a search
+    // without end, which nothing excludes, into an error.
     constexpr int mostRounds = 100;
     const double end = this->Follow != Following::None ? 0.9 : 1.0;
     bool isCut = this->CutAtBorder(progress.Between(0.8, end));
@@ -57,6 +73,7 @@ public:
           " runs so near the border of the mesh that rounding does not let it be cut there. Let it "
           "pass through points of the mesh.");
       }
+      // No share of the progress is kept for rounds that are rare.
       const Progress again = progress.Between(end, end);
       isCut = this->CutAtEachOther(again) || this->CutAtBorder(again);
     }
@@ -64,6 +81,8 @@ public:
     {
       this->FollowSurface(progress.Between(0.9, 1.0));
     }
+    // Points outside come last: no vertex may be added after them, or the numbers of vertices would
+    // not be those of Result.Inserted.
     this->FinishRings();
   }
 
@@ -112,6 +131,7 @@ private:
   /** The given rings as vertices; points outside the mesh get numbers from FirstOutside down. */
   void StartRings()
   {
+    // Points of the rings at one place share a vertex, or one number outside.
     for (const Index point : this->Drawn.Vertices)
     {
       Index& vertex = this->VertexAt.at(this->Points[point]);
@@ -131,6 +151,7 @@ private:
    */
   bool CutAtBorder(const Progress& progress)
   {
+    // All pieces are tested against the border as it is now: those of the last round have moved it.
     const std::vector<Ends> pieces = this->PieceEnds();
     this->Stops.clear();
     this->IsCut.clear();
@@ -144,6 +165,8 @@ private:
         this->EdgeName(this->Pieces[crossings.front().Piece].Edge) +
         " leaves the mesh where it has no corner. Turn RecoverBoundary on.");
     }
+    // In this order: crossings become vertices, then vertices on pieces are found, the new ones
+    // among them, then the pieces are cut at all of these.
     this->CutBorder(crossings, pieces, border);
     this->FindStops(pieces, progress.Between(0.5, 1.0));
     this->CutPieces(pieces);
@@ -156,6 +179,7 @@ private:
   {
     const Mesh& mesh = this->Surface;
     std::vector<BorderCrossing> crossings;
+    // The grid shows a border edge once for each cell that it shares with a piece.
     std::vector<std::size_t> lastSeen(border.Segments.size(), pieces.size());
     for (const std::size_t i : Counted(pieces.size()))
     {
@@ -182,11 +206,14 @@ private:
             return;
           }
           const Point2 place = RoundedCrossing(segment[0], segment[1], edge[0], edge[1]);
+          // Where along the border the triangle's apex is: on which side of it a place can move
+          // outwards. See CutBorder().
           crossings.push_back(
             { k, place, i, IsBefore(segment[0], segment[1], mesh.PointOf(mesh.Apex(h)), place) });
         }
         else if (IsInside(edge, segment[0]))
         {
+          // Only the origin: each vertex of the border is the origin of one border edge.
           this->AddStop(i, edge, h, mesh.Origin(h));
         }
         else if (this->MayInsert && IsInside(segment, edge[0]))
@@ -203,6 +230,11 @@ private:
   void CutBorder(std::vector<BorderCrossing>& crossings, const std::vector<Ends>& pieces,
     const BorderEdges& border)
   {
+    //              apex
+    //            _/    \         Crossings a and b are before the apex's foot (:), c and d
+    //         _/        \        beyond it. The order is a b d c. A cut makes two triangles;
+    //      _/            \       h is the border edge of the one with the foot, where the
+    //     +--a--b--:--c---d-+    next cut comes. The others may be needles.
     ReserveVertices(this->Surface, this->VertexAt.size(), crossings.size());
     // Along each border edge from both ends towards the foot of the apex. The part that is cut next
     // is then at the foot, where a place can move outwards however thin the triangle is.
@@ -225,6 +257,7 @@ private:
         h = this->Cutter.CurrentHalfEdge(border.HalfEdges[crossing.Border]);
         last = None;
       }
+      // Two pieces may cross the border at one rounded place: one vertex serves both.
       const bool isSamePlace = last != None && crossings[i - 1].Place == crossing.Place;
       const Index from = mesh.Origin(h), to = mesh.Destination(h);
       Index vertex = isSamePlace               ? last
@@ -243,6 +276,7 @@ private:
       {
         vertex = this->Cutter.AddVertex(place, this->Cutter.WeightsBetween(from, to, place));
         const Index after = this->Cutter.CutEdge(h, vertex);
+        // Before the foot the rest lies ahead of the new vertex; beyond it, behind.
         h = crossing.IsBeyond ? h : after;
       }
       last = vertex;
@@ -259,11 +293,13 @@ private:
   {
     const std::vector<Ends> pieces = this->PieceEnds();
     this->Stops.clear();
+    // Each of two pieces that cross is cut at an end of the other, where this is in reach.
     const auto cut = [&](std::size_t i, std::size_t j) {
       const RoundingUnits units = UnitsOf(pieces[i][0], pieces[i][1]);
       VisitEndsInReach(pieces[j], pieces[i], units, SnappingReach, [&](int end) {
         const Index at =
           end == 0 ? static_cast<Index>(j) : this->Result.Vertices.After(static_cast<Index>(j));
+        // In the open plane or in the mesh alike, so both flags are set.
         this->Stops.push_back({ i, this->Pieces[at].Vertex, true, true });
       });
     };
@@ -278,6 +314,7 @@ private:
   /** @param[in] ends  of the piece @param[in] vertex  an end of h, on the piece */
   void AddStop(std::size_t piece, const Ends& ends, Index h, Index vertex)
   {
+    // Of an end of h, the half-edge that leaves it, from which its fan can be visited.
     h = this->Surface.Origin(h) == vertex ? h : Mesh::Next(h);
     this->Stops.push_back({ piece, vertex, this->IsInFan(h, ends[0]), this->IsInFan(h, ends[1]) });
   }
@@ -287,11 +324,15 @@ private:
   {
     const Mesh& mesh = this->Surface;
     const Point2& from = mesh.PointOf(mesh.Origin(h));
+    // Turns clockwise to the border, so that one visit sees the whole fan. Around a vertex where
+    // borders touch, that is the fan of h alone.
     Index first = h; // of the fan; h if it is a full circle
     do
     {
       first = mesh.IsBorder(first) ? first : Mesh::Next(mesh.Twin(first));
     } while (first != h && !mesh.IsBorder(first));
+    // The direction is in a triangle unless it is on the right of its first side or on the left of
+    // its last one.
     return !VertexStars::VisitFan(mesh, first, [&](Index k) {
       return Orientation(from, mesh.PointOf(mesh.Destination(k)), p) == Negative ||
         Orientation(from, p, mesh.PointOf(mesh.Apex(k))) == Negative;
@@ -322,6 +363,8 @@ private:
       return;
     }
     const Mesh& mesh = this->Surface;
+    // Pieces that cross no border stay as they are: passes that follow step through the vertices on
+    // them.
     std::sort(this->IsCut.begin(), this->IsCut.end());
     this->IsCut.erase(std::unique(this->IsCut.begin(), this->IsCut.end()), this->IsCut.end());
     std::vector<Ends> segments;
@@ -358,6 +401,7 @@ private:
           const Index v = mesh.Origin(h);
           if (isOn[v])
           {
+            // Once, whatever the number of its triangles.
             isOn[v] = 0;
             for (const Index i : segmentsThrough.at(v))
             {
@@ -379,7 +423,8 @@ private:
       }
       const Ends& piece = pieces[a.Piece];
       const Point2 p = this->PlaceOf(a.Vertex), q = this->PlaceOf(b.Vertex);
-      // At one place, the piece leaves a part of the mesh before it enters another.
+      // Compares along the way; at one place, the piece leaves one part of the mesh before it
+      // enters another: a stop with From alone comes before one with Into alone.
       return IsBefore(piece[0], piece[1], p, q) ||
         (p == q &&
           std::make_tuple(a.Into - a.From, a.Vertex) < std::make_tuple(b.Into - b.From, b.Vertex));
@@ -393,6 +438,8 @@ private:
     for (std::size_t ring = 0; ring + 1 < before.size(); ++ring)
     {
       const Stop* last = nullptr; // the stop added last; null for a vertex of the uncut ring
+      // Appends a vertex of the ring. Stops repeat: found as a crossing and as a vertex, or equal
+      // to an end of their piece.
       const auto add = [&](const Piece& piece, const Stop* at) {
         if (cut.size() > static_cast<std::size_t>(offsets.back()))
         {
@@ -405,6 +452,9 @@ private:
             mesh.PointOf(vertex) == mesh.PointOf(piece.Vertex) &&
             (!last || !at || last->Into || at->From))
           {
+            // Two different vertices at the same place: the ring steps from one border to another
+            // that lies on it. That is in order between parts of the mesh, when it leaves one and
+            // enters the other.
             this->RefuseDoubleBorder(piece.Edge, mesh.PointOf(vertex));
           }
         }
@@ -434,8 +484,11 @@ private:
     const auto segmentOf = [&](Index i) {
       const Index a = this->Pieces[i].Vertex;
       const Index b = this->Pieces[this->Result.Vertices.After(i)].Vertex;
+      // Upwards, as FollowSurface() wants them; a piece in the other direction reads its chain
+      // backwards.
       return IsLower(this->PlaceOf(b), this->PlaceOf(a)) ? Segment{ b, a } : Segment{ a, b };
     };
+    // By place, then by number, so that the result does not depend on the order of points.
     const auto isBefore = [&](const FollowedSegment& s, const FollowedSegment& t) {
       return IsLower(mesh, s.Ends, t.Ends) ||
         (!IsLower(mesh, t.Ends, s.Ends) &&
@@ -446,12 +499,14 @@ private:
     for (Index i = 0; i < count; ++i)
     {
       const Segment segment = segmentOf(i);
+      // A piece with an end outside is outside as a whole: it has been cut at the border.
       if (segment.A >= 0 && segment.B >= 0)
       {
         segments.emplace_back(segment);
       }
     }
     Sort(segments.begin(), segments.end(), isBefore, progress.Between(0.0, 0.1));
+    // An edge that several rings share is followed once.
     segments.erase(std::unique(segments.begin(), segments.end(),
                      [](const FollowedSegment& s, const FollowedSegment& t) {
                        return s.Ends.A == t.Ends.A && s.Ends.B == t.Ends.B;
@@ -467,6 +522,7 @@ private:
       const Segment segment = segmentOf(i);
       if (segment.A >= 0 && segment.B >= 0)
       {
+        // Its place in the sorted list, instead of a map.
         const std::vector<Index>& between =
           std::lower_bound(segments.begin(), segments.end(), FollowedSegment(segment), isBefore)
             ->Between;

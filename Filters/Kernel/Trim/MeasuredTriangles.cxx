@@ -14,8 +14,8 @@ namespace elevation
 namespace
 {
 
-// Outside this range of the largest coordinate, coordinates are scaled: squared lengths would leave
-// the range of float.
+// Outside this range of the largest coordinate, coordinates are scaled, as squared lengths would
+// leave the range of float, 1e-38 to 1e38.
 constexpr double LargestUnscaled = 1e15;
 constexpr double LeastUnscaled = 1e-12;
 
@@ -29,6 +29,8 @@ struct Measurer
   {
     Index Number = None;
     EdgesAtVertex Edges;
+    // A sweep visits a vertex for each of its edges; with two lines each, it would load twice as
+    // many.
     Index Padding[2] = { None, None }; ///< so that no vertex spans two cache lines
   };
   static_assert(sizeof(Vertex) == 64, "the size of a cache line");
@@ -50,6 +52,8 @@ struct Measurer
     {
       if (this->Next == this->End)
       {
+        // One addition for a thousand numbers, as threads wait for each other there. Numbers that a
+        // thread does not use have no id.
         this->Next = this->Count->fetch_add(AtOnce);
         this->End = this->Next + AtOnce;
         std::fill_n(this->Measured->Ids.data() + this->Next, AtOnce, None);
@@ -94,6 +98,7 @@ void TakeVertices(
   measured.Border = sweep.Border(
     numbers, progress, [&](Index number) { return measured.Ids[number]; },
     [&](Index number, const Measurer::Vertex* vertex) {
+      // A number that was reserved and not used becomes a vertex without edges.
       const Measurer::Vertex nobody{};
       vertex = vertex ? vertex : &nobody;
       measured.Set(number, vertex->Edges);
@@ -152,6 +157,7 @@ bool MeasureBySweep(
   measured.List.Points.Double = measured.Coordinates.data();
   measured.List.Points.Count = numbers;
   TakeVertices(sweep, progress.Between(0.85, 0.96), measured);
+  // A mesh that has to be scaled takes the other way, Measure(), which copies coordinates anyway.
   if (largest > LargestUnscaled || largest < LeastUnscaled ||
     !CoversOnce(measured.Border, list.Points, progress.Between(0.96, 0.98)))
   {

@@ -27,7 +27,8 @@ struct EdgesAtVertex
   void Add(double squaredLength)
   {
     ++this->Degree;
-    // Insertion without branches, which would be unpredictable.
+    // One step of an insertion sort, in which each slot takes the smaller of what it has and what
+    // its lower neighbour passes on. Without branches, which would be unpredictable.
     const float squared = static_cast<float>(squaredLength);
     for (int i = Shortest - 1; i > 0; --i)
     {

@@ -15,7 +15,10 @@ namespace elevation
 namespace
 {
 
-/** Points relative to one, scaled so that products and sums stay in the range of double. */
+/**
+ * Points relative to one, scaled so that products and sums stay in the range of double. The scale
+ * is a power of two, and ratios of results do not depend on it.
+ */
 template <std::size_t Count>
 std::array<Point2, Count> Around(const Point2& from, std::array<Point2, Count> points)
 {
@@ -64,6 +67,7 @@ bool MeshCutter::CanCut(Index h, const Point2& place) const
 bool MeshCutter::MoveToCut(
   Index h, Point2& place, const std::function<bool(const Point2&)>& isUsable) const
 {
+  // The place itself is tried first, then places near it.
   const auto isPlace = [&](const Point2& p) {
     return (!isUsable || isUsable(p)) && this->CanCut(h, p);
   };
@@ -73,6 +77,7 @@ bool MeshCutter::MoveToCut(
 bool MeshCutter::MoveInside(
   Index h, Point2& place, const std::function<bool(const Point2&)>& isUsable) const
 {
+  // All around, so that CutTriangle() makes three proper triangles.
   const std::array<Point2, 3> corners = this->CornersOf(Mesh::Triangle(h));
   return this->MoveNear(h, place, false, [&](const Point2& p) {
     return isUsable(p) && Orientation(corners[0], corners[1], p) == Positive &&
@@ -88,16 +93,20 @@ bool MeshCutter::MoveNear(
   const Point2 way = Around(
     from, std::array<Point2, 1>{ { this->Surface.PointOf(this->Surface.Destination(h)) } })[0];
   const double length = std::hypot(way.X, way.Y);
+  // About a unit in the last place of the larger coordinate.
   const double step =
     std::numeric_limits<double>::epsilon() * std::max(std::fabs(place.X), std::fabs(place.Y));
   const double side = outwards ? step : -step;
+  // Across the edge: to its right, where nothing is if it is on the border, or to its left, into
+  // the triangle.
   const Point2 away{ side * (way.Y / length), -side * (way.X / length) };
   const Point2 first = place;
   const auto isFound = [&](double dx, double dy) {
     place = { first.X + dx, first.Y + dy };
     return std::isfinite(place.X) && std::isfinite(place.Y) && isPlace(place);
   };
-  // The nearest places in rings around it, then places further away.
+  // First the nearest places, in squares around it, by half units, as the smaller coordinate has
+  // finer ones; then places further away, up to 64 units across the edge.
   for (int ring = 0; ring <= 3; ++ring)
   {
     for (int i = -ring; i <= ring; ++i)
@@ -123,6 +132,8 @@ bool MeshCutter::MoveNear(
 
 InsertedVertex MeshCutter::WeightsIn(Index t, const Point2& p) const
 {
+  // Barycentric coordinates: the share of a corner is the area of the triangle that p makes with
+  // the two others.
   const std::array<Point2, 3> corners = this->CornersOf(t), around = Around(p, corners);
   std::array<std::pair<Index, double>, 3> shares;
   for (int i = 0; i < 3; ++i)
@@ -141,6 +152,7 @@ InsertedVertex MeshCutter::WeightsBetween(Index a, Index b, const Point2& p) con
 {
   const std::array<Point2, 2> ends =
     Around(p, Ends{ { this->Surface.PointOf(a), this->Surface.PointOf(b) } });
+  // The share of an end is the distance to the other end.
   const std::array<std::pair<Index, double>, 2> shares{ { { a, std::hypot(ends[1].X, ends[1].Y) },
     { b, std::hypot(ends[0].X, ends[0].Y) } } };
   return this->WeightsOf(shares.data(), shares.size());
@@ -154,6 +166,8 @@ InsertedVertex MeshCutter::WeightsOf(
   const auto add = [&](Index corner, double weight) {
     if (weight > 0.0)
     {
+      // The corner's own place, or the first free one. There are never more than three: all shares
+      // lie in one original triangle.
       int i = 0;
       while (i < 2 && vertex.Corners[i] != corner && vertex.Corners[i] != None)
       {
@@ -164,13 +178,15 @@ InsertedVertex MeshCutter::WeightsOf(
       sum += weight;
     }
   };
-  // If all shares underflow, in a tiny or thin triangle, all corners get the same.
+  // If all shares underflow, in a tiny or thin triangle, the second attempt gives all corners the
+  // same.
   for (int attempt = 0; attempt < 2 && vertex.Corners[0] == None; ++attempt)
   {
     for (std::size_t k = 0; k < count; ++k)
     {
       const Index corner = shares[k].first;
       const double share = attempt == 0 ? shares[k].second : 1.0;
+      // A new vertex stands for the original corners that it was made of.
       if (corner < this->CountBefore)
       {
         add(corner, share);
@@ -183,6 +199,7 @@ InsertedVertex MeshCutter::WeightsOf(
       }
     }
   }
+  // On an edge there are two corners; the third entry repeats one of them, with weight 0.
   for (Index& corner : vertex.Corners)
   {
     corner = corner == None ? vertex.Corners[0] : corner;
@@ -222,6 +239,13 @@ void MeshCutter::SetEdge(Index h, Index origin, Index twin)
   }
 }
 
+//             c
+//            /|\            t      becomes a b v
+//           / | \           first  is      b c v
+//          /  v  \          second is      c a v
+//         / /   \ \
+//        //   t   \\        ab, bc and ca keep their twins; SetEdge() sets both directions.
+//       a-----------b
 void MeshCutter::CutTriangle(Index t, Index v)
 {
   Mesh& mesh = this->Surface;
@@ -254,6 +278,11 @@ Index MeshCutter::CutEdge(Index h, Index v)
   return after;
 }
 
+//         c               c          avc keeps the number and h; part = v b c, with half-edges
+//        / \             /|\         part = vb, part + 1 = bc, part + 2 = cv. The half-edge next,
+//       /   \    ->     / | \        which was bc, becomes vc.
+//      a-----b         a--v--b
+//         h             h  part
 Index MeshCutter::Halve(Index h, Index v)
 {
   Mesh& mesh = this->Surface;
@@ -261,6 +290,7 @@ Index MeshCutter::Halve(Index h, Index v)
   const Index b = mesh.Origin(next);
   const Index c = mesh.Apex(h);
   const Index part = this->AddPart(Mesh::Triangle(h));
+  // The number of bc now belongs to an inner edge.
   if (mesh.IsBorder(next))
   {
     this->Moved[next] = part + 1;
@@ -274,6 +304,7 @@ Index MeshCutter::Halve(Index h, Index v)
 
 Index MeshCutter::CurrentHalfEdge(Index h) const
 {
+  // A half-edge may be renumbered by each of several cuts.
   for (auto next = this->Moved.find(h); next != this->Moved.end(); next = this->Moved.find(h))
   {
     h = next->second;

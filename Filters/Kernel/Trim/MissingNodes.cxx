@@ -17,6 +17,7 @@ bool GridSteps::IsBridge(const Point2& p, const Point2& q) const
   const double x = (q.X - p.X) / this->Scale, y = (q.Y - p.Y) / this->Scale;
   constexpr double most = 1.5; // the next is two steps
   const double cell = std::fabs(this->Steps.Area());
+  // By Cramer's rule, these products over the cell's area are the steps along u and v.
   return std::fabs(x * v.Y - y * v.X) > most * cell || std::fabs(u.X * y - u.Y * x) > most * cell;
 }
 
@@ -47,10 +48,13 @@ std::vector<Index> FindOutsideBridges(const TriangleList& list, const GridSteps&
   {
     return bridges;
   }
+  // Only the bridges, with their twins among themselves.
   const PartialMesh partial(list, border, std::move(bridges), progress);
   const Mesh& mesh = partial.Surface;
   std::vector<char> isOutside(mesh.NumberOfTriangles(), 0);
   std::vector<Index> stack;
+  // A flood from the border of the mesh that passes long edges only. A lake of missing nodes inside
+  // is not reached.
   const auto enter = [&](Index h, Index t) {
     if (!isOutside[t] &&
       grid.IsBridge(mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h))))

@@ -4,6 +4,12 @@
  * @file
  * On a grid some of whose nodes are missing: the triangles that bridge these. Cost: linear, and
  * n log n in these triangles.
+ *
+ *   o---o---o---o      The node at the dot is missing. The two triangles over it share an edge of
+ *   | / | / | \ |      two steps, which bridges it. By the gap tolerance alone they would be
+ *   o---o---.---o      surface, as two steps are a small gap.
+ *   | / | \ | / |
+ *   o---o---o---o
  */
 #ifndef elevation_Trim_MissingNodes_h
 #define elevation_Trim_MissingNodes_h

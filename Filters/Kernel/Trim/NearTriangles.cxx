@@ -17,6 +17,13 @@ namespace
 /**
  * A raster over the box of the rings and a margin. A cell that no ring touches is entirely inside
  * or outside. Everything beyond the raster is outside, as the cells at its rim are.
+ *
+ *   o o o o o o o o o     # touched by a ring: triangles here are near
+ *   o o # # # # o o o     o outside, i inside: what the cell before or below is, if no ring touches
+ *   o # # i i # # o o       that one, else by a location
+ *   o # i i i i # o o
+ *   o # # # # # # o o     A triangle of few cells is settled by one look at KindsAround, a larger
+ *   o o o o o o o o o     one by the number of touched cells in its box, from sums over rectangles.
  */
 class RingRaster
 {
@@ -38,10 +45,12 @@ public:
     const Point2 low = box.Low, high = box.High;
     const double size = std::max({ -low.X, -low.Y, high.X, high.Y });
     const double width = box.Width(), height = box.Height();
-    // A few triangles per cell.
+    // A few triangles per cell. At most 512 x 512 cells, whose kinds and sums take 1.5 MB: caches
+    // hold them.
     const double cells = std::min(262144.0, std::max(64.0, numberOfTriangles / 8.0));
     const double columns = std::sqrt(cells * (width / height));
-    // Cells must be so large that the rounding of coordinates does not matter, and not too many.
+    // Cells must be so large that the rounding of coordinates does not matter, and not too many. Of
+    // a flat box, the width or height may be 0: the larger of the other limits applies.
     this->Side = std::max(
       { width / std::min(512.0, std::max(1.0, columns)), height / 4096.0, 1e-9 * size, 1e-100 });
     this->Usable = size < 1e100;
@@ -67,6 +76,7 @@ public:
     return static_cast<Kind>(
       this->KindsAround[this->CellAt(this->ColumnOf(p.X), this->RowOf(p.Y))]);
   }
+  // A little less than two cells, so that rounding in ColumnOf() does not matter.
   double Reach() const { return 0.999 * Around * this->Side; }
 
   /** The kind of everything in a box: Near if it touches a cell that a ring touches. */
@@ -77,6 +87,7 @@ public:
     const bool isTouched = this->SumOf(right + 1, top + 1) - this->SumOf(left, top + 1) -
         this->SumOf(right + 1, bottom) + this->SumOf(left, bottom) >
       0;
+    // No ring passes between the cells of the box, so all are of one kind.
     return isTouched ? Near : static_cast<Kind>(this->Kinds[this->CellAt(left, bottom)]);
   }
 
@@ -108,6 +119,8 @@ private:
   /** Marks the cells that an edge touches, or passes within a fraction of a cell. */
   void Draw(const std::vector<Point2>& points, const Rings& rings)
   {
+    // A thousandth of a cell, and a cell is at least 1e-9 of the largest coordinate: so this is far
+    // above the rounding errors of positions.
     const double near = 1e-3 * this->Side;
     for (auto [a, b] : EdgesOf(points, rings))
     {
@@ -115,6 +128,8 @@ private:
       {
         std::swap(a, b);
       }
+      // Where the edge, from its low to its high end, is at a height; beyond its ends, at the
+      // nearest end.
       const auto at = [low = a, high = b](double y) {
         const double share = (y - low.Y) / (high.Y - low.Y);
         return low.X + std::max(0.0, std::min(1.0, share)) * (high.X - low.X);
@@ -138,6 +153,7 @@ private:
   void FindInside(const std::vector<Point2>& points, const Rings& rings)
   {
     const RingLocator locator(points, rings);
+    // Row and column 0 are at the rim and stay Outward.
     for (Index row = 1; row < this->Rows; ++row)
     {
       for (Index column = 1; column < this->Columns; ++column)
@@ -149,11 +165,14 @@ private:
         {
           continue;
         }
+        // Two neighbours that no ring touches have no ring between them.
         if (before != Near || below != Near)
         {
           kind = before != Near ? before : below;
           continue;
         }
+        // Rare: behind rings. The locator wants a triangle that no ring cuts; this one is inside
+        // the cell.
         const double part = 0.25 * this->Side;
         const Point2 p{ this->Low.X + (column + 0.5) * this->Side,
           this->Low.Y + (row + 0.5) * this->Side };
@@ -162,6 +181,7 @@ private:
     }
   }
 
+  // Sums over rectangles from the corner: four look-ups count the touched cells of any rectangle.
   void SumUp()
   {
     this->Sums.assign(static_cast<std::size_t>(this->Columns + 1) * (this->Rows + 1), 0);
@@ -206,7 +226,10 @@ private:
   std::vector<Index> Sums; ///< how many touched cells lie to the left and below
 };
 
-/** Classifies the triangles that no ring touches, and lists the others. */
+/**
+ * Classifies the triangles that no ring touches, and lists the others. The sweep visits the fan of
+ * each vertex in turn, so the cells around that vertex are looked up once for its whole fan.
+ */
 struct Classifier
 {
   using Vertex = SweptVertex;
@@ -231,8 +254,11 @@ struct Classifier
 
   void Visit(Index t, const Vertex& first, const Vertex& second, const Vertex& third)
   {
+    // The triangles of a fan share sides: the third corner of one is the second of the next, so its
+    // reach is known.
     const Point2 p = first.Place, a = second.Place, b = third.Place;
     const double reach = ReachOf(p, b);
+    // All corners near the first one: the whole triangle is.
     const bool isShort = (reach <= this->Reach) & (this->LastReach <= this->Reach);
     this->LastReach = reach;
     if (isShort & (this->Around != RingRaster::Near))
@@ -257,6 +283,8 @@ std::optional<SweptAlongRings> SweepAlongRings(const TriangleList& list,
   const std::vector<Point2>& points, const Rings& rings, double numberOfTriangles, int threads,
   const Progress& progress)
 {
+  // The raster depends on the rings and the number of all triangles alone: parts of a mesh have the
+  // same.
   const RingRaster raster(points, rings, numberOfTriangles);
   if (!raster.IsUsable())
   {
@@ -278,10 +306,12 @@ std::optional<SweptAlongRings> SweepAlongRings(const TriangleList& list,
   swept.Border = sweep.Border(
     list.Points.Count, progress.Between(0.9, 1.0), [](Index id) { return id; },
     [](Index, const SweptVertex*) {});
+  // Each thread has listed its own.
   for (const Classifier* visitor : sweep.Visitors())
   {
     swept.Near.insert(swept.Near.end(), visitor->Near.begin(), visitor->Near.end());
   }
+  // Which thread found a triangle no longer shows.
   std::sort(swept.Near.begin(), swept.Near.end());
   return swept;
 }

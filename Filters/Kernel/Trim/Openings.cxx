@@ -19,6 +19,7 @@ constexpr std::int64_t LakeWithBays = 4; // least lakes
 template <typename FlagOf>
 Components FindFlagParts(const Mesh& mesh, FlagOf&& flagOf, const Progress& progress)
 {
+  // -1 separates the triangles on both sides of an edge, 0 joins them on the same side.
   return FindComponents(mesh, progress, [&](Index h) {
     return flagOf(Mesh::Triangle(h)) == flagOf(Mesh::Triangle(mesh.Twin(h))) ? 0 : -1;
   });
@@ -28,6 +29,7 @@ Components FindFlagParts(const Mesh& mesh, FlagOf&& flagOf, const Progress& prog
  * In whole numbers, so that a sum does not depend on the order. Shares above 1 count as 1, and
  * those below 0, of needles whose area rounding has turned, as 0.
  */
+// Sums stay in 64 bits: 2^30 for each of fewer than 2^31 triangles.
 constexpr std::int64_t FixedOne = std::int64_t(1) << 30;
 std::int64_t ToFixedPoint(double share)
 {
@@ -44,7 +46,10 @@ struct Opening
   bool ReachesBorder = false;
 };
 
-/** Calls look(t, opening) for each triangle that has a place in an opening. */
+/**
+ * Calls look(t, opening) for each triangle that has a place in an opening. The components are those
+ * of the surface, too; isOpen says which triangles belong to openings.
+ */
 template <typename IsOpen, typename Look>
 void VisitOpenings(const Components& parts, std::vector<Opening>& openings, IsOpen&& isOpen,
   const Progress& progress, Look&& look)
@@ -79,6 +84,7 @@ void CloseSmallLakes(
     });
   VisitOpenings(
     parts, openings, isOpen, progress.Between(0.8, 1.0), [&](Index t, Opening& opening) {
+      // A lake that is large enough for bays stays as it is.
       if (!opening.ReachesBorder && opening.Share < LakeWithBays * FixedOne)
       {
         flags[t] = opening.Share < FixedOne ? Surface : Outside;
@@ -107,9 +113,12 @@ void CloseSmallBays(
       {
         const char beside =
           mesh.IsBorder(h) ? static_cast<char>(Outside) : flags[Mesh::Triangle(mesh.Twin(h))];
+        // Of the longest edge, so it does not depend on the units; 2^22 at most, as each triangle
+        // adds three.
         const std::int64_t length = beside == Bay
           ? 0
           : ToFixedPoint(std::sqrt(mesh.SquaredLengthOf(h) / opening.Longest)) >> 8;
+        // In a sum below zero, surface is along more than half.
         opening.Open += beside == Surface ? -length : length;
       }
     });
@@ -133,9 +142,12 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
   ForEachStretch(count, progress.Between(0.0, 0.7), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
     {
+      // A few triangles ahead: their corners' entries are in no order.
       const Index* ahead = list.CornersOf(triangles[std::min(i + 16, count - 1)]);
       const Index* corners = list.CornersOf(triangles[i]);
       const bool isAtBorder = atBorder.HasAny(corners);
+      // At the border of the mesh an opening is no lake, however small: a share of 1 keeps its
+      // group.
       const double area = isAtBorder ? 1.0 : share(triangles[i]);
       Index root = RootOf(parents, corners[0]);
       sums[root] += ToFixedPoint(area);
@@ -147,6 +159,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
         const Index other = RootOf(parents, corners[k]);
         if (other != root)
         {
+          // The lower root takes over the sum of the other one.
           parents[std::max(root, other)] = std::min(root, other);
           sums[std::min(root, other)] += sums[std::max(root, other)];
           root = std::min(root, other);

@@ -9,6 +9,11 @@
  * it may be a part of a lake. An opening is small if the shares of its triangles sum to less than 1:
  * each is the area divided by that of the least lake there, at most 1, in whole numbers, so that
  * the order does not matter. Cost: linear.
+ *
+ *   s s s s s s s        s is surface, l a lake, with s on all sides. The bay b is open to the
+ *   s s l l s b .        outside (.); it is closed if it is small and at least half of its border
+ *   s s s s s b b .      is along s.
+ *   s s s s s s s
  */
 #ifndef elevation_Trim_Openings_h
 #define elevation_Trim_Openings_h

@@ -13,8 +13,9 @@
 //   DefaultTolerance 4.5: below, surface tears; above, channels and lakes close. With 4, random
 //     points with channels 0.15 -> 0.51; with 6, scan lines 0.11 -> 0.41, and two of three lakes
 //     with a radius of three spacings close.
-//   SpacingNeighbor 6 (Spacings.h): with fewer the spacing wavers, with more it reaches too far. With
-//     4 and 12, where density falls 0.21 -> 0.27 and 0.29; one of five, and half of the lakes close.
+//   SpacingNeighbor 6 (Spacings.h): with fewer the spacing wavers, with more it reaches too far.
+//     With 4 and 12, where density falls 0.21 -> 0.27 and 0.29; one of five, and half of the lakes
+//     close.
 //   LargestSpacingInTriangle 2 (Spacings.h): two lone points, whose spacing is the distance to all
 //     others. Without it, of groups of two to six lone points 0 -> 0.54 are surface; with 1, random
 //     points 0.10 -> 0.23. Nothing else depends on it from 1.5 on.
@@ -82,7 +83,10 @@ IdSet CornersLeftOut(const TriangleList& list, const std::vector<Index>& outward
   return leftOut;
 }
 
-/** The area within the border. */
+/**
+ * The area within the border, by the shoelace formula; around one of its vertices, as the products
+ * of map coordinates would leave no digits to their difference.
+ */
 double AreaOf(const TriangleList& list, const std::vector<BorderEdge>& border)
 {
   double sum = 0.0;
@@ -133,7 +137,12 @@ public:
     }
   }
 
-  /** @return nothing only if the triangles are a part of a mesh, too small to find the outline */
+  /**
+   * The steps: certain triangles by short spacings, groups too small for a lake, scales, missing
+   * nodes, spacings at the corners of what is still in doubt, the decision, slivers and openings,
+   * the loss.
+   * @return nothing only if the triangles are a part of a mesh, too small to find the outline
+   */
   std::optional<ExtractedBoundary> Run(const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
@@ -159,6 +168,7 @@ public:
     }
     const std::vector<Index> outside =
       FindOutsideBridges(list, this->Grid, this->Border, progress.Between(scaled, scaled));
+    // These are in doubt even if they were certain: openings are measured in spacings, too.
     const auto middle = doubtful.insert(doubtful.end(), outside.begin(), outside.end());
     std::inplace_merge(doubtful.begin(), middle, doubtful.end());
     doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
@@ -171,6 +181,7 @@ public:
     {
       this->Result.IsSurface[t] = Outside;
     }
+    // With a grid, pieces that missing nodes separate stay, however small.
     const SurfaceOptions tracing{ [this](Index t) { return this->ToleranceOf(t); },
       !this->Grid.Steps.IsSet() };
     if (!TraceSurface(this->Measured, this->Border, this->CornersNear(doubtful), tracing,
@@ -187,7 +198,7 @@ public:
     return std::move(this->Result);
   }
 
-  /** FindOutlinePart() */
+  /** FindOutlinePart(): the first steps of Run(), as far as this part alone can decide them. */
   OutlinePart FindPart(int margin, const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
@@ -201,6 +212,7 @@ public:
       this->Result.IsSurface[t] = Outside; // not all edges are known there
     }
     const std::vector<Index> doubtful = this->FindDoubtful(progress.Between(0.25, 0.4));
+    // A tolerance that the user gives has no scale, so lonely vertices do not matter.
     const IdSet lonely = this->IsAutomatic
       ? LonelyVertices(neighbors, this->CornersNear(doubtful), list.Points.Count)
       : IdSet(0);
@@ -209,12 +221,15 @@ public:
     {
       near.Add(v);
     }
+    // A spacing for which a vertex at the border had to be expanded stays unknown, too.
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     std::fill(this->Spacings.begin(), this->Spacings.end(), unknown);
     FindSpacings(list, neighbors, CornersOf(list, doubtful, progress.Between(0.4, 0.45)),
       this->Threads, progress.Between(0.45, 0.6), this->Spacings.data(), &border);
     // Of groups that reach the border, other parts may have more.
     std::vector<char> isInside(list.Count, 0);
+    // Groups away from the border are known whole, and all such groups count as small here: what is
+    // asked is only which ones are.
     const auto nothing = [](Index) { return 0.0; };
     DropSmallGroups(list, border, doubtful, nothing, isInside, progress.Between(0.6, 0.65));
     std::vector<Known> states(list.Count, Known::Surface);
@@ -237,6 +252,7 @@ public:
   }
 
 private:
+  /** Sorts the border of the mesh for searches, and finds its vertices. */
   void SortBorder(const Progress& progress)
   {
     std::vector<BorderEdge>& border = this->Border.Edges;
@@ -250,6 +266,8 @@ private:
     {
       return;
     }
+    // A border of the triangles at hand that is none of the mesh: there are more triangles behind
+    // it.
     this->Ends = IdSet(this->Measured.List.Points.Count);
     for (const BorderEdge& edge : this->Measured.Border)
     {
@@ -289,6 +307,8 @@ private:
   {
     const TriangleList& list = this->Measured.List;
     constexpr int around = 3;
+    // The border is widened by @a margin edges, the vertices by three: the border goes ahead, and
+    // the last three steps are for both.
     IdSet near = this->Border.Vertices, both(list.Points.Count);
     this->Widen(margin - around, Progress(), near);
     Report(progress, 0.4);
@@ -341,6 +361,8 @@ private:
   IdSet LonelyWithin(const Neighbors& neighbors, IdSet near) const
   {
     const TriangleList& list = this->Measured.List;
+    // Surface that a spacing has decided was in doubt at first, so its corners are near in the
+    // whole mesh, too.
     for (Index t = 0; t < list.Count; ++t)
     {
       if (this->States[t] == Known::SurfaceBySpacing)
@@ -429,6 +451,7 @@ private:
     const auto isWithin = [&](Index, Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
+        // Triangles come in fans, so the first corner is mostly that of the triangle before.
         const Index* ahead = list.CornersOf(std::min(t + 40, end - 1));
         Prefetch(&shortSpacings[ahead[1]]);
         Prefetch(&shortSpacings[ahead[2]]);
@@ -445,6 +468,7 @@ private:
   std::vector<Index> FindDoubtful(const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
+    // Both lists increase, and so does what is returned.
     std::vector<char>& keep = this->Result.IsSurface;
     std::vector<Index> doubtful, inGroups; // the groups of the others are known
     ForEachStretch(list.Count, progress.Between(0.0, 0.2), [&](Index begin, Index end) {
@@ -490,6 +514,7 @@ private:
       {
         const Index t = doubtful[i];
         const double longest = std::sqrt(this->Measured.Longest[t]);
+        // What is too long for surface may still be surface as a part of a small bay.
         this->Result.IsSurface[t] = longest <= this->ToleranceOf(t) ? Surface
           : longest <= this->BayTolerance(t)                        ? Bay
                                                                     : Outside;
@@ -538,6 +563,7 @@ private:
     std::vector<std::pair<double, Index>> ratios;
     for (const Index t : outward)
     {
+      // Without the scale: a tolerance that the user gives has none.
       ratios.emplace_back(
         std::sqrt(this->Measured.Longest[t]) / SpacingOf(this->Spacings, list.CornersOf(t)), t);
     }
@@ -545,6 +571,8 @@ private:
     IdSet missing = leftOut;
     double needed = 0.0;
     double area = this->Result.AreaLeftOut * all;
+    // From the smallest ratio on, as if the tolerance grew: the last triangle that is needed
+    // decides.
     for (const auto& [ratio, t] : ratios)
     {
       if (missing.HasAny(list.CornersOf(t)) || area > 0.5 * all)
@@ -609,6 +637,7 @@ std::optional<ExtractedBoundary> FindSharedOutline(
     return std::nullopt;
   }
   const Progress finding = options.Monitor.Between(0.3, 1.0);
+  // All triangles of the mesh have been taken: it is not a part.
   if (list.Count == mesh.NumberOfTriangles)
   {
     return OutlineSearch(std::move(measured), options).Run(finding);

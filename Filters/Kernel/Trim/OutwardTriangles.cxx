@@ -25,6 +25,8 @@ std::vector<Segment> SegmentsOf(
   for (const std::size_t i : Counted(rings.Vertices.size()))
   {
     ReportStep(progress, i, 2 * rings.Vertices.size(), 256);
+    // After InsertRings() an edge is inside at both ends or at none. Without recovery an edge may
+    // leave the mesh on its way, or end at a hole, which is refused here.
     const Segment segment{ rings.Vertices[i], rings.Vertices[rings.After(static_cast<Index>(i))] };
     const bool isInside = BeginsInside(mesh, stars, segment.A, segment.B);
     if (isInside != BeginsInside(mesh, stars, segment.B, segment.A))
@@ -33,6 +35,7 @@ std::vector<Segment> SegmentsOf(
     }
     if (isInside)
     {
+      // Upwards, whichever way a ring runs, so that two rings along one edge give the same segment.
       const bool isUp = IsLower(mesh.PointOf(segment.A), mesh.PointOf(segment.B));
       segments.push_back(isUp ? segment : Segment{ segment.B, segment.A });
     }
@@ -54,6 +57,7 @@ void MarkEdges(const Mesh& mesh, VertexStars& stars, const std::vector<Segment>&
   std::size_t done = 0;
   for (const Segment& segment : Counted(segments))
   {
+    // Along a segment that was cut there are several edges, one after the other.
     ReportStep(progress, done++, segments.size(), 256);
     Index vertex = segment.A;
     while (vertex != segment.B)
@@ -65,6 +69,8 @@ void MarkEdges(const Mesh& mesh, VertexStars& stars, const std::vector<Segment>&
           NameOf(mesh, segment.B) +
           " is not an edge of the mesh. Turn RecoverBoundary on, or triangulate with it.");
       }
+      // Both half-edges, so that the labels below change whichever side they come from. An edge
+      // that two rings share is even again.
       isOdd[step.HalfEdge] ^= 1;
       if (!mesh.IsBorder(step.HalfEdge))
       {
@@ -91,8 +97,13 @@ OutwardTriangles FindOutward(
     result.NumberOfRecoveredEdges =
       RecoverSegments(mesh, stars, segments, isOnBoundary, progress.Between(0.4, 0.5));
   }
+  // Recovery has marked each edge of the rings once. What counts is how often: an edge of two is
+  // none.
   MarkEdges(mesh, stars, segments, isOnBoundary, progress.Between(0.5, 0.6));
 
+  // Within a component, crossing an odd edge changes sides; so two labels for each component, and a
+  // location of one of its triangles, give the side of all. Where the mesh has several components
+  // that rings separate, each has its own location.
   const RingLocator locator(mesh.Points, boundary);
   const Components parts = FindComponents(mesh, progress.Between(0.6, 0.9),
     [&isOnBoundary](Index h) { return static_cast<int>(isOnBoundary[h]); });
@@ -116,6 +127,10 @@ OutwardTriangles FindOutward(
   return result;
 }
 
+//        p3                The walk comes along p1 p2 and goes on along p2 p3, surface on the
+//       .  ^               right. Triangle p1 p2 p3 is on the left of both edges. When it is taken,
+//     .   t  \             p1 p3 replaces the two, and the triangle beyond p1 p3 has one edge more
+//   p1 ----> p2            on the walk.
 void ApplyInwardNormalTest(const Mesh& mesh, const std::vector<char>& isOnBoundary,
   std::vector<char>& isOutward, const Progress& progress)
 {
@@ -123,6 +138,7 @@ void ApplyInwardNormalTest(const Mesh& mesh, const std::vector<char>& isOnBounda
   // triangle are consecutive on the walk if and only if the triangle is on the left of both, as
   // nothing else fits into its corner. So instead of the walk, it is enough to count how many edges
   // of each triangle are on it.
+  // Above 2, so that the count never becomes 2 again.
   constexpr char isTaken = 4;
   std::vector<char> edges(isOutward.size(), 0);
   std::vector<Index> taken;
@@ -156,6 +172,7 @@ void ApplyInwardNormalTest(const Mesh& mesh, const std::vector<char>& isOnBounda
       // The walk continues along the third edge, with the triangle beyond it on the left. That one
       // is outward unless the edge is on the boundary.
       const Index twin = mesh.Twin(h);
+      // Beyond the two edges that it was taken for, triangles are inside or taken already.
       if (twin != Mesh::Border && edges[Mesh::Triangle(twin)] < 2)
       {
         walkAlong(twin);

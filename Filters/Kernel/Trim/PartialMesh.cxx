@@ -56,10 +56,14 @@ PartialMesh::PartialMesh(const TriangleList& list, const MeshBorder& border,
     this->Surface.NumberOfHalfEdges(), progress.Between(0.8, 1.0), [&](Index begin, Index end) {
       for (Index h = begin; h < end; ++h)
       {
+        // A border edge here that is none of the whole mesh has a neighbour that was not taken. The
+        // mark must differ from Border, so that an opening there does not count as one that reaches
+        // the outside.
         if (this->Surface.IsBorder(h))
         {
           const BorderEdge edge{ this->Surface.IdOf(this->Surface.Origin(h)),
             this->Surface.IdOf(this->Surface.Destination(h)) };
+          // The set is quicker than the search, and most edges fail it.
           if (!border.Vertices.Has(edge.Origin) || !border.Vertices.Has(edge.Destination) ||
             !std::binary_search(border.Edges.begin(), border.Edges.end(), edge))
           {

@@ -4,6 +4,11 @@
  * @file
  * Some of the triangles of a list as a mesh of their own.
  *
+ *   +------+-----      t has been taken, u has not. The half-edge of t on their edge is its own
+ *   | t  / |           twin: walks stop there as at a border, but know that it is none. Where t
+ *   |  / u |           is at the border of the whole mesh, its twin is Mesh::Border, as ever.
+ *   +------+-----
+ *
  * Cost: linear in the list, and n log n in the triangles taken.
  */
 #ifndef elevation_Trim_PartialMesh_h

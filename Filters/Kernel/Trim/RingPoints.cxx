@@ -1,5 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The steps of PointInsertion:
+//
+// 1. MatchCorners: a corner of the mesh with the same x,y is the vertex.
+// 2. SnapBorderToPoints: a point within rounding of one border edge becomes a vertex of it.
+// 3. LocateOthers: one sweep over the triangles finds which one holds each other point.
+// 4. InsertLocated: cuts at these. The points that wait in a triangle move on to its parts.
+//
+// Two points of the rings at the same place are one: the map of vertices is by place.
 #include "RingPoints.h"
 
 #include "FollowSurface.h"
@@ -27,6 +36,10 @@ bool IsLowerEdge(const Mesh& mesh, Index h, Index k)
   return IsLower(mesh, segmentOf(h), segmentOf(k));
 }
 
+/**
+ * Finds or makes the vertex at each point of the rings. Corners of triangles are known by their
+ * places; other points are located and inserted.
+ */
 class PointInsertion
 {
 public:
@@ -50,6 +63,10 @@ public:
   }
 
 private:
+  /**
+   * A point that is not a corner, and the triangle that holds it, which changes while others are
+   * cut.
+   */
   struct Place
   {
     Index Triangle;
@@ -63,13 +80,16 @@ private:
     {
       this->VertexAt.emplace(this->Points[point], None);
     }
-    // Look-ups in a map are slow; at a hundred or more bits per point, few are made in vain.
+    // Most corners of the mesh are not points of rings, and look-ups in a map are slow. The sieve
+    // has 128 bits or more for each point, so of the corners that are no ring's less than one in a
+    // hundred is looked up in vain.
     int bits = 6;
     while (bits < 30 && std::size_t(1) << bits < 128 * this->VertexAt.size())
     {
       ++bits;
     }
     const auto bitOf = [=](const Point2& p) {
+      // The high bits of the hash; the map uses the low ones.
       return static_cast<Index>(PointHash()(p) >> (64 - bits));
     };
     IdSet sieve(Index(1) << bits);
@@ -86,6 +106,8 @@ private:
       }
     });
     const Progress matching = progress.Between(0.3, 1.0);
+    // Over half-edges, not points: a point that no triangle uses is not a corner, and two at the
+    // same place are no trouble if only one is used.
     for (const Index h : Counted(mesh.NumberOfHalfEdges()))
     {
       ReportStep(matching, h, mesh.Triangles.size());
@@ -94,6 +116,7 @@ private:
       {
         continue;
       }
+      // Each vertex is looked at once, not once for each of its triangles.
       isToMatch[vertex] = 0;
       Index& found = this->VertexAt.at(mesh.PointOf(vertex));
       if (found != None)
@@ -132,6 +155,7 @@ private:
     }
     const Index count = static_cast<Index>(open.size());
     const auto pointOf = [&](Index i) { return this->Points[open[i]]; };
+    // The grid is over the points, and the triangles pass through it: it is as small as the rings.
     const CellGrid grid(open.size(),
       [&](std::size_t i) { return std::array<Point2, 1>{ { this->Points[open[i]] } }; });
     std::vector<Index> triangles(open.size(), None);
@@ -139,6 +163,7 @@ private:
     ForEachStretch(mesh.NumberOfTriangles(), looking, [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
+        // The points of successive triangles may be far apart in memory.
         const std::size_t ahead = 3 * static_cast<std::size_t>(t) + HalfEdgesAhead;
         if (ahead + 2 < mesh.Triangles.size())
         {
@@ -150,6 +175,7 @@ private:
         grid.Visit(corners, [&](Index i) {
           if (triangles[i] == None && this->Cutter.Holds(t, pointOf(i)))
           {
+            // A point on an edge is in two triangles; either will do, as the edge is cut in both.
             triangles[i] = t;
           }
         });
@@ -169,6 +195,7 @@ private:
         "RecoverBoundary on, or add the boundary's points to the points before triangulating "
         "them.");
     }
+    // The map has at least as many places as points that may have to be appended outside the mesh.
     ReserveVertices(this->Surface, this->VertexAt.size(), this->Located.size());
   }
 
@@ -179,6 +206,8 @@ private:
   void SnapBorderToPoints(std::vector<Index>& open, const Progress& progress)
   {
     const BorderEdges border = FindBorder(this->Surface, progress);
+    // A point in reach of an edge is at most this far from it, so it is enough to look up the cells
+    // around the point.
     double reach = 0.0; // the largest of any border edge
     for (const Ends& segment : border.Segments)
     {
@@ -195,6 +224,7 @@ private:
       border.Grid.Visit(
         Ends{ { { p.X - reach, p.Y - reach }, { p.X + reach, p.Y + reach } } }, [&](Index i) {
           const Ends& segment = border.Segments[i];
+          // The grid may visit an edge twice.
           if (i != nearest &&
             IsInReach(segment[0], segment[1], UnitsOf(segment[0], segment[1]), SnappingReach, p))
           {
@@ -212,6 +242,7 @@ private:
       }
     }
     ReserveVertices(this->Surface, this->VertexAt.size(), taken.size());
+    // Several points may be on one border edge: it is cut from its origin on, point after point.
     SortAlong(
       taken, [&](Index piece) { return border.Segments[piece]; },
       [&](Index point) { return this->Points[point]; }, Progress());
@@ -221,9 +252,12 @@ private:
     {
       if (i == 0 || taken[i - 1].Piece != taken[i].Piece)
       {
+        // Cuts of other edges may have renumbered this one.
         h = this->Cutter.CurrentHalfEdge(border.HalfEdges[taken[i].Piece]);
       }
       const Point2 p = this->Points[taken[i].Vertex];
+      // Beside a triangle with no width but rounding there is no place: the point is located as
+      // others are.
       if (!this->Cutter.CanCut(h, p))
       {
         others.push_back(taken[i].Vertex);
@@ -237,6 +271,7 @@ private:
     open = std::move(others);
   }
 
+  /** Cuts the mesh at the located points, one after another. */
   void InsertLocated(const Progress& progress)
   {
     // In an order that depends only on the places, not on the numbers of triangles, and is random:
@@ -278,7 +313,8 @@ private:
     {
       const Point2 &a = mesh.PointOf(mesh.Origin(h)), &b = mesh.PointOf(mesh.Destination(h));
       on = Orientation(a, b, p) == Zero ? h : on;
-      // What follows the surface could not be split in the needle beside an edge in reach.
+      // What follows the surface could not be split in the needle between the point and an edge in
+      // reach. Of several such edges the lowest counts, whatever the numbers of triangles are.
       if (this->Follows && !mesh.IsBorder(h) && IsInReach(a, b, UnitsOf(a, b), SnappingReach, p) &&
         this->Cutter.CanCut(h, p) && (inReach == None || IsLowerEdge(mesh, h, inReach)))
       {
@@ -300,6 +336,7 @@ private:
     {
       return false;
     }
+    // The height of the triangle over the edge is its doubled area over the edge's length.
     const RoundingUnits units =
       UnitsOf(mesh.PointOf(mesh.Origin(on)), mesh.PointOf(mesh.Destination(on)));
     return this->Cutter.TwiceArea(t) <
@@ -355,6 +392,9 @@ private:
       if (i != done)
       {
         Place& place = this->Located[i];
+        // There is always one: the parts cover what they were cut from, also where an edge was
+        // moved to the point, as the two triangles of the edge make the same quadrilateral as
+        // before.
         place.Triangle = *std::find_if(parts.begin(), parts.end(),
           [&](Index part) { return this->Cutter.Holds(part, this->Points[place.Point]); });
         this->Waiting[place.Triangle].push_back(i);
@@ -401,6 +441,7 @@ BorderEdges FindBorder(const Mesh& mesh, const Progress& progress)
 
 void ReserveVertices(Mesh& mesh, std::size_t others, std::size_t vertices)
 {
+  // The ids that are in use, in the mesh that this one may be a part of.
   constexpr std::size_t most = MaximumNumberOfPoints;
   const std::size_t before = mesh.IdOf(mesh.NumberOfPoints());
   if (before + others + vertices > most || mesh.Triangles.size() / 3 + 2 * vertices > 2 * most)
@@ -411,7 +452,8 @@ void ReserveVertices(Mesh& mesh, std::size_t others, std::size_t vertices)
   }
   if (vertices > 0)
   {
-    // Exactly as much as needed: growth would take more.
+    // Each vertex adds two triangles, six half-edges. Exactly as much as needed: growth would take
+    // more.
     mesh.Points.reserve(mesh.Points.size() + others + vertices);
     mesh.Triangles.reserve(mesh.Triangles.size() + 6 * vertices);
     mesh.Twins.reserve(mesh.Twins.size() + 6 * vertices);

@@ -37,6 +37,7 @@ struct BorderEdges
   std::vector<Ends> Segments;
   CellGrid Grid;
 };
+// The numbers hold until the mesh is cut; MeshCutter::CurrentHalfEdge() leads on from there.
 BorderEdges FindBorder(const Mesh& mesh, const Progress& progress);
 
 /**

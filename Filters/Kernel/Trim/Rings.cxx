@@ -38,6 +38,12 @@ bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) co
   const bool lowestIsC = !lowestIsB && IsLower(c, a);
   const Point2& p = lowestIsB ? b : lowestIsC ? c : a;
   const Point2& q = lowestIsB ? c : lowestIsC ? a : b;
+  //      high   r
+  //      /     /   q     The point tested is above p by as little as you like, between pq and pr.
+  //     /     / /        A ray from it to the left meets the edges that span the height of p (with
+  //  <-/-----p           their low end, without their high end) and pass p on the left. An edge
+  //   low                through p goes up on one side of the triangle, which it does
+  //                      not cut; q is on the same side, or on the edge.
   bool isInside = false;
   this->ByHeight.Visit(Point2{ 0.0, p.Y }, [&](Index i) {
     const bool isDown = this->Edges[i][1].Y < this->Edges[i][0].Y;
@@ -58,6 +64,7 @@ bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) co
 namespace
 {
 
+// By place, not by id: lines may have points of their own at the same places.
 bool IsBefore(const Ends& one, const Ends& other)
 {
   return one[0] != other[0] ? IsLower(one[0], other[0]) : IsLower(one[1], other[1]);
@@ -77,6 +84,7 @@ struct Piece
   bool IsClosed;
 };
 
+/** The lines as pieces, without those that have no point. @throws Error as JoinLines() */
 std::vector<Piece> MakePieces(const BoundaryLines& lines)
 {
   std::vector<Piece> pieces;
@@ -107,6 +115,7 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines)
     {
       piece.Points.pop_back();
     }
+    // A closed piece of two points would be an edge there and back.
     if (piece.IsClosed && piece.Points.size() < 3)
     {
       throw Error("The boundary's " + LineName(lines, line) + " has only " +
@@ -137,6 +146,8 @@ std::vector<Ends> SortedEdges(const BoundaryLines& lines, const Piece& piece)
  */
 Message DropRepeated(const BoundaryLines& lines, std::vector<Piece>& pieces)
 {
+  // Two closed lines are the same ring if they have the same edges; sorting them makes that visible
+  // without trying all first points and both directions.
   const auto comesBefore = [](const std::vector<Ends>& one, const std::vector<Ends>& other) {
     return std::lexicographical_compare(
       one.begin(), one.end(), other.begin(), other.end(), IsBefore);
@@ -162,7 +173,10 @@ Message DropRepeated(const BoundaryLines& lines, std::vector<Piece>& pieces)
     : MakeMessage<sentences::RingsRepeated>(count, "the " + LineName(lines, firstLine));
 }
 
-/** Chains open pieces at their ends: the front of piece i is end 2 i, its back is end 2 i + 1. */
+/**
+ * Chains open pieces at their ends: the front of piece i is end 2 i, its back is end 2 i + 1. Each
+ * end gets a partner, the end of the piece with which the ring goes on there.
+ */
 class Chains
 {
 public:
@@ -189,6 +203,8 @@ public:
   std::vector<Index> RingFrom(std::size_t piece, std::vector<char>& used) const
   {
     std::vector<Index> ring;
+    // From an end through the piece to its other end (end ^ 1), and on with that one's partner. The
+    // last point of a piece is the first of the next one.
     for (std::size_t end = 2 * piece; !used[end / 2]; end = this->Partners[end ^ 1])
     {
       used[end / 2] = 1;
@@ -236,13 +252,18 @@ private:
    */
   void Pair(const Point2& place, std::vector<std::size_t>& ends)
   {
+    // By angle around the place, counter-clockwise from the direction of x: first the upper half
+    // plane (what is not lower than the place), then the lower one; exact within each.
     const auto comesBefore = [&](std::size_t e, std::size_t f) {
       const Point2 p = this->PlaceAt(e, 1), q = this->PlaceAt(f, 1);
       return IsLower(place, p) != IsLower(place, q) ? IsLower(place, p)
                                                     : Orientation(place, p, q) == Positive;
     };
+    // Stable, so that ends in the same direction are paired in the order of the lines.
     std::stable_sort(ends.begin(), ends.end(), comesBefore);
     std::vector<std::size_t> others;
+    // First pass: an end joins the one before it if both leave in the same direction. Second pass:
+    // of what is left, neighbours join, like brackets; their arcs around the place do not cross.
     for (const bool areAlike : { true, false })
     {
       others.clear();
@@ -271,6 +292,7 @@ private:
 
 void TakePoints(const PointView& points, BoundaryLines& lines)
 {
+  // One bit for each point of the cloud costs less than a map of the few that lines use.
   IdSet used(points.Count);
   for (const Index id : lines.Lines.Vertices)
   {
@@ -305,6 +327,7 @@ Rings JoinLines(const BoundaryLines& lines, Message* repeated)
   std::vector<char> used(pieces.size(), 0);
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
+    // A piece that is in a ring already gives an empty one.
     const std::vector<Index> ring =
       pieces[i].IsClosed ? pieces[i].Points : chains.RingFrom(i, used);
     // A ring of two points is two lines along one edge, as of adjacent parcels: they cancel out.

@@ -7,6 +7,14 @@
  * Several rings bound a region by the even-odd rule: a place is inside when an odd number of rings
  * goes around it. So rings may nest (lake, island in the lake), in any direction and order, and may
  * touch; edges that two rings share cancel out.
+ *
+ *   +----------------+     A ray from 1 to the left crosses one ring, from 2 two, from 3 three:
+ *   | 1  +-------+   |     1 and 3 are inside.
+ *   |    | 2 +-+ |   |
+ *   |    |   |3| |   |
+ *   |    |   +-+ |   |
+ *   |    +-------+   |
+ *   +----------------+
  */
 #ifndef elevation_Trim_Rings_h
 #define elevation_Trim_Rings_h

@@ -1,5 +1,18 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// In the order in which FindScales() calls them, at the end of the file:
+//
+// 1. LonelyVertices() and AreFew(): are there lines of points at all? Mostly not, and all is 1.
+// 2. OutsideCores(): vertices outside of what is surface at scale 1 are thin.
+// 3. ThinTriangles: measures the triangles with a thin corner, joins vertices along the lines to
+//    parts, and lists what happens as the length grows, each event at its length.
+// 4. JoiningParts: goes through the events. Parts join, touch cores and get open triangles; each
+//    becomes a surface gradually, and the integral of what it lacks is its scale.
+//
+//    . . . . . . . .      Along the lines, edges are about one spacing long. Triangles between the
+//                         lines are L spacings long, so nothing joins or opens before the length is
+//    . . . . . . . .      about L / 2; then all lines join at once, and the scale is about L / 2.
 #include "Scales.h"
 
 #include <algorithm>
@@ -17,19 +30,30 @@ namespace
 // The constants of the rule (Scales.h), found by trials: survey lines 2 to 200 times as far apart
 // as their points, even and uneven, with and without cross lines, jittered by up to half a spacing;
 // tracks that cross at random; roads of 3 to 15 rows of points; swaths beside and across lines.
+//
+// Scales are looked for if more than one in so many vertices, of whole blocks, are lonely, or a
+// group of so many connected ones.
 constexpr Index ManyLonely = 50;
 constexpr std::int64_t Block = 1024;
 constexpr std::size_t LonelyGroup = 30;
+// A core: at least so many inner vertices, and at least so many for each other one.
 constexpr Index LeastInner = 50;
 constexpr Index InnerPerOther = 2;
+// Edges that join vertices, and parts to cores, from the start are shorter than this.
 constexpr double LongestShortEdge = 6.0; // spacings
+// The unit of lengths and areas, in spacings.
 constexpr double UnitSpacings = 2.0;
+// The width that a part needs to be a surface, in units: so much at least, and so much for what the
+// length is above 1.
 constexpr double LeastWidth = 1.2;
 constexpr double WidthPerLength = 2.5;
+// The area that each point of a surface has, in square units.
 constexpr double PointShare = 0.2;
+// The greatest length at which touching a core makes a part a surface.
 constexpr double LongestJoin = 5.0;
 
-/** 0 up to half of what is asked for, 1 from there on. */
+// 0 up to half of what is asked for, 1 from all of it on; rising evenly between, so that the scale
+// is continuous in the data.
 double Reached(double value, double asked)
 {
   return std::max(0.0, std::min(1.0, 2.0 * value / asked - 1.0));
@@ -46,6 +70,7 @@ bool HasGroup(const Neighbors& neighbors, const IdSet& vertices, Index count, st
     {
       continue;
     }
+    // A flood that stops at the first group that is large enough.
     group.assign(1, v);
     seen.Add(v);
     for (std::size_t i = 0; i < group.size(); ++i)
@@ -77,6 +102,8 @@ IdSet OutsideCores(
   ForEachStretch(count, progress.Between(0.0, 0.6), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
+      // Inner vertices join all their neighbours, near ones among them: a near vertex belongs to
+      // the cores that it is beside.
       for (std::uint32_t k = neighbors.Offsets[v]; !near.Has(v) && k < neighbors.Offsets[v + 1];
            ++k)
       {
@@ -98,6 +125,7 @@ IdSet OutsideCores(
     for (Index v = begin; v < end; ++v)
     {
       const Index root = RootOf(parents, v);
+      // In whole numbers, without overflow: at least twice as many inner ones as others.
       if (inner[root] < LeastInner || inner[root] / InnerPerOther < others[root])
       {
         outside.Add(v);
@@ -120,6 +148,10 @@ public:
     return this->Add(part);
   }
 
+  /**
+   * The part of which the first is and that of the second become one, at a length; nothing if they
+   * are one already.
+   */
   void Join(Index a, Index b, double length)
   {
     a = this->TopOf(a);
@@ -128,6 +160,7 @@ public:
     {
       return;
     }
+    // Both have grown by themselves up to here.
     this->Grow(a, length);
     this->Grow(b, length);
     JoiningPart& p = this->Parts[a];
@@ -136,9 +169,11 @@ public:
     sum.Points = p.Points + q.Points;
     sum.Area = p.Area + q.Area;
     sum.Border = p.Border + q.Border;
+    // Of two parts, the one that is more of a surface takes the other along.
     sum.Surface = std::max(p.Surface, q.Surface);
     sum.Length = length;
     sum.IsAttached = p.IsAttached || q.IsAttached;
+    // The history of both stays with them. The scale of a vertex is summed up along its parents.
     p.Parent = q.Parent = static_cast<Index>(this->Parts.size());
     this->Tops[a] = this->Tops[b] = this->Add(sum);
   }
@@ -147,6 +182,8 @@ public:
   void Touch(Index part, double length)
   {
     const Index top = this->TopOf(part);
+    // What is attached to a core by a short edge, like a track that leaves it, must become a
+    // surface by itself.
     if (!this->Parts[top].IsAttached && length <= LongestJoin)
     {
       this->Grow(top, length);
@@ -158,6 +195,7 @@ public:
   /** Adds an open triangle. */
   void Open(Index part, double area, double border)
   {
+    // The border of the union of open triangles: edges between two of them have been subtracted.
     JoiningPart& top = this->Parts[this->TopOf(part)];
     top.Area += area;
     top.Border += border;
@@ -170,9 +208,11 @@ public:
     this->Grow(top, length);
     JoiningPart& grown = this->Parts[top];
     const double asked = std::max(LeastWidth, WidthPerLength * (length - 1.0));
+    // Twice the area over the border is the width of a long strip.
     const double width = grown.Border > 0.0 ? 2.0 * grown.Area / grown.Border : 0.0;
     const double share = grown.Area / static_cast<double>(grown.Points);
     const double surface = std::min(Reached(width, asked), Reached(share, PointShare));
+    // A surface never becomes less of one, although the share of its points may fall.
     if (surface > grown.Surface)
     {
       grown.Surface = surface;
@@ -189,6 +229,7 @@ public:
         [&](const JoiningPart& part) { return isTop(part) && part.Surface == 1.0; });
     std::vector<double> sums(this->Parts.size());
     std::vector<double> surface(this->Parts.size());
+    // Parents have higher numbers, so they come first.
     for (std::size_t i = this->Parts.size(); i-- > 0;)
     {
       const JoiningPart& part = this->Parts[i];
@@ -199,12 +240,17 @@ public:
     std::vector<float> scales;
     for (std::size_t i = 0; i < sums.size(); ++i)
     {
+      // Single lines have become nothing: 0 times their integral, so 1.
       scales.push_back(std::max(1.0f, static_cast<float>(surface[i] * sums[i])));
     }
     return scales;
   }
 
 private:
+  /**
+   * A part from when it is made until it joins another one. Lengths and areas are in units of the
+   * triangles: two spacings, Units.
+   */
   struct JoiningPart
   {
     Index Points = 0;
@@ -225,6 +271,7 @@ private:
     return this->Tops.back();
   }
   Index TopOf(Index part) { return RootOf(this->Tops, part); }
+  // Adds to the integral what the part has lacked since the last change.
   void Grow(Index part, double length)
   {
     JoiningPart& grown = this->Parts[part];
@@ -321,11 +368,13 @@ private:
           longest = std::max(longest, this->LengthOf(h));
           isInside = isInside && this->IsThin(this->Surface.Origin(h));
         }
+        // The largest of the corners, so that a triangle between a line and a dense core is short.
         this->Units[t] = UnitSpacings * spacing;
         this->Lengths[t] = longest / this->Units[t];
         for (Index h = 3 * t; h < 3 * t + 3; ++h)
         {
           const Index v = this->Surface.Origin(h);
+          // With an infinite length, this vertex never opens the triangles around it.
           const bool isClosed = isInside && !this->AtBorder.Has(this->Surface.IdOf(v));
           this->LongestAt[v] = std::max(this->LongestAt[v],
             isClosed ? this->Lengths[t] : std::numeric_limits<double>::infinity());
@@ -346,6 +395,7 @@ private:
       {
         const Index a = this->Surface.Origin(h);
         const Index b = this->Surface.Destination(h);
+        // 0 stands for a vertex of a core; an edge between two of these joins nothing.
         const double ofA = this->IsThin(a) ? this->SpacingOf(a) : 0.0;
         const double ofB = this->IsThin(b) ? this->SpacingOf(b) : 0.0;
         if (this->LengthOf(h) >= LongestShortEdge * std::max(ofA, ofB))
@@ -356,10 +406,12 @@ private:
         {
           const Index p = RootOf(parents, a);
           const Index q = RootOf(parents, b);
+          // Lower roots, so that below a root comes before its members.
           parents[std::max(p, q)] = std::min(p, q);
         }
         else
         {
+          // A short edge from a thin vertex to a core.
           isAttached[ofA > 0.0 ? a : b] = 1;
         }
       }
@@ -383,6 +435,11 @@ private:
     }
   }
 
+  /**
+   * Lists what happens as the length grows: a triangle joins the parts of its thin corners, or
+   * touches a core, at its own length; it opens when all triangles around one of its thin corners
+   * have been added.
+   */
   void FindEvents(const Progress& progress)
   {
     ForEachStretch(
@@ -403,6 +460,7 @@ private:
           {
             this->Events.push_back({ this->Lengths[t], Kind::Join, t });
           }
+          // Longer triangles that touch a core have no effect.
           if (thinCorners < 3 && this->Lengths[t] <= LongestJoin)
           {
             this->Events.push_back({ this->Lengths[t], Kind::Touch, t });
@@ -435,6 +493,10 @@ private:
     Sort(this->Events.begin(), this->Events.end(), isBefore, progress.Between(0.3, 1.0));
   }
 
+  /**
+   * Goes through the events by length. Those of one length happen together; then it is measured how
+   * much of a surface the parts have become that got open triangles.
+   */
   void FollowEvents(const Progress& progress)
   {
     std::vector<char> isOpen(this->Lengths.size(), 0);
@@ -442,6 +504,8 @@ private:
     for (auto first = this->Events.begin(); first != this->Events.end();)
     {
       auto event = first;
+      // All events of one length together, before what has grown is measured: their order must not
+      // count.
       for (; event != this->Events.end() && event->Length == first->Length; ++event)
       {
         CountWork(20); // of the triangle and the parts that it joins
@@ -471,6 +535,7 @@ private:
   {
     const Index t = event.Triangle;
     const Index part = this->PartAt(t);
+    // With three different parts, two joins; equal ones do nothing.
     if (event.What == Kind::Join)
     {
       this->VisitThinCorners(
@@ -484,6 +549,8 @@ private:
     {
       isOpen[t] = 1;
       double border = 0.0;
+      // An edge beside a triangle that is open already leaves the border, with the length it
+      // entered by.
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
         const Index twin = this->Surface.Twin(h);
@@ -552,6 +619,7 @@ std::vector<float> FindScales(const MeasuredTriangles& measured, const Neighbors
     return {};
   }
   const IdSet thin = OutsideCores(neighbors, near, count, progress.Between(0.0, 0.1));
+  // Only around thin vertices: cores have scale 1.
   std::vector<Index> triangles = TrianglesAt(list, thin, progress.Between(0.1, 0.15));
   if (triangles.empty())
   {

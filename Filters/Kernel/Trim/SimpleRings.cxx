@@ -13,7 +13,15 @@ namespace elevation
 namespace
 {
 
-/** Cuts walks along the border into rings: one that comes back to its path closes a ring. */
+/**
+ * Cuts walks along the border into rings: one that comes back to its path closes a ring.
+ *
+ *   b       e      The walk a b d e f d passes d twice, where two parts of the surface meet. At
+ *   | \   / |      d for the second time, what has come since, d e f, is a ring; the walk goes on
+ *   |   d   |      as if it had just arrived at d for the first time.
+ *   | /   \ |
+ *   a       f
+ */
 class RingCutter
 {
 public:
@@ -48,6 +56,7 @@ private:
       {
         --first;
       }
+      // The vertex goes away with the ring that it closes, and begins the rest of the path.
       this->CutRing(first);
     }
     this->IsOnPath[vertex] = 1;

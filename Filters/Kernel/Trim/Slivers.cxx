@@ -19,6 +19,7 @@ bool IsFlat(const MeasuredTriangles& measured, Index t)
 {
   const TriangleList& list = measured.List;
   const double spacing = SpacingOf(measured.ShortSpacings, list.CornersOf(t));
+  // Twice the area over the longest edge is the height.
   return 2.0 * list.SquareShare(t, spacing) * spacing <
     LeastHeight * std::sqrt(measured.Longest[t]);
 }
@@ -48,6 +49,10 @@ IdSet VerticesOfSlivers(
   return vertices;
 }
 
+//       border of the surface       Sliver t has its longest edge at the border. It becomes
+//     a-----------------------b     part of a bay, and its two other edges the border, where
+//       --__      t     __--        the next triangle may be a sliver.
+//            ---- c ----
 void DropSlivers(const MeasuredTriangles& measured, const PartialMesh& partial, const IdSet& atEdge,
   std::vector<char>& flags, const Progress& progress)
 {
@@ -55,6 +60,7 @@ void DropSlivers(const MeasuredTriangles& measured, const PartialMesh& partial, 
   const auto isSliver = [&](Index i) {
     const Index t = partial.Triangles[i];
     const Index* corners = measured.List.CornersOf(t);
+    // Without this, a chain of slivers could lead from the border deep into the surface.
     return atEdge.Has(corners[0]) + atEdge.Has(corners[1]) + atEdge.Has(corners[2]) >= 2 &&
       IsFlat(measured, t);
   };
@@ -63,6 +69,8 @@ void DropSlivers(const MeasuredTriangles& measured, const PartialMesh& partial, 
     const Index t = Mesh::Triangle(h);
     if (flags[t] == Surface && IsLongest(mesh, h) && isSliver(t))
     {
+      // A bay, not the outside: if it has surface along half of its border, CloseSmallBays() gives
+      // it back.
       flags[t] = Bay;
       dropped.push_back(t);
     }
@@ -74,6 +82,7 @@ void DropSlivers(const MeasuredTriangles& measured, const PartialMesh& partial, 
       {
         look(h);
       }
+      // What has come to the border is looked at right away; a triangle is dropped once only.
       while (!dropped.empty())
       {
         const Index first = 3 * dropped.back();

@@ -30,13 +30,17 @@ struct PieceSizes
         this->Triangles[piece] += keep[t];
         for (Index h = 3 * t; h < 3 * t + 3; ++h)
         {
+          // See PartialMesh: the neighbour has not been taken.
           this->Continues[piece] |= mesh.Twin(h) == h;
         }
       }
     });
   }
 
-  /** Whether it has more triangles than so few vertices can form. */
+  /**
+   * Whether it has more triangles than so few vertices can form. The limit is generous: six form at
+   * most seven. The vertices of smaller pieces are counted.
+   */
   bool IsLarge(Index piece) const { return this->Triangles[piece] > 3 * SpacingNeighbor; }
 
   std::vector<Index> Triangles;
@@ -47,6 +51,7 @@ struct PieceSizes
 std::vector<std::pair<Index, Index>> CornersOfSmall(const Mesh& mesh, const Components& pieces,
   const PieceSizes& sizes, const std::vector<char>& keep, const Progress& progress)
 {
+  // Listing the corners of pieces that may be small is cheap; counting all vertices would not be.
   std::vector<std::pair<Index, Index>> corners;
   ForEachStretch(mesh.NumberOfTriangles(), progress.Between(0.0, 0.7), [&](Index begin, Index end) {
     for (Index h = 3 * begin; h < 3 * end; ++h)
@@ -75,6 +80,7 @@ std::vector<Index> DropSmallPieces(
   const PieceSizes sizes(mesh, pieces, keep, progress.Between(0.5, 0.7));
   const std::vector<std::pair<Index, Index>> corners =
     CornersOfSmall(mesh, pieces, sizes, keep, progress.Between(0.7, 1.0));
+  // A surface of small pieces only keeps them all.
   bool hasLarge = false;
   for (Index piece = 0; piece < pieces.Count(); ++piece)
   {
@@ -87,6 +93,7 @@ std::vector<Index> DropSmallPieces(
     const auto last = std::find_if(first, corners.end(),
       [&](const std::pair<Index, Index>& corner) { return corner.first != first->first; });
     const bool isFew = last - first <= SpacingNeighbor;
+    // It may have more vertices beyond the triangles taken: the caller takes more of them.
     for (auto corner = first; isFew && sizes.Continues[first->first] && corner != last; ++corner)
     {
       unknown.push_back(corner->second);

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
+ *
+ * A lone point has triangles to all sides, and its spacing is the distance to the others: measured
+ * by that, they are as good as any surface. So the number of vertices decides.
  * Pieces of a surface with too few vertices for spacings of their own, such as lone points far away
  * from the others.
  */

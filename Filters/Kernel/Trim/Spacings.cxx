@@ -16,6 +16,8 @@ Neighbors::Neighbors(const MeasuredTriangles& measured, const Progress& progress
   const TriangleList& list = measured.List;
   const Index count = list.Points.Count;
   this->Offsets.Resize(static_cast<std::size_t>(count) + 1);
+  // Each triangle gives three directed edges, each border edge a fourth direction; then what
+  // padding may need, and a group more that the last vertex may write in excess.
   this->Ids.Resize(3 * static_cast<std::size_t>(list.Count) + measured.Border.size() +
     (Group - 1) * (static_cast<std::size_t>(count) + 1));
   // At first the end of each vertex's range, which is filled backwards.
@@ -31,6 +33,7 @@ Neighbors::Neighbors(const MeasuredTriangles& measured, const Progress& progress
     }
   });
   this->Offsets[count] = sum;
+  // Ranges are filled from their ends, so that Offsets holds their begins when all is written.
   const auto add = [&](Index a, Index b) { this->Ids[--this->Offsets[a]] = b; };
   ForEachStretch(list.Count, progress.Between(0.3, 1.0), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
@@ -47,6 +50,8 @@ Neighbors::Neighbors(const MeasuredTriangles& measured, const Progress& progress
       add(corners[2], corners[0]);
     }
   });
+  // Each half-edge names the neighbour that it leads to. To the origin of a border edge none leads
+  // back.
   for (const BorderEdge& edge : measured.Border)
   {
     add(edge.Destination, edge.Origin);
@@ -79,6 +84,7 @@ public:
     const Index next = ahead(8);
     this->List.PrefetchPoint(next);
     const Index soon = ahead(4);
+    // Eight neighbours: most vertices of a Delaunay triangulation have fewer.
     for (std::uint32_t i = 0; i < 8; ++i)
     {
       const std::uint32_t j = std::min(offsets[next] + i, offsets[next + 1] - 1);
@@ -89,6 +95,7 @@ public:
     }
   }
 
+  /** NaN if an incomplete vertex had to be expanded. */
   double SpacingAt(Index v)
   {
     this->Vertex = v;
@@ -109,6 +116,7 @@ public:
   }
 
 private:
+  /** One of the nearest vertices so far; without a vertex, an empty place, infinitely far away. */
   struct Candidate
   {
     double Squared;
@@ -123,9 +131,11 @@ private:
   /** Expands a vertex: adds its neighbours that are near enough. */
   void Expand(Index expanded)
   {
+    // What the vertex's other triangles would add is not known.
     this->IsCut = this->IsCut || (this->Incomplete && this->Incomplete->Has(expanded));
     const std::uint32_t first = this->Around.Offsets[expanded];
     const std::uint32_t size = this->Around.Offsets[expanded + 1] - first;
+    // The vertex asked for is expanded, whatever it is; a hub's neighbours are too many to look at.
     if (expanded != this->Vertex && size > HubNeighbors)
     {
       return;
@@ -139,6 +149,8 @@ private:
     const Point2 p = this->Place;
     const PointView points = this->List.Points;
     const std::uint64_t* const known = this->Known.data();
+    // The sixth distance so far. It falls as vertices are added, but a limit that is not the latest
+    // only lets some more through, which Add() tests again.
     const double limit = this->Nearest[Last].Squared;
     Index* const found = this->Found.data();
     Index* next = found;
@@ -148,6 +160,7 @@ private:
       for (std::uint32_t j = 0; j < Neighbors::Group; ++j)
       {
         const Index w = group[j];
+        // Written always, kept only if both tests say so.
         *next = w;
         const int isNear = SquaredLength(p, points.At(w)) < limit;
         const int isNew = known[static_cast<std::uint32_t>(w) % Places] != KeyOf(v, w);
@@ -163,6 +176,7 @@ private:
   /** Adds a vertex to the nearest ones, if it belongs to them. */
   void Add(const Candidate& candidate)
   {
+    // The cache may have forgotten a vertex, so those that are among the nearest are compared.
     bool isKnown = candidate.Vertex == this->Vertex;
     for (const Candidate& other : this->Nearest)
     {
@@ -185,6 +199,9 @@ private:
   /** Expands all that are nearer than the last one, equally near ones together. */
   void ExpandNearer()
   {
+    // The search ends when all that are nearer than the sixth have been expanded: a vertex still
+    // unknown is behind one of these. The sixth itself and others as far are not, or the result
+    // would depend on which of them is called the sixth.
     for (Candidate* next = this->Nearest; next != this->Nearest + Last;)
     {
       if (next->IsExpanded || !(next->Squared < this->Nearest[Last].Squared))

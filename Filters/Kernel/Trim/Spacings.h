@@ -10,6 +10,11 @@
  * other meshes it finds the 6th of the vertices that it reaches. The result does not depend on the
  * order of vertices: equally near ones are expanded together, and none as far as the 6th.
  *
+ *   o   3   o       From v, its neighbours are known first; then those of 1, of 2, ... by distance.
+ *     1   2         When all that are nearer than the sixth have been expanded, a vertex still
+ *   5   v   4       unknown is at least as far as the sixth.
+ *     6   o
+ *
  * Cost: linear; about 20 neighbours are looked at for each vertex asked for.
  */
 #ifndef elevation_Trim_Spacings_h

@@ -22,6 +22,7 @@ PartialMesh MeshNear(
   const TriangleList& list, const MeshBorder& border, const IdSet& near, const Progress& progress)
 {
   std::vector<Index> triangles = TrianglesAt(list, near, progress.Between(0.0, 0.33));
+  // Two thirds of all triangles as a mesh cost about as much as all, and then nothing is left out.
   if (border.IsPart || static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
   {
     triangles = AllTriangles(list);
@@ -59,11 +60,14 @@ bool TraceSurface(const MeasuredTriangles& measured, const MeshBorder& border, I
   const SurfaceOptions& options, const Progress& progress, std::vector<char>& flags, Rings& rings)
 {
   const TriangleList& list = measured.List;
+  // Openings are closed within the triangles near the surface's border. Whether a piece is small
+  // may depend on more of it, so rounds add triangles until all pieces that look small are whole.
   const IdSet atEdge = VerticesOfSlivers(measured, near, progress.Between(0.0, 0.1));
   near = atEdge;
   double begin = 0.1; // of the round, in the progress
   for (;;)
   {
+    // Each round gets half of the progress that is left.
     // A second round is rare, a third even rarer.
     const double end = 0.5 * (1.0 + begin);
     const Progress round = progress.Between(begin, end);
@@ -77,6 +81,7 @@ bool TraceSurface(const MeasuredTriangles& measured, const MeshBorder& border, I
       : std::vector<Index>();
     if (unknown.empty())
     {
+      // Flags are put back only now: each round begins with those that came in.
       mesh.PutFlags(smooth, flags);
       rings = FindSimpleRings(mesh.Surface, smooth, round.Between(0.8, 1.0));
       ToIds(rings.Vertices, mesh.Surface.Ids.data(), round.Between(1.0, 1.0));

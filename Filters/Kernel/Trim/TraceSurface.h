@@ -5,6 +5,9 @@
  * The last steps of finding an outline: drops slivers, closes small bays and lakes, drops small
  * pieces, and traces the border of the rest.
  *
+ * In this order: a sliver that is dropped may be part of a bay; a lake that is closed is surface
+ * beside a bay; and only after these is it certain which pieces are small.
+ *
  * Cost: linear, and n log n in the triangles near the border.
  */
 #ifndef elevation_Trim_TraceSurface_h

@@ -1,5 +1,19 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Trim.h lists the passes. Here they are put together, for five callers:
+//
+//   Trim()             along lines            TrimAlongRings > TrimAlong > WriteSides
+//   TrimNear()         the same in parts      TrimAlongRings > TrimAlong > WriteSides
+//   SplitAlong()       along any lines                         TrimAlong > WriteSides
+//   Trim()             without lines                       TrimExtracted > WriteSides
+//   TrimNearOutline()  the same in parts               FindSharedOutline > WriteSides
+//
+// Only the triangles near the boundary become a mesh. WriteSides() copies the others in long runs.
+//
+// Three kinds of ids meet. The list has ids of the input's points. A mesh of near triangles numbers
+// its own points from 0 on, and Mesh::IdOf() leads back. Rings have numbers of the lines' points
+// until InsertRings() makes them vertices of the mesh.
 #include "Trim.h"
 
 #include "Outline.h"
@@ -35,6 +49,7 @@ Mesh ProvenMesh(const TriangleList& list, int threads, const Progress& progress)
 {
   Mesh mesh = MeshOf(list, ResolveNumberOfThreads(threads), progress.Between(0.0, 0.4));
   mesh.ConnectTwins(list.FirstCell, progress.Between(0.4, 0.8));
+  // Only its proof is wanted: it throws where a place is covered twice.
   FindHoles(mesh, list.FirstCell, progress.Between(0.8, 1.0));
   return mesh;
 }
@@ -54,6 +69,8 @@ using NearTriangles = std::optional<std::vector<Index>>;
 void PutBack(const TriangleList& list, const NearTriangles& near, const Mesh& mesh,
   const Progress& progress, Changes& changes)
 {
+  // A cut leaves one part of a triangle at its number and appends the others. So triangles beyond
+  // the list's are new, and one of the list has changed if its corners have.
   const Index count = near ? static_cast<Index>(near->size()) : list.Count;
   ForEachStretch(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
@@ -69,6 +86,7 @@ void PutBack(const TriangleList& list, const NearTriangles& near, const Mesh& me
       {
         changes.Changed.push_back(t);
       }
+      // Those that changed come before those that are new, as Changes::Corners has them.
       changes.Corners.insert(changes.Corners.end(), corners, corners + 3);
     }
   });
@@ -94,6 +112,7 @@ void PutBackFlags(const NearTriangles& near, std::vector<char>&& isOutward, Chan
 void PutBackInserted(const NearTriangles& near, const Mesh& mesh, InsertedRings& rings,
   Changes& changes, Trimmed& result)
 {
+  // The mesh counts its own triangles only.
   for (const Index parent : rings.Parents)
   {
     changes.Parents.push_back(near ? (*near)[parent] : parent);
@@ -151,6 +170,7 @@ void MarkBordersAround(const Mesh& mesh, const Rings& rings, Index firstOutside,
   const auto endsOf = [&](std::size_t i) {
     return Ends{ { list.Points.At(border[i].Origin), list.Points.At(border[i].Destination) } };
   };
+  // One point of each stretch is enough: the stretch does not cross the border.
   std::vector<Point2> outside;
   for (Index ring = 0; ring < rings.Count(); ++ring)
   {
@@ -168,6 +188,7 @@ void MarkBordersAround(const Mesh& mesh, const Rings& rings, Index firstOutside,
   {
     return;
   }
+  // As in RingLocator, a ray along x needs all edges at its height: the grid has one column.
   const auto heightsOf = [&](std::size_t i) {
     const Ends ends = endsOf(i);
     return Ends{ { { 0.0, ends[0].Y }, { 0.0, ends[1].Y } } };
@@ -183,6 +204,7 @@ void MarkBordersAround(const Mesh& mesh, const Rings& rings, Index firstOutside,
     byHeight.Visit(Point2{ 0.0, p.Y }, [&](Index i) {
       work.Tick();
       const Ends ends = endsOf(i);
+      // The half-open rule counts one of two edges that meet at the height of p.
       if ((ends[0].Y <= p.Y) != (ends[1].Y <= p.Y))
       {
         const double part = (p.Y - ends[0].Y) / (ends[1].Y - ends[0].Y);
@@ -235,10 +257,13 @@ Rings ThereAndBack(const BoundaryLines& lines)
       vertices.push_back(vertices.front());
     }
     const auto isSamePlace = [&](Index a, Index b) { return lines.Points[a] == lines.Points[b]; };
+    // A line back along itself bounds nothing, but InsertRings() and FindOutward() can treat it as
+    // any ring. Consecutive points at one place would be an edge without length.
     vertices.erase(std::unique(vertices.begin(), vertices.end(), isSamePlace), vertices.end());
     if (vertices.size() > 1)
     {
       rings.Vertices.insert(rings.Vertices.end(), vertices.begin(), vertices.end());
+      // The way back, without the two ends, which are in the ring once.
       rings.Vertices.insert(rings.Vertices.end(), vertices.rbegin() + 1, vertices.rend() - 1);
       rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
     }
@@ -255,6 +280,7 @@ NearTriangles FindNear(const TriangleList& list, const NamedPoints& points, cons
   const std::vector<BorderEdge>* known, const TrimOptions& options, const Progress& progress,
   std::vector<BorderEdge>& border, Changes& changes)
 {
+  // Where the sweep gives no answer, near stays without a value, and IsOutward is set later.
   NearTriangles near;
   if (known)
   {
@@ -290,6 +316,7 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
   std::vector<BorderEdge> border;
   const NearTriangles near = FindNear(list, lines.Points, result.Boundary, known, options,
     progress.Between(0.0, 0.3), border, changes);
+  // A proven mesh of all triangles is made with the published test, or after a sweep that failed.
   const Progress making = progress.Between(options.Test == OutwardTest::Exact ? 0.3 : 0.0, 0.5);
   Mesh mesh = near ? NearMesh(list, *near, making) : ProvenMesh(list, threads, making);
   mesh.NumberOf = options.NumberOf;
@@ -302,8 +329,10 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
   // An edge that follows the surface is counted once, also where a part of it had to be recovered.
   result.NumberOfRecoveredEdges =
     follow != Following::None ? rings.NumberOfFollowedEdges : outward.NumberOfRecoveredEdges;
+  // The new vertices come first, then the rings' points outside the mesh, which no triangle has.
   result.Places.assign(
     mesh.Points.begin() + before, mesh.Points.begin() + before + rings.Inserted.size());
+  // Ways there and back cancel out, so they enclose nothing and all would be outward.
   if (areLines)
   {
     std::fill(outward.IsOutward.begin(), outward.IsOutward.end(), char(0));
@@ -314,6 +343,7 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
     border, progress.Between(0.955, 0.96), result.OnBoundary);
   if (options.Test == OutwardTest::InwardNormal)
   {
+    // Before the published test, which keeps triangles that no boundary touches, and so hides this.
     CheckEnclosed(list, outward.IsOutward, lines.Points, result.Boundary);
     ApplyInwardNormalTest(
       mesh, outward.IsOnBoundary, outward.IsOutward, progress.Between(0.96, 0.97));
@@ -325,6 +355,7 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
   {
     CheckEnclosed(list, changes.IsOutward, lines.Points, result.Boundary);
   }
+  // From here on the rings leave the kernel: ids of the input instead of numbers of lines.Points.
   for (Index& vertex : result.Boundary.Vertices)
   {
     vertex = lines.Points.IdOf(vertex);
@@ -341,6 +372,7 @@ Message LossOf(const ExtractedBoundary& found, bool all)
   };
   const std::string tolerance = ToText(found.GapTolerance, 4);
   const std::string better = ToText(found.KeepingTolerance, 4);
+  // KeepingTolerance keeps all points, or if none is left out, at least half of the area.
   const char* const kept = found.PointsLeftOut > 0.0 ? "all points" : "half of it";
   if (all)
   {
@@ -388,6 +420,7 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   MeasuredTriangles measured;
   ExtractedBoundary found;
   Mesh mesh; // of all triangles, if the sweep fails
+  // The sweep proves and measures the triangles in one pass without making half-edges.
   if (isExact &&
     MeasureBySweep(list, options.NumberOfThreads, progress.Between(0.0, 0.6), measured))
   {
@@ -395,6 +428,7 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   }
   else
   {
+    // The sweep may have filled a part of it.
     measured = MeasuredTriangles();
     // After a sweep that failed, or from the start.
     const double begin = isExact ? 0.6 : 0.0, proven = isExact ? 0.7 : 0.45;
@@ -409,6 +443,8 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   std::vector<char> isOutward = OutwardOf(std::move(found.IsSurface));
   if (!isExact)
   {
+    // The outline's own test decided by area; the published one decides by the rings, so a warning
+    // about what the outline leaves out would not be of this result.
     result.Warning = Message();
     OutwardTriangles outward =
       FindOutward(mesh, result.Boundary, options.RecoverBoundary, progress.Between(0.9, 0.95));
@@ -434,11 +470,13 @@ void CopyCorners(const TriangleList& list, const Changes& changes, Index begin, 
   const auto copyNew = [&](std::size_t from, Index to) {
     std::copy_n(changes.Corners.begin() + 3 * from, 3, corners + 3 * (to - begin));
   };
+  // Triangles of the list are contiguous on both sides: one copy, then the few that changed.
   const Index last = std::min(end, list.Count);
   if (begin < last)
   {
     std::copy(list.CornersOf(begin), list.CornersOf(last), corners);
   }
+  // Overwrites what was just copied; @a changed moves on, so a search is made once a range only.
   for (; changed != changes.Changed.end() && *changed < end; ++changed)
   {
     copyNew(changed - changes.Changed.begin(), *changed);
@@ -449,12 +487,18 @@ void CopyCorners(const TriangleList& list, const Changes& changes, Index begin, 
   }
 }
 
+/**
+ * Writes the triangles of both sides: those of the list as their flags say, with the changes, then
+ * those that were added.
+ */
 void WriteSides(const TriangleList& list, const Changes& changes, const TrimOptions& options,
   const Progress& progress, Trimmed& result)
 {
   const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
   const std::vector<char>& flags = changes.IsOutward;
   const Index all = static_cast<Index>(flags.size());
+  // Count, sum, write: with these sums each range of triangles has its own slice of both sides, so
+  // the order is that of the input, whatever thread writes it.
   // How many outward triangles come before each range.
   constexpr Index atOnce = 1 << 13;
   const Index ranges = NumberOfRanges(all, atOnce);
@@ -471,6 +515,7 @@ void WriteSides(const TriangleList& list, const Changes& changes, const TrimOpti
   TrimmedSide* const sides[2] = { &result.Kept, &result.Outward };
   for (const int side : { 0, 1 })
   {
+    // Where nothing changes and one side gets all, the caller has that list already.
     sides[side]->IsWholeList = changes.Corners.empty() && sizes[1 - side] == 0;
     const std::size_t size = sizes[side];
     sides[side]->Corners.Resize(sides[side]->IsWholeList ? 0 : 3 * size);
@@ -483,6 +528,7 @@ void WriteSides(const TriangleList& list, const Changes& changes, const TrimOpti
     while (t < rangeEnd)
     {
       // A run of triangles on the same side.
+      // Long where the triangles are ordered by place.
       const char flag = flags[t];
       const char* const first = flags.data() + t;
       const void* other = std::memchr(first, 1 - flag, static_cast<std::size_t>(rangeEnd - t));
@@ -521,6 +567,7 @@ Trimmed TrimBy(const TriangleList& triangles, const TrimOptions& options, const 
 Trimmed TrimAlongRings(const TriangleList& triangles, const BoundaryLines& boundary,
   const std::vector<BorderEdge>* border, const TrimOptions& options)
 {
+  // Otherwise FindOutward() recovers edges that are missing, or refuses them.
   const bool isToFollow = options.Test == OutwardTest::Exact && options.RecoverBoundary &&
     options.Edges == BoundaryEdges::FollowSurface;
   return TrimBy(
@@ -565,6 +612,7 @@ Message NothingEnclosed(const Box& ofMesh, const NamedPoints& boundary, const Ri
     box.Add(boundary[vertex]);
   }
   const std::string first = NameOf(boundary[rings.Vertices.front()]);
+  // Three causes, three sentences: elsewhere, between nested rings, or in a ring within a hole.
   return MakeMessage<sentences::BoundaryEnclosesNothing>(!box.Intersects(ofMesh)
       ? MakeMessage<sentences::BoundaryElsewhere>(NameOf(box), NameOf(ofMesh))
       : rings.Count() > 1 ? MakeMessage<sentences::NothingBetweenRings>(first)

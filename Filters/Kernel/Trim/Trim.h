@@ -69,7 +69,15 @@ struct TrimOptions
   Progress Monitor;
 };
 
-/** The triangles of one side, in the order of the input; new parts of cut ones come last. */
+/**
+ * The triangles of one side, in the order of the input; new parts of cut ones come last. If a ring
+ * cuts triangle 1 of 0, 1 and 2 into a, inside, and b, outside, and 2 is outside, then
+ *
+ *   Kept      0 a,  with parents 0 1
+ *   Outward   2 b,  with parents 2 1
+ *
+ * where a has kept the number 1. Had b kept it, Outward would be b 2.
+ */
 struct TrimmedSide
 {
   /** Whether they are the whole input, unchanged; Corners is then empty. */
