@@ -100,6 +100,15 @@ public:
       corners, [&](std::size_t cell) { this->VisitItems(cell, visit); });
   }
 
+  /** The same for the square around a point: all that is at most so far from it in x and in y. */
+  template <typename Visitor>
+  void VisitAround(const Point2& p, double reach, Visitor&& visit) const
+  {
+    const std::array<Point2, 4> square{ { { p.X - reach, p.Y - reach },
+      { p.X + reach, p.Y - reach }, { p.X + reach, p.Y + reach }, { p.X - reach, p.Y + reach } } };
+    this->Visit(square, visit);
+  }
+
 private:
   template <typename Visitor>
   void VisitItems(std::size_t cell, Visitor&& visit) const
@@ -212,8 +221,8 @@ private:
       {
         // The wrong way around, so the first side replaces both.
         double left = high.X, right = low.X;
-        // A segment is one side, not also its way back; a triangle has three; a point is a side to
-        // itself.
+        // A segment is one side, not also its way back; a triangle has three, a square four; a
+        // point is a side to itself.
         for (std::size_t i = 0; i + (Count == 2) < Count; ++i)
         {
           Widen(at[i], at[(i + 1) % Count], row - margin, row + 1.0 + margin, left, right);

@@ -3,7 +3,6 @@
 #include "NearLines.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace elevation
@@ -57,10 +56,8 @@ std::vector<Index> ListNearLines(
       continue;
     }
     const double size = reach * std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
-    const std::array<Point2, 3> around{ { { p.X - 2.0 * size, p.Y - size },
-      { p.X + 2.0 * size, p.Y - size }, { p.X, p.Y + 3.0 * size } } };
     bool isNear = false;
-    grid.Visit(around, [&](Index i) { isNear = isNear || IsWithin(segments[i], p, size); });
+    grid.VisitAround(p, size, [&](Index i) { isNear = isNear || IsWithin(segments[i], p, size); });
     if (isNear)
     {
       near.push_back(id);

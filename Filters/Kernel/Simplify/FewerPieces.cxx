@@ -260,9 +260,7 @@ std::vector<char> FindHindered(
   {
     ReportStep(looking, place, placed.Count());
     const Point2 p = placed.At(place);
-    const std::array<Point2, 3> around{ { { p.X - 2.0 * reach, p.Y - reach },
-      { p.X + 2.0 * reach, p.Y - reach }, { p.X, p.Y + 3.0 * reach } } };
-    grid.Visit(around, [&](Index i) {
+    grid.VisitAround(p, reach, [&](Index i) {
       isHindered[i] = isHindered[i] ||
         (IsNear(placed, stretches[i], place) &&
           !std::binary_search(

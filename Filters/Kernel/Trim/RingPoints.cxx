@@ -221,17 +221,16 @@ private:
       const Point2 p = this->Points[point];
       Index nearest = None;
       bool isAlone = true; // of two borders in reach, one would move into the other
-      border.Grid.Visit(
-        Ends{ { { p.X - reach, p.Y - reach }, { p.X + reach, p.Y + reach } } }, [&](Index i) {
-          const Ends& segment = border.Segments[i];
-          // The grid may visit an edge twice.
-          if (i != nearest &&
-            IsInReach(segment[0], segment[1], UnitsOf(segment[0], segment[1]), SnappingReach, p))
-          {
-            isAlone = isAlone && nearest == None;
-            nearest = i;
-          }
-        });
+      border.Grid.VisitAround(p, reach, [&](Index i) {
+        const Ends& segment = border.Segments[i];
+        // The grid may visit an edge twice.
+        if (i != nearest &&
+          IsInReach(segment[0], segment[1], UnitsOf(segment[0], segment[1]), SnappingReach, p))
+        {
+          isAlone = isAlone && nearest == None;
+          nearest = i;
+        }
+      });
       if (nearest != None && isAlone)
       {
         taken.push_back({ nearest, point });
