@@ -38,6 +38,8 @@ public:
   {
   }
 
+  // In a fan, calls come in this order: SetOrigin(), then Follow() and Find() in turn until the
+  // last neighbour is reached.
   /**
    * Sets the vertex whose fan is grown next.
    * @param[in] next  the vertex of the call after this one, or None
@@ -64,6 +66,8 @@ public:
    */
   Index FindAnywhere(Index a, Index b);
 
+// The passes of Find(): candidates of the window, plain bins, tree. Each pass starts from the disc
+// that the one before has left.
 private:
   using Node = BoxTree::Node;
   struct Region;
@@ -82,6 +86,7 @@ private:
   bool CompareOne(Index slot);
   void CountExact();
   bool IsBetter(Index slot, Index other) const;
+// The same with AVX2.
 #ifdef ELEVATION_HAS_AVX2
   __attribute__((target("avx2"))) unsigned int ReachedWide(
     const Node& node, double* distances) const;
@@ -102,6 +107,8 @@ private:
   WideApexSearch::Candidates Open; ///< over the edge to OpenEnd
   Index OpenEnd = None;
 
+  // Coordinates are relative to the origin A: differences of neighbours are small, so that products
+  // lose less to rounding, and error bounds shrink with them.
   // The edge.
   double Floor = 0.0; ///< relative to the origin; boxes below are skipped
   Index Origin = None, Target = None;

@@ -17,7 +17,10 @@ namespace
  * which looks at more, ten times as many.
  */
 constexpr std::int64_t WorkPerVertex = 340;
-/** The rest of the work for a fan. */
+/**
+ * The rest of the work for a fan, in the same unit: pauses come regularly also where searches find
+ * the apex among few points.
+ */
 constexpr std::int64_t WorkPerFan = 40;
 constexpr std::int64_t WorkPerPause = 10000;
 
@@ -32,12 +35,14 @@ public:
   {
   }
 
+  // The interface that GrowAll() needs: strips, and for divide and conquer places and ids.
   class GridStrip;
   std::vector<std::unique_ptr<GridStrip>> MakeStrips(const Hull& hull, int threads);
 
   /** The points by increasing (y, x), once growth is given up. */
   Buffer<Point2> Places(const Progress& progress)
   {
+    // Growth is over, so its memory goes before divide and conquer allocates.
     this->Pool = Buffer<Ends>();
     const Buffer<Index>& order = this->Grid.Order;
     Buffer<Point2> places;
@@ -98,11 +103,16 @@ public:
     return IsLower(this->Grid.PointAt(slot), this->Grid.PointAt(this->Order[this->Begin]));
   }
 
+  // With q the lower end, the edge falls: it is the first edge of q's fan, as the triangle is to
+  // the right of that fan. With p the lower end, it is the last one of p's fan. The two cases are
+  // one line by indices, as their branch could not be predicted.
   bool RecordEdge(Index p, Index q)
   {
     const Point2 pPoint = this->Grid.PointAt(p), qPoint = this->Grid.PointAt(q);
     const bool isRising = IsLower(pPoint, qPoint);
     const Index ends[2] = { q, p };
+    // Only whether it is above the strip is tested. Below there is none: a triangle's lower end is
+    // never below the vertex, or border, that it was found from.
     const bool isInStrip = this->End == this->Grid.NumberOfPoints() ||
       IsLower(isRising ? pPoint : qPoint, this->Grid.PointAt(this->Order[this->End]));
     if (isInStrip)
@@ -112,13 +122,16 @@ public:
     return isInStrip;
   }
 
+  // For lattices, where a walk needs no search between full cells.
   bool PassCells() { return false; }
 
   Index FindAcross()
   {
+    // From High down to Low, with the unknown side on the left.
     const Index apex = this->Search.FindAnywhere(this->High, this->Low);
     if (apex == None)
     {
+      // The walk ends at the hull's right side, so there is always a point on that side.
       ThrowOpenFan(this->Grid.Ids[this->Low]);
     }
     return apex;
@@ -162,15 +175,18 @@ private:
    */
   bool GrowFan(Index lowest)
   {
+    // The highest point has no fan, and no edges recorded.
     if (lowest == this->Order[this->Grid.NumberOfPoints() - 1])
     {
       return true;
     }
     const Index first = this->Pool[lowest][0], end = this->Pool[lowest][1];
+    // The triangles below meet above this vertex: it has no triangle of its own.
     if (first == end && first != None)
     {
       return true;
     }
+    // Not empty where a pause has interrupted the fan: then it goes on from its last neighbour.
     if (this->Fan.empty())
     {
       this->Fan.Append(first);
@@ -184,6 +200,7 @@ private:
       if (current != None)
       {
         this->Search.Follow(this->Fan, end);
+        // The wide search has stopped at an edge that needs exact predicates or a wider look.
         if (this->Fan.size() == count)
         {
           this->Fan.Append(this->Search.Find(current, end));
@@ -191,10 +208,12 @@ private:
         }
         current = this->Fan[this->Fan.size() - 1];
       }
+      // None or too many neighbours: the fan runs past its last edge, which must not happen.
       if (current == None || this->Fan.size() > static_cast<std::size_t>(this->Order.size()))
       {
         ThrowOpenFan(this->Grid.Ids[lowest]);
       }
+      // Also within a fan: one vertex may have most points of the cloud as neighbours.
       if (current != end && this->Budget.IsPaused())
       {
         return false;
@@ -235,6 +254,8 @@ private:
 /** One strip per thread. */
 std::vector<std::unique_ptr<Growth::GridStrip>> Growth::MakeStrips(const Hull& hull, int threads)
 {
+  // A walk passes about as many triangles as a row of the strip has points, and more; with fewer
+  // points per strip, walks would cost a noticeable share of the growth.
   constexpr Index fewestPerStrip = 5000;
   const Index count = this->Grid.NumberOfPoints(), perStrip = this->Options.PointsPerStrip;
   const Index number = perStrip > 0 ? (count - 1) / perStrip + 1

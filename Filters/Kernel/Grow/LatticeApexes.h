@@ -33,6 +33,10 @@ struct Offset
   std::int64_t X, Y;
 };
 
+/**
+ * In 64 bits, as Apex::Dot: offsets have at most 20 bits (NodeBox), the metric has 20 (Metric.h).
+ * Only comparisons, which multiply two of these, take 128 bits.
+ */
 inline std::int64_t Cross(const Offset& p, const Offset& q)
 {
   return p.X * q.Y - p.Y * q.X;
@@ -59,6 +63,7 @@ inline int CompareQuotients(const Apex& p, const Apex& q)
   return CompareProducts(p.Dot, q.Cross, q.Dot, p.Cross);
 }
 
+// For divide and conquer, whose points are nodes in doubles.
 /** InCircle() in the metric, of nodes as points (column, row); a, b, c are counter-clockwise. */
 inline Sign InNodeCircle(
   const LatticeMetric& metric, const Point2& a, const Point2& b, const Point2& c, const Point2& d)
@@ -104,6 +109,7 @@ public:
   /** Nodes between the ends of their rows that are not occupied. */
   std::int64_t NumberOfGaps() const;
 
+  // By far the most searches end here: a few bits of the bitmap are looked at.
   /**
    * Looks for the apex in the list of an edge vector. Thread-safe.
    * @return false if there is no list, or the apex is beyond it
@@ -145,6 +151,7 @@ private:
   };
   using Entries = std::vector<Entry>;
 
+  // The first threads that want a list at the same time all make it; one of them is kept.
   /** The list of an edge vector; null if it is long, or was asked for only a few times so far. */
   const Entries* ListOf(const Offset& e)
   {

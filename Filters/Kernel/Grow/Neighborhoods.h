@@ -22,6 +22,7 @@ namespace elevation
  * The points around a leaf of the tree: those in the boxes of all its points, relative to its
  * middle. Vertices of a full bin come in the order of y, so several leaves alternate.
  */
+// A plain struct of fixed size: recent ones are reused in place, without memory to allocate.
 struct Neighborhood
 {
   static constexpr int MostPoints = 120;
@@ -34,6 +35,7 @@ struct Neighborhood
   Index Slots[Room];
 };
 
+// Each strip has its own, so nothing is shared between threads.
 /** The neighborhoods of recent slots. */
 class Neighborhoods
 {

@@ -23,9 +23,16 @@
 namespace elevation
 {
 
+// A window takes WidestVectors, EvenVectors or MostVectors vectors of eight floats:
+// - AVX-512: up to 32 points of 6 x 4 bins, packed into two vectors of sixteen;
+// - AVX2, even density: one vector for each of the four rows, a fifth for what is beyond eight;
+// - smaller windows of bins, or a box: packed into as many as are needed.
+// For each of the numbers there is one instance of the search (WideApexSearch.cxx), whose loops
+// over vectors the compiler unrolls.
 class PointWindows
 {
 public:
+  // Below 64: a lane is a bit of a 64-bit mask, and its number fits the six lowest bits of a float.
   static constexpr int Capacity = 56;       ///< points of a window
   static constexpr int Room = Capacity + 8; ///< as whole vectors are written
   static constexpr int WidestVectors = 4, EvenVectors = 5, MostVectors = Capacity / 8;
@@ -42,6 +49,8 @@ public:
     void Set(double reach, double error, double margin);
   };
 
+  // Lanes: vector i holds lanes 8 i to 8 i + 7. A lane of a list's excess may have the slot of a
+  // point of another bin, so a slot counts only where the coordinate is not NaN.
   /** The points around a vertex, relative to it; lanes with NaN are empty. */
   struct Window
   {
@@ -87,6 +96,8 @@ private:
   static constexpr int RowRoom = 40;            // as whole vectors are read
   static constexpr std::size_t MostPerBin = 32; // mean in rows for which windows are made
 
+  // Rounded once per row, not once per window: each point is in the windows of some twenty
+  // vertices.
   /** The points of a row of bins in units from the grid's corner. */
   struct Row
   {
@@ -116,6 +127,7 @@ private:
   // Windows of bins; none when PerUnit is 0.
   double PerUnit = 0.0; ///< units of windows per unit of the grid
   Bounds ShapeBounds[NumberOfShapes];
+  // One more than columns: the last one is the right border of the last column.
   std::vector<std::int32_t> ColumnBounds; ///< left bounds of the columns
   std::vector<Index> Nothing;             ///< the starts of a row beyond the last
   Row Rows[MostRows];                     ///< by their number modulo MostRows

@@ -22,6 +22,8 @@ namespace elevation
  * @throws NotOnLattice if a point is on no node, or two that are not equal on one. Whether
  *         triangles are flat in the coordinates of the points is not checked.
  */
+// Cells/Pieces.cxx calls it for each piece of a cloud. All pieces have the same metric, so their
+// triangles fit together.
 Triangulation TriangulateNodes(const PointView& points, const SharedLattice& lattice,
   const DelaunayOptions& options, bool isFilled);
 

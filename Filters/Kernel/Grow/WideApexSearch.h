@@ -47,6 +47,7 @@ public:
   /** Gathers the window of a vertex, see PointWindows. */
   bool Gather(Index origin, Index next = None) { return this->Windows.Gather(origin, next); }
 
+  // More than one candidate means ties, or points too close for single precision.
   struct Candidates
   {
     std::uint64_t Bits = 0; ///< lanes, numbers that SlotOf() takes
@@ -78,6 +79,7 @@ private:
                        EvenVectors = PointWindows::EvenVectors,
                        MostVectors = PointWindows::MostVectors;
 
+  // The functions in the order of use: place the end, search, prove, sift, decide.
   bool PlaceEnd(Index b, std::uint64_t lanes, float& x, float& y) const;
   template <int Vectors>
   Candidates Search(float bx, float by, int& guess) const;
