@@ -14,6 +14,7 @@ namespace elevation
 std::string NameOf(const Point2& p)
 {
   char text[64];
+  // Ten digits: enough to find a point in map coordinates, and readable.
   std::snprintf(text, sizeof(text), "(%.10g, %.10g)", p.X, p.Y);
   return text;
 }
@@ -36,7 +37,12 @@ std::string NameOf(const Mesh& mesh, Index vertex)
 
 namespace
 {
-/** Names the first edge that is not manifold, in the order of its lower and higher vertex id. */
+/**
+ * Names the first edge that is not manifold, in the order of its lower and higher vertex id.
+ * TwinFinder has only found out that there is one: which one it met depends on the order of
+ * triangles, and a message should not. So all edges are sorted here, once it is clear that the mesh
+ * is refused.
+ */
 [[noreturn]] void ThrowNotManifold(const Mesh& mesh, Index firstCell, const Progress& progress)
 {
   struct Edge
@@ -83,9 +89,21 @@ namespace
 }
 
 /**
- * Pairs the half-edges of a mesh. Vertices are numbered in the order in which triangles name them,
- * so that neighbours are near in memory. Rising half-edges, which lead to a vertex of a higher
- * number, are sorted by origin; each falling one looks for its twin among those of its destination.
+ * Pairs the half-edges of a mesh: a counting sort over vertices, and no hash table. Vertices are
+ * numbered in the order in which triangles name them, so that neighbours are near in memory. Rising
+ * half-edges, which lead to a vertex of a higher number, are sorted by origin; each falling one
+ * looks for its twin among those of its destination.
+ *
+ *     b    b->a falls (a < b); its twin a->b rises and is listed at a, with the others that leave
+ *    / \   a for a higher number. About three rise at each vertex, so the list is compared whole.
+ *   a---c
+ *
+ * The passes:
+ * 1. NumberVertices() gives the numbers.
+ * 2. CountRising() counts for each vertex, and adds up where its list begins.
+ * 3. ListRising() writes the lists; each begin moves to its end.
+ * 4. SortWhereMany() sorts the long lists by destination, for binary search.
+ * 5. ConnectFalling() finds the twins, and notes an edge with two half-edges of one direction.
  */
 class TwinFinder
 {
@@ -161,7 +179,10 @@ private:
     }
   }
 
-  /** Sets Ends[v + 1] to the number of rising half-edges that leave vertices up to v. */
+  /**
+   * Sets Ends[v + 1] to the number of rising half-edges that leave vertices up to v, which is where
+   * the list of v + 1 begins.
+   */
   void CountRising(const Progress& progress)
   {
     this->Ends.Resize(static_cast<std::size_t>(this->Used) + 1);
@@ -170,6 +191,7 @@ private:
     ForEachStretch(this->Surface.NumberOfTriangles(), progress, [&](Index begin, Index end) {
       this->ForEachHalfEdge(begin, end, [&](Index, Index a, Index b) { ends[a + 1] += a < b; });
     });
+    // A running sum: from numbers to places.
     for (std::size_t v = 1; v < this->Ends.size(); ++v)
     {
       ends[v] += ends[v - 1];
@@ -196,6 +218,7 @@ private:
 
   void SortWhereMany(const Progress& progress)
   {
+    // Ends now are ends: the list of v begins where that of the vertex before ends.
     for (Index v = 0, first = 0; v < this->Used; first = this->Ends[v++])
     {
       if (this->Ends[v] - first > Many)
@@ -213,12 +236,16 @@ private:
 
   bool ConnectFalling(const Progress& progress)
   {
+    // Two half-edges of one direction without a twin are not noticed here: both stay borders, and
+    // HasDistinctBorders() finds them.
     const Index last = this->Surface.NumberOfHalfEdges() - 1, total = this->Ends[this->Used];
     bool isManifold = true;
     FallingEdge falling[3 * Few];
     ForEachStretch(this->Surface.NumberOfTriangles(), progress, [&](Index begin, Index end) {
       for (; begin < end; begin += Few)
       {
+        // Each group of triangles twice: the falling half-edges are listed first, without branches,
+        // then connected.
         // Prefetch what is needed soon, but not in order.
         constexpr Index ahead = 1 << 13, line = 16;
         for (Index h = 3 * begin; h < 3 * begin + 3 * Few; h += line)
@@ -252,6 +279,7 @@ private:
       const auto isBefore = [](const RisingEdge& p, Index end) { return p.Destination < end; };
       first = static_cast<Index>(
         std::lower_bound(rising + first, rising + last, edge.Origin, isBefore) - rising);
+      // More than one match would be adjacent.
       last = std::min(last, first + AtOnce);
     }
     Index twin = 0;
@@ -272,9 +300,12 @@ private:
     }
     if (matches != 1)
     {
+      // None: a border. Several rising ones: the edge is not manifold.
       return matches == 0;
     }
     std::vector<Index>& twins = this->Surface.Twins;
+    // A rising half-edge that has a twin already would get a second one: another falling one ran
+    // here.
     const bool isFree = twins[twin] == Mesh::Border;
     twins[edge.HalfEdge] = twin;
     twins[twin] = edge.HalfEdge;
@@ -323,6 +354,8 @@ namespace
  * more; -1 for equal directions, where two borders lie back to back with an empty wedge of no width
  * between them.
  */
+// Angles are compared by class first, then by one Orientation() within a class: exact, without
+// computing an angle.
 int TurnClass(const Point2& b, const Point2& r, const Point2& u)
 {
   const Sign side = Orientation(b, r, u);
@@ -342,7 +375,11 @@ bool TurnsToFirst(const Point2& b, const Point2& r, const Point2& u, const Point
   return uClass != vClass ? uClass < vClass : Orientation(b, u, v) == Positive;
 }
 
-/** Walks along the border of a mesh; the members carry data between its passes. */
+/**
+ * Walks along the border of a mesh; the members carry data between its passes. Mostly one border
+ * leaves each vertex, and the walk is a chain of look-ups. Where several do, their directions
+ * decide.
+ */
 class BorderWalker
 {
 public:
@@ -367,6 +404,7 @@ private:
   using Place = std::vector<Leave>::const_iterator;
 
   /** Where more meet, they are sorted by angle from the one in Leaving, for binary search. */
+  // Below, comparing all is faster. Without the search, a star of many pinches would be quadratic.
   static constexpr std::ptrdiff_t Many = 16;
 
   void FindBorders(const Progress& progress)
@@ -378,6 +416,7 @@ private:
       for (Index h = 3 * begin; h < 3 * end; ++h)
       {
         const bool isKept = isWhole || keep[Mesh::Triangle(h)];
+        // The border of flagged triangles also runs along edges to triangles that are not flagged.
         if (isKept && (mesh.IsBorder(h) || (!isWhole && !keep[Mesh::Triangle(mesh.Twin(h))])))
         {
           this->Borders.push_back(h);
@@ -417,6 +456,8 @@ private:
         Sort(
           first, last,
           [&](const Leave& u, const Leave& v) {
+            // Equal directions, of overlapping borders, are ordered by place: the order must be
+            // strict.
             return TurnsToFirst(p, from, this->EndOf(u.second), this->EndOf(v.second)) ||
               (u.second < v.second &&
                 !TurnsToFirst(p, from, this->EndOf(v.second), this->EndOf(u.second)));
@@ -430,6 +471,11 @@ private:
   /**
    * The border after h = a->b in its walk: the empty wedge at b opens counter-clockwise from b->a,
    * and the next border closes it.
+   *
+   *    surface           surface      h runs to the right, with the surface above it. Turning
+   *   a-------->b------->             counter-clockwise from b->a, one meets empty space, then the
+   *    empty   / \ surface            first border that leaves b: the walk goes on with it, and
+   *           v   \                   leaves the others at b to walks around their own wedges.
    */
   Index Following(Index h) const
   {
@@ -438,6 +484,8 @@ private:
     const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
     Index best = this->Leaving[b];
     Place other = this->FirstAt(b);
+    // Sorted from the direction of the first border that leaves b: the answer is the first one
+    // after that of b->a, or, past the last, the first border itself.
     if (this->Further.end() - other > Many && other[Many].first == b)
     {
       const Place last = this->FirstAt(b + 1);
@@ -479,6 +527,8 @@ private:
       } while (!seen[i]);
       walks.Offsets.push_back(static_cast<Index>(walks.Vertices.size()));
     }
+    // A walk ends at its own start: following borders is one to one, as each wedge has one opening
+    // and one closing border.
     return walks;
   }
 
@@ -507,6 +557,7 @@ Rings TraceBorder(const Mesh& mesh, const Progress& progress, const std::vector<
 
 void KeepTriangles(const std::vector<char>& keep, Mesh& mesh)
 {
+  // In place, as no triangle moves up. A twin whose triangle goes becomes a border.
   std::vector<Index> placeOf(keep.size(), None);
   Index count = 0;
   for (std::size_t t = 0; t < keep.size(); ++t)

@@ -27,6 +27,7 @@
 namespace elevation
 {
 
+// For code that has points but no mesh, such as rings and lines.
 /** Points, and the ids by which messages name them; without ids, by their indices. */
 struct NamedPoints
 {

@@ -25,8 +25,13 @@ namespace elevation
 /** The ends of a segment. */
 using Ends = std::array<Point2, 2>;
 
+/**
+ * A grid of cells over the segments, each entered in every cell that it touches, for Visit() by a
+ * point, a segment or a triangle.
+ */
 CellGrid GridOf(const std::vector<Ends>& segments, const Progress& progress = Progress());
 
+// Touching is not crossing: an end on the other segment is found as a vertex on it (IsInside).
 /** Whether two segments cross: each has the ends of the other on opposite sides. */
 bool Cross(const Ends& s, const Ends& t);
 
@@ -69,6 +74,7 @@ void VisitCrossings(const std::vector<Ends>& segments, const CellGrid& grid,
  * Calls visit(0) for the first and visit(1) for the second end of a segment if it is in reach of
  * the other segment, which has these units. @return whether any is
  */
+// See SnapRounding.h: lines that rounding has moved are bent to a vertex that is within reach.
 template <typename Visitor>
 bool VisitEndsInReach(
   const Ends& segment, const Ends& other, const RoundingUnits& units, double reach, Visitor&& visit)
@@ -110,6 +116,7 @@ void SortAlong(Cuts& cuts, EndsOf&& endsOf, PlaceOf&& placeOf, const Progress& p
 }
 
 /** Part of one or several segments. */
+// Constrain/CutLines.cxx cuts lines to pieces; where lines overlap, one piece stands for several.
 struct SegmentPiece
 {
   Index A; ///< vertices; equal for a point that no segment ends in

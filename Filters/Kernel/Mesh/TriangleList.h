@@ -15,6 +15,7 @@
 namespace elevation
 {
 
+// What filters have before a mesh exists. TriangleSweep reads it in place; MeshOf() copies it.
 /** Triangles in the layout of a cell array, and their points; not owned. */
 struct TriangleList
 {
@@ -35,6 +36,7 @@ struct TriangleList
     Point2 a = this->Points.At(this->CornersOf(t)[0]);
     Point2 b = this->Points.At(this->CornersOf(t)[1]);
     Point2 c = this->Points.At(this->CornersOf(t)[2]);
+    // The lowest corner first: rounding depends on the order of operands.
     while (IsLower(b, a) || IsLower(c, a))
     {
       const Point2 first = a;

@@ -10,6 +10,11 @@
  * border. Each thread sweeps over a range of triangles; triangles with a vertex that is also in
  * another range are deferred to the end.
  *
+ *       d---c        Triangles come by their lowest vertex, here p: b c, c d and d e over p. Edges
+ *      / \ / \       p-c and p-d lie inside the fan: they are matched without any memory. Of b-c,
+ *     e---p---b      c-d and d-e the half-edges stay open until the triangle above comes. Those of
+ *                    p-b and e-p are matched with half-edges that triangles below have left open.
+ *
  * Cost: linear. The triangles should come in the order of a sweep over the plane, as those of this
  * kernel do: then the open half-edges fit into the records of their vertices. Where too many do
  * not, the sweep is given up. Memory: one Visitor::Vertex a point, and a bit a point for each
@@ -32,7 +37,7 @@
 namespace elevation
 {
 
-/** What the sweep keeps of a vertex. */
+/** What the sweep keeps of a vertex; a visitor's Vertex adds its own. */
 struct SweptVertex
 {
   Point2 Place{ 0.0, 0.0 };
@@ -55,6 +60,7 @@ struct SweptEdge
   Index Upper;
 };
 
+// "Up" and "down" are by the order of points, not by ids: ids may be in any order.
 /**
  * The half-edges whose twins have not come yet. Each is stored at the lower end of its edge, which
  * has room for one that leads up and one that leads down: no more are open at a time when triangles
@@ -74,6 +80,7 @@ public:
   /** Matches a half-edge with its open twin; without one, leaves it open. */
   void Add(const SweptEdge& edge)
   {
+    // Three conditions in one test without branches: room, no twin here, and none in the set.
     // The fast path, as most stay open. A half-edge that is open already takes the slow one.
     Vertex& at = this->Vertices[edge.Lower];
     if ((at.Upper[edge.IsDown] == None) & (at.Upper[1 - edge.IsDown] != edge.Upper) &
@@ -111,6 +118,7 @@ public:
       twin = None;
       return true;
     }
+    // The count keeps most vertices away from the hash set.
     if (at.NumberOfOthers == 0 || this->Others.erase(KeyOf(edge, 1 - edge.IsDown)) == 0)
     {
       return false;
@@ -128,6 +136,7 @@ public:
       open = edge.Upper;
       return;
     }
+    // The same half-edge twice is an edge with two triangles on one side: no surface.
     const bool isNew = open != edge.Upper && this->Others.insert(KeyOf(edge, edge.IsDown)).second;
     ++at.NumberOfOthers;
     this->Failed = this->Failed || !isNew || this->Others.size() > this->Most;
@@ -147,6 +156,7 @@ public:
   void AddStoredAt(Index vertex, std::vector<BorderEdge>& border) const
   {
     const Vertex& at = this->Vertices[vertex];
+    // None is -1, all bits set: the result is None only if both are.
     if ((at.Upper[0] & at.Upper[1]) != None)
     {
       if (at.Upper[0] != None)
@@ -196,6 +206,7 @@ inline bool IsExactlyCounterClockwise(Point2 a, Point2 b, Point2 c)
 
 inline bool IsCounterClockwise(Point2 a, Point2 b, Point2 c)
 {
+  // NaN fails every comparison, and so does infinity less infinity.
   // The filter of Orientation(), which coordinates that are not finite never pass.
   const double left = (a.X - c.X) * (b.Y - c.Y);
   const double right = (a.Y - c.Y) * (b.X - c.X);
@@ -224,6 +235,7 @@ public:
   {
     static_assert(std::is_trivially_destructible<Vertex>::value, "nobody destroys them");
     this->Memory.Resize(static_cast<std::size_t>(list.Points.Count));
+    // Not constructed here, but by Read() on all threads: the first write to a page is what costs.
     this->Vertices = reinterpret_cast<Vertex*>(this->Memory.data());
   }
 
@@ -243,6 +255,8 @@ public:
         return static_cast<Index>(static_cast<std::int64_t>(this->List.Count) * k / number);
       };
       this->Ranges.emplace_back(Range{ at(i), at(i + 1), at(i),
+        // So many open half-edges that do not fit into vertices: with more, the order of triangles
+        // is not that of a sweep, and the hash set would take too long.
         OpenEdges<Vertex>(this->Vertices, 1024 + static_cast<std::size_t>(this->List.Count) / 64),
         visitor, IdSet(number > 1 ? this->List.Points.Count : 0), {} });
     }
@@ -251,6 +265,7 @@ public:
       return false;
     }
     bool isRight = true;
+    // Several ranges: first each marks its corners, then corners of two ranges are found.
     if (number > 1)
     {
       isRight = this->InRanges(
@@ -324,6 +339,7 @@ public:
   }
 
 private:
+  // What one thread works on; no vertex is written by two, as triangles with shared ones wait.
   struct alignas(64) Range // against false sharing
   {
     Index Begin, End, Next;
@@ -332,6 +348,7 @@ private:
     IdSet Corners;
     std::vector<Index> Deferred; ///< triangles with a vertex of another range
   };
+  // Plain bytes of a vertex: Buffer holds plain values only, and does not initialise them.
   struct alignas(Vertex) Storage
   {
     unsigned char Bytes[sizeof(Vertex)];
@@ -394,6 +411,7 @@ private:
   template <typename GoOn>
   bool InRanges(const Progress& progress, GoOn&& goOn)
   {
+    // The same ranges are walked through twice: by Mark(), then by Sweep().
     for (Range& range : this->Ranges)
     {
       range.Next = range.Begin;
@@ -427,6 +445,8 @@ private:
   /** Whether the points of corners [begin, end) exist. */
   bool Exist(std::size_t begin, std::size_t end) const
   {
+    // Unsigned, a negative id is large, and most - id wraps around for an id beyond: bit 31 shows
+    // both.
     const std::uint32_t most = static_cast<std::uint32_t>(this->List.Points.Count - 1);
     std::uint32_t sign = 0; // of ids below 0 or beyond the last
     for (std::size_t h = begin; h < end; ++h)
@@ -460,6 +480,7 @@ private:
     const std::size_t count = 3 * static_cast<std::size_t>(this->List.Count);
     const Index begin = range.Next;
     const Index end = range.Next += std::min(AtOnce, range.End - begin);
+    // Corners are checked before anything is read by them, also those that are only prefetched.
     const std::size_t known = std::min(count, 3 * static_cast<std::size_t>(end) + ahead + 3);
     const std::size_t reach = known < count ? ahead : 0;
     if (!this->Exist(3 * static_cast<std::size_t>(begin), known))
@@ -489,6 +510,7 @@ private:
     const Index* ids = this->List.CornersOf(begin);
     const Index* const lastIds = this->List.CornersOf(end);
     Index t = begin;
+    // One fan after another: the triangles that follow each other around a first corner.
     while (ids < lastIds)
     {
       const Index first = ids[0];
@@ -504,6 +526,8 @@ private:
       Vertex& r = vertices[right];
       visitor.Begin(p, r);
       Index last = right;
+      // The upper edges of the fan; its inner edges cancel out, as consecutive triangles share
+      // them.
       Vertex* b = &r;
       do
       {
@@ -519,6 +543,7 @@ private:
         ids += 3;
         ++t;
       } while (ids < lastIds && ids[0] == first && ids[1] == last && isOurs(ids[2]));
+      // Mostly both ends of the fan have open twins from the triangles below.
       if (!edges.MatchBoth(p, right, last))
       {
         // First match both: a match makes room for the other one to stay open.
@@ -537,6 +562,7 @@ private:
   /** Sweeps over the deferred triangles of all ranges. @return whether all are valid */
   bool SweepDeferred(const Progress& progress)
   {
+    // On one thread, after the others have ended: now any vertex may be written.
     Range& all = this->Ranges[0];
     std::vector<Index> triangles;
     for (Range& range : this->Ranges)
@@ -559,6 +585,7 @@ private:
       }
       const Index first = triangles[i];
       Index end = first;
+      // Consecutive numbers in one go, so that fans stay whole.
       for (; i < triangles.size() && triangles[i] == end && end - first < AtOnce; ++i)
       {
         ++end;

@@ -88,6 +88,7 @@ public:
     });
   }
 
+  // Recovery calls this for every half-edge of the triangles that it has written.
   /** Enters half-edge h at its origin, in place of one that may no longer exist. */
   void Replace(const Mesh& mesh, Index h)
   {
@@ -131,6 +132,8 @@ private:
   Index Toward(const Mesh& mesh, Index from, Index to);
 
   /** An edge of a vertex when its star was sorted; the half-edge may no longer exist. */
+  // The vertex is kept, as its position gives the direction in which the star was sorted, whatever
+  // the half-edge has become since.
   struct Spoke
   {
     Index Vertex; ///< at its other end
