@@ -16,6 +16,8 @@ namespace elevation
 namespace
 {
 
+// Growth relies on reduced steps: full cells are Delaunay in their metric (LatticeGrowth.h). Steps
+// that are reduced already stay as the user gave them, to the last digit.
 /** A lattice with the same nodes and reduced steps; the given one if it has them. */
 Lattice Reduced(const Lattice& given)
 {
@@ -40,6 +42,7 @@ double StepsBeside(const NodeFinder& nodeOf, const Point2& p)
 Lattice CheckedSteps(const Lattice& given)
 {
   const Point2 &u = given.StepU, &v = given.StepV;
+  // NaN for steps of no length or not finite, which the comparison then refuses.
   const double sine = std::fabs(given.Area()) / std::sqrt(Dot(u, u) * Dot(v, v));
   if (!std::isfinite(given.Origin.X + given.Origin.Y) || !(sine > 1e-6))
   {

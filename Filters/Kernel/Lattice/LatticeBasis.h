@@ -43,7 +43,10 @@ void Reduce(Point2& u, Point2& v);
  */
 void Direct(Point2& u, Point2& v);
 
-/** A basis of the lattice that the vectors inserted so far generate. */
+/**
+ * A basis of the lattice that the vectors inserted so far generate. Of rank 0 at first, 1 while all
+ * vectors are parallel, then 2.
+ */
 class Generators
 {
 public:
@@ -62,6 +65,7 @@ public:
   Point2 U{ 0.0, 0.0 }, V{ 0.0, 0.0 };
 
 private:
+  // Whether p is a remainder that counts as zero, measured by the vector that it was divided by.
   bool IsNegligible(const Point2& p, const Point2& than) const;
   bool Take(const std::array<Point2, 3>& set, int rank)
   {

@@ -21,6 +21,9 @@ constexpr std::size_t Crowd = 32;      // of the sample, in a place that is cut 
 constexpr double SampleSize = 1024.0;
 constexpr int MostCells = 64; // along each side of the first histogram
 
+// A sample by hash is the same for any order of points and any division into parts: a point is in
+// it, or not, by its own coordinates. Multiplication and shifts spread regular coordinates evenly;
+// a grid sampled by rows or columns would look like a line.
 /** A hash of 32 evenly distributed bits, the same for equal points. */
 std::uint64_t HashOf(const Point2& p)
 {
@@ -52,6 +55,7 @@ std::uint64_t HashLimit(double size, double count)
 class alignas(64) PlaceSet // against false sharing
 {
 public:
+  // Half full at most, so a search ends after few slots.
   void Add(const Point2& p)
   {
     if (2 * this->Count >= this->Slots.size())
@@ -94,6 +98,7 @@ private:
   {
     const std::vector<Point2> places = this->Places();
     const double nan = std::numeric_limits<double>::quiet_NaN();
+    // Twice as many; 64 at first.
     this->Slots.assign(std::max<std::size_t>(64, 4 * this->Count), { nan, nan });
     for (const Point2& p : places)
     {
@@ -127,7 +132,10 @@ std::vector<Point2> JoinPicked(Picked sets, const Progress& progress)
   return places;
 }
 
-/** Cells over a box, to find where most points are. */
+/**
+ * Cells over a box, to find where most points are. Of several fullest cells the first is taken, so
+ * the choice depends on the points alone.
+ */
 struct Histogram
 {
   Histogram(const Box& box, int cells)
@@ -176,9 +184,11 @@ struct Histogram
   std::vector<Index> Counts;
 };
 
+// Before KeepFullest(), whose halving would need many passes over so many points.
 /** Keeps only the points in the fullest cell of their box, repeatedly, until few are left. */
 void KeepFullestCells(std::vector<Point2>& points, const Progress& progress)
 {
+  // Between two reports.
   constexpr std::size_t few = 1 << 16;
   while (points.size() > few)
   {
@@ -192,7 +202,10 @@ void KeepFullestCells(std::vector<Point2>& points, const Progress& progress)
   }
 }
 
-/** Keeps the fullest part of a set of distinct points until few are left. */
+/**
+ * Keeps the fullest part of a set of distinct points until few are left: the half with more points
+ * of the longer side, again and again.
+ */
 void KeepFullest(std::vector<Point2>& points)
 {
   while (points.size() > Neighbors)
@@ -277,6 +290,8 @@ Box FullestPlace(const LatticeSample& sample)
 {
   Box place = sample;
   std::vector<Point2> crowd = sample.Points;
+  // A histogram of the crowd, then of its fullest cell, and so on. Each has so many cells that a
+  // mean one holds as many points of the cloud as the search wants.
   for (int depth = 0; depth < 64 && crowd.size() > Crowd; ++depth)
   {
     const double here = sample.Count * (crowd.size() / static_cast<double>(sample.Points.size()));
@@ -284,6 +299,7 @@ Box FullestPlace(const LatticeSample& sample)
     Histogram histogram(place, static_cast<int>(std::min(std::max(cells, 1.0), 1.0 * MostCells)));
     if (histogram.Side < 2 || !histogram.HasCells())
     {
+      // A cell holds few enough points, or the place cannot be divided in doubles.
       break;
     }
     const int fullest = histogram.KeepFullest(crowd);

@@ -11,7 +11,11 @@ namespace elevation
 namespace
 {
 
-/** Least-squares fit of an origin and two steps to points whose nodes are known. */
+/**
+ * Least-squares fit of an origin and two steps to points whose nodes are known: of o, u and v so
+ * that the sum of |p - o - i u - j v|^2 is least. Sums are kept, so a fit to more points costs no
+ * second look at the earlier ones.
+ */
 class Fit
 {
 public:
@@ -38,10 +42,12 @@ public:
     {
       return false;
     }
+    // Relative to the means, so that the origin drops out of the equations.
     const double i = this->I / this->N, j = this->J / this->N;
     const double ii = this->II - i * this->I, ij = this->IJ - i * this->J;
     const double jj = this->JJ - j * this->J;
     const double determinant = ii * jj - ij * ij;
+    // Nodes nearly on one line would give steps across it that rounding errors have made.
     if (!(determinant > 0.05 * ii * jj) || !(determinant > 0.5))
     {
       return false;
@@ -91,6 +97,7 @@ public:
   /** @return false when no lattice fits, or it has more nodes in the sample's box than allowed */
   bool Run(double tolerance, double extent, double mostNodes, Lattice& lattice)
   {
+    // Far more than there can be: each refinement halves the cell at least, until it is too fine.
     constexpr int mostRounds = 64;
     Outcome outcome = Outcome::Refined;
     for (int round = 0; round < mostRounds && outcome == Outcome::Refined; ++round)
@@ -101,6 +108,7 @@ public:
     {
       return false;
     }
+    // From nodes that are rounded once more, as better steps may move far points to other nodes.
     // Fit the whole sample twice: from the directed steps, then from the fitted ones.
     Direct(this->Steps.StepU, this->Steps.StepV);
     if (!this->FitAll() || !this->FitAll())
@@ -133,6 +141,8 @@ private:
     }
     this->Steps = { { 0.0, 0.0 }, this->Basis.U, this->Basis.V };
     Fit fit;
+    // Fitted anew whenever there are a quarter more points: the steps are then good enough for
+    // those that follow, which are little farther away.
     std::size_t next = 8;
     Point2 beside{ 0.0, 0.0 }; // farthest from the line while there is only one step
     for (std::size_t k = 0; k < this->Sample.size(); ++k)
@@ -147,6 +157,7 @@ private:
       beside = Dot(rest, rest) > Dot(beside, beside) ? rest : beside;
       if (k + 1 == next && this->Basis.Rank == 2)
       {
+        // Where it cannot, the steps stay.
         fit.Solve(this->Steps.Origin, this->Steps.StepU, this->Steps.StepV);
         next += next / 4;
       }
@@ -167,6 +178,7 @@ private:
     rest = Minus(p, this->Steps.Origin);
     if (this->Basis.Rank == 2)
     {
+      // For rank 1: the distance from the line through the nodes; for rank 0, from the first point.
       const Point2 steps = this->Steps.InSteps(p);
       const double i = std::round(steps.X), j = std::round(steps.Y);
       rest = Minus(Minus(rest, u, i), v, j);
@@ -198,6 +210,8 @@ private:
   {
     Point2 &u = this->Steps.StepU, &v = this->Steps.StepV, &origin = this->Steps.Origin;
     const double length = std::sqrt(std::min(Dot(u, u), Dot(v, v)));
+    // A step's error is multiplied by the number of steps across the cloud: there, it is a
+    // millionth.
     const double allowed = 1e-6 * length * std::min(1.0, length / extent);
     u = { Rounded(u.X, allowed), Rounded(u.Y, allowed) };
     v = { Rounded(v.X, allowed), Rounded(v.Y, allowed) };
@@ -208,6 +222,7 @@ private:
   /** Whether all points are near nodes, and the nodes are not too many. */
   bool IsWithin(double tolerance, double mostNodes) const
   {
+    // A little more than the tolerance: Nodes.h checks all points exactly.
     const double far = 1.01 * tolerance + 1e-8;
     Box box; // in steps
     for (const Point2& p : this->Sample)
