@@ -9,6 +9,11 @@
  * neighbouring bins of a row are contiguous; duplicates set aside. Where density is even, a bin
  * holds about one point. Where it is not, some bins hold many, and a tree of boxes over the bins
  * leads to few of them (BoxTree.h).
+ *   row 2 | 7  | 8 9|    | 10 |    Slots go through the bins row by row, so the points of any
+ *   row 1 | 3 4|    | 5  | 6  |    stretch of a row are contiguous: here slots 5 and 6 for the
+ *   row 0 |    | 0 1| 2  |    |    last two bins of row 1. Starts has the first slot of each bin;
+ *                                  Order has the slots of a row by (y, x), as growth takes them.
+ *
  * The passes: find the bounds and lay out the bins; sort the points into blocks of rows that fit
  * into a core's cache; in each block sort the points into bins, build a part of the tree, sort the
  * rows by (y, x), and set duplicates aside, which are then adjacent; join the blocks. The blocks

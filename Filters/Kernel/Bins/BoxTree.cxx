@@ -12,6 +12,9 @@ namespace
 using Child = BoxTree::Child;
 using Node = BoxTree::Node;
 
+// The passes: BuildBins() halves rows and columns of bins until a part is a run of bins of one row
+// (BuildRun); a full bin goes on by points (BuildFullBin, BuildCluster). Join() puts the trees of
+// all blocks under one root, and gives nodes their parents and slots their leaves.
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 // A bin with more points is halved until no part has more; rare if points are evenly spread.
 constexpr Index FullBin = 24;
@@ -30,6 +33,8 @@ Child AddNode(const Child* children, std::size_t count, Buffer<Node>& nodes)
   {
     const Child child = place < count ? children[place] : Child();
     node.LowX[place] = child.Size > 0 ? child.Bounds.Low.X : Infinity;
+    // The empty box of a place without child fails every comparison, so loops test all eight
+    // places.
     node.HighX[place] = child.Size > 0 ? child.Bounds.High.X : -Infinity;
     node.LowY[place] = child.Size > 0 ? child.Bounds.Low.Y : Infinity;
     node.HighY[place] = child.Size > 0 ? child.Bounds.High.Y : -Infinity;
@@ -83,12 +88,14 @@ private:
     bool IsLeaf() const { return this->Size() <= FullBin || this->Bounds.Low == this->Bounds.High; }
   };
 
+  // A chain of nodes with one child each would cost steps and hold nothing.
   /** Joins children in a node; a single one needs none. */
   Child Join(const Child* children, int count)
   {
     return count == 0 ? Child() : count == 1 ? children[0] : AddNode(children, count, this->Nodes);
   }
 
+  // Of several rows never, as a leaf must be a range of slots.
   /** Whether the part is a leaf, empty, or one bin: not to be divided by rows and columns. */
   bool IsUndivided(const Part& part) const
   {
@@ -119,7 +126,10 @@ private:
     return this->Grid.Slots(part.FirstRow, part.FirstColumn, part.EndColumn - 1);
   }
 
-  /** About half, rounded up to whole units if there are several. */
+  /**
+   * About half, rounded up to whole units if there are several: then parts of eight rows or sixteen
+   * columns come out whole, and the lowest nodes are full.
+   */
   static Index HalfOf(Index count, Index unit)
   {
     return count > unit ? (count / 2 + unit - 1) / unit * unit : count / 2;
@@ -144,6 +154,7 @@ private:
     parts[0] = whole;
     areas[0] = whole.Area();
     int count = 1;
+    // The part with the largest area is halved, until there are eight or none is worth it.
     while (count < Node::Places)
     {
       const auto widest = std::max_element(areas, areas + count) - areas;
@@ -154,6 +165,7 @@ private:
       Part& part = parts[widest];
       Part& other = parts[count++];
       other = part;
+      // Rather by rows: a leaf is a run of columns, up to sixteen of them.
       if (part.Rows() == 1 || (part.Columns() > part.Rows() && part.Columns() > LeafColumns))
       {
         part.EndColumn = other.FirstColumn = part.FirstColumn + HalfOf(part.Columns(), LeafColumns);
@@ -198,6 +210,8 @@ private:
     return child;
   }
 
+  // Its points are copied out, sorted by the tree's order, and written back to the same slots: bins
+  // keep their slots, only the order within this bin changes.
   Child BuildFullBin(std::pair<Index, Index> slots)
   {
     Cluster cluster{ slots.first, slots.second, Box() };
@@ -220,6 +234,7 @@ private:
       });
       return { whole.Bounds, whole.Begin, whole.Size(), whole.Size() };
     }
+    // As in BuildBins(), by numbers of points instead of areas.
     // Parts that fit into one node are not divided further, so that the lowest nodes are full.
     constexpr Index fitting = Node::Places * FullBin;
     const bool isLowest = whole.Size() <= fitting;
@@ -291,6 +306,8 @@ private:
     cluster.End = other.Begin;
     for (Cluster* half : { &cluster, &other })
     {
+      // The boxes of the points themselves, not of the cut: they are smaller, and skip the void
+      // between.
       Box bounds;
       this->ForEach({ half->Begin, half->End }, [&](Index slot) {
         bounds.Add({ this->Points[slot].X, this->Points[slot].Y });
@@ -303,6 +320,7 @@ private:
   template <typename Key>
   Placed* Divide(const Cluster& cluster, const Key& key, double value, bool isWide)
   {
+    // If the value is the lowest coordinate, "below" would leave one part empty.
     const bool hasBefore = (isWide ? cluster.Bounds.Low.X : cluster.Bounds.Low.Y) < value;
     Placed* end = this->Points + cluster.Begin;
     this->ForEach({ cluster.Begin, cluster.End }, [&](Index slot) {
@@ -350,6 +368,7 @@ BoxTree::Child BoxTree::Build(
 
 void BoxTree::Join(std::vector<Child> roots, Index slots, const Progress& progress)
 {
+  // A root that is a leaf gets a node, too: searches begin at a node.
   // Level by level, eight at a time, until there is one root.
   while (roots.size() > 1 || roots.front().Count > 0)
   {
@@ -364,6 +383,8 @@ void BoxTree::Join(std::vector<Child> roots, Index slots, const Progress& progre
   this->Nodes.Shrink();
   Report(progress, 1.0);
 
+  // From the root down: parents are known before their children are looked at. Where leaves share
+  // eight slots, the last one enters its node.
   this->LeafNodes.Resize((static_cast<std::size_t>(slots) + 7) / 8);
   this->Nodes[this->Nodes.size() - 1].Parent = None;
   StepCount steps;
@@ -400,6 +421,7 @@ BoxTree::Step BoxTree::StepTo(Index node) const
   }
   const Node& parent = this->Nodes[own.Parent];
   int place = 0;
+  // A leaf's First is a slot, which may have the same number as a node.
   while (parent.First[place] != node || parent.Count[place] > 0)
   {
     ++place;
@@ -411,12 +433,16 @@ BoxTree::Step BoxTree::StepTo(Index node) const
 BoxTree::Step BoxTree::Lowest(Index slot, const Point2& p) const
 {
   const Index eight = slot / 8, last = static_cast<Index>(this->LeafNodes.size()) - 1;
+  // Eight slots may belong to several leaves; the entry names the node above one of them. The
+  // others are mostly below the same node, or known at the neighbouring eight.
   for (Index at : { eight, std::max(eight - 1, 0), std::min(eight + 1, last) })
   {
     const Node& node = this->Nodes[this->LeafNodes[at]];
     unsigned int isWithin = 0;
     for (int place = 0; place < Node::Places; ++place)
     {
+      // Of a child node Count is 0, which no difference is below. Unsigned, one comparison does for
+      // both ends.
       const unsigned int after = static_cast<unsigned int>(slot - node.First[place]);
       isWithin |= after < static_cast<unsigned int>(node.Count[place]);
     }

@@ -17,6 +17,8 @@
 namespace elevation
 {
 
+// Small enough for the cache, since its points are moved several times: into bins, into the tree's
+// order, into rows.
 struct GridBlock
 {
   /** A block has about this many points, so that it fits into a core's cache. */

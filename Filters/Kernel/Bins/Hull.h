@@ -38,6 +38,8 @@ struct Hull
 template <typename Turn>
 Hull FindHull(const Buffer<Index>& candidates, const Turn& turn, const Progress& progress)
 {
+  // The right chain turns left at each vertex, the left one, upwards too, right. A point that would
+  // turn the other way takes its predecessors off. Collinear points stay.
   Hull hull;
   for (const Sign outside : { Negative, Positive }) // the empty side of the right and left chain
   {

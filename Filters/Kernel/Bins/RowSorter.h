@@ -19,6 +19,8 @@
 namespace elevation
 {
 
+// By y only: x decides where y is equal, in the comparison. Most rows have many points spread
+// evenly over their height, so buckets take less time than comparisons.
 class RowSorter
 {
 public:
@@ -36,6 +38,8 @@ public:
    */
   void Sort(std::pair<Index, Index> slots, double low, double high, Index* order)
   {
+    // The memory of the block's points, which are in their slots by now: entries in its front part,
+    // slots for deeper levels behind.
     const double* const y = this->Grid.Y + slots.first;
     const Index count = slots.second - slots.first, first = slots.first;
     static_assert(
@@ -50,6 +54,7 @@ public:
   }
 
 private:
+  // So many entries are sorted by insertion, which is faster than anything else for them.
   static constexpr Index Few = 16;
   static constexpr int MaximumDepth = 3;
 
@@ -102,6 +107,7 @@ private:
   void Sort(
     const Get& get, Entry* sorted, Index* room, Index count, double low, double high, int depth)
   {
+    // As many buckets as entries: one in each, if y is even.
     const double last = count - 1;
     const double perHeight = last / (high - low);
     if (count <= Few || depth > MaximumDepth || !(perHeight > 0.0 && perHeight <= DBL_MAX))
@@ -131,6 +137,7 @@ private:
       const Entry entry = get(i);
       sorted[ends[bucketOf(entry)]++] = entry;
     });
+    // After the counting pass, ends[b] is the begin of bucket b; writing has moved it to the end.
     Index reported = 0;
     for (Index begin = 0, bucket = 0; fullest > Few && begin < count; begin = ends[bucket++])
     {
@@ -148,12 +155,14 @@ private:
           lowest = y < lowest ? y : lowest;
           highest = y > highest ? y : highest;
         });
+        // Only slots are copied, as get() must not read where the deeper level writes.
         Index* const from = room + begin;
         this->ForEach(0, size, [&](Index i) { from[i] = sorted[begin + i].Slot; });
         this->Sort(
           Listed{ from, this->Grid.Y }, sorted + begin, from, size, lowest, highest, depth + 1);
       }
     }
+    // Buckets are in order, and each has few entries or is sorted, so this is linear.
     this->Insert(sorted, count);
   }
 

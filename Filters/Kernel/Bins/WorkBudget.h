@@ -29,6 +29,7 @@ public:
    * @param perPause  work between two looks at whether the round is over
    */
   WorkBudget(std::int64_t most, Index vertices, std::int64_t perPause)
+    // The allowance lets a small strip have a few expensive vertices.
     : Most(most * (static_cast<std::int64_t>(vertices) + 1000))
     , PerPause(perPause)
   {
@@ -39,6 +40,8 @@ public:
   void Spend(std::int64_t work) { this->Spent += work; }
   std::int64_t Work() const { return this->Spent; }
 
+  // Work is counted, not time: whether growth is given up depends on the input alone, and so do
+  // tests.
   /** @throws CannotGrow if more is spent than allowed */
   void Check() const
   {
