@@ -28,6 +28,7 @@ public:
     : A(a)
     , Az(az)
   {
+    // z = az + X dx + Y dy with dx and dy from the corner a; by Cramer's rule.
     double bx = b.X - a.X, by = b.Y - a.Y, cx = c.X - a.X, cy = c.Y - a.Y;
     const double db = bz - az, dc = cz - az;
     // Scaled by a power of two, so that their products neither overflow nor vanish.
@@ -66,6 +67,7 @@ private:
   /** More than the results above lose together that are below the least normal number. */
   static constexpr double Smallest = 8.0 * std::numeric_limits<double>::denorm_min();
 
+  // A difference that becomes subnormal may lose bits; then there is no bound.
   /** @return whether nothing was lost */
   static bool Scale(double& difference, double scale)
   {

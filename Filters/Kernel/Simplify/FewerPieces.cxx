@@ -16,6 +16,7 @@ namespace
 {
 constexpr double BesidePerLength = 0.001; // of the shorter piece at a point
 
+// Rather too large: what is near by rounding counts as near.
 /** Of a place from the line through two others; with what rounding may have taken from it. */
 double DistanceFromLine(const Point2& p, const Point2& q, const Point2& r)
 {
@@ -27,7 +28,10 @@ double DistanceFromLine(const Point2& p, const Point2& q, const Point2& r)
   return std::fabs(along.X * (r.Y - p.Y) - along.Y * (r.X - p.X)) + unit * largest;
 }
 
-/** The pieces at each place. */
+/**
+ * The pieces at each place: each piece in both directions, sorted by position, so that the ways
+ * from a place are contiguous and nothing depends on the order of pieces.
+ */
 class Network
 {
 public:
@@ -53,6 +57,8 @@ public:
   std::vector<std::vector<Index>> Chains(const Progress& progress)
   {
     std::vector<std::vector<Index>> chains;
+    // Closed lines that pass no point that stays are what is left after the open ones. The first
+    // way left of one is from its lowest point, as ways are sorted.
     for (const bool areOpen : { true, false })
     {
       const Progress half = areOpen ? progress.Between(0.0, 0.5) : progress.Between(0.5, 1.0);
@@ -89,6 +95,7 @@ private:
       !std::binary_search(this->Corners.begin(), this->Corners.end(), place);
   }
 
+  // In both directions, so that a chain is followed once.
   void Take(std::size_t way)
   {
     const Segment there = this->Ways[way];
@@ -116,6 +123,7 @@ private:
       {
         return chain;
       }
+      // Of the two ways from here, the one that does not lead back.
       way = this->WaysFrom(at).first;
       way += this->IsTaken[way] ? 1 : 0;
     }
@@ -143,6 +151,7 @@ struct Range
 };
 
 /** A stretch of a chain that one piece replaces: the places from First to Last. */
+// A chain by address: chains are all made before the first stretch.
 struct Stretch
 {
   const std::vector<Index>* Chain;
@@ -166,6 +175,7 @@ public:
   Stretch From(const std::vector<Index>& chain, std::size_t first) const
   {
     const Point2 from = this->Placed.At(chain[first]);
+    // Coordinates along and across the first piece: slopes are then small numbers.
     const Point2 next = this->Placed.At(chain[first + 1]);
     const double length = this->Length(chain, first);
     const Point2 along{ (next.X - from.X) / length, (next.Y - from.Y) / length };
@@ -178,12 +188,15 @@ public:
       const double u = (p.X - from.X) * along.X + (p.Y - from.Y) * along.Y;
       const double v = (p.Y - from.Y) * along.X - (p.X - from.X) * along.Y;
       const double z = this->Elevation(chain[i]) - this->Elevation(chain[first]);
+      // The point must be an end within all earlier bounds, and farther than the points before: a
+      // line that turns back is not straight.
       if (!(u > reached) || !beside.Contains(v / u) || !above.Contains(z / u))
       {
         break;
       }
       last = i;
       reached = u;
+      // If it is not the end, it is to be passed, and bounds the slopes of what follows.
       if (i + 1 < chain.size())
       {
         const double reach = std::min(this->Length(chain, i - 1), this->Length(chain, i));
@@ -209,6 +222,7 @@ private:
     for (std::size_t i = first + 1; i < last; ++i)
     {
       const Point2 r = this->Placed.At(chain[i]);
+      // 0 means exactly straight: then nothing can lie between the line and the piece.
       if (Orientation(p, q, r) != Zero)
       {
         largest = std::max(largest, DistanceFromLine(p, q, r));
@@ -221,6 +235,7 @@ private:
   const double Error;
 };
 
+// Twice, so that two stretches that are each bent a little do not meet either.
 /** Whether a place that is not an end is within twice the distance of a stretch's own places. */
 bool IsNear(const PlacedPoints& placed, const Stretch& one, Index place)
 {
@@ -236,6 +251,7 @@ bool IsNear(const PlacedPoints& placed, const Stretch& one, Index place)
 std::vector<char> FindHindered(
   const PlacedPoints& placed, const std::vector<Stretch>& stretches, const Progress& progress)
 {
+  // The grid holds the new pieces; all points are looked up in it.
   const auto endsOf = [&](std::size_t i) {
     return std::array<Point2, 2>{ { placed.At(stretches[i].Begin()),
       placed.At(stretches[i].End()) } };
@@ -260,6 +276,7 @@ std::vector<char> FindHindered(
   {
     ReportStep(looking, place, placed.Count());
     const Point2 p = placed.At(place);
+    // A triangle around the square of this reach, as the grid takes triangles.
     const std::array<Point2, 3> around{ { { p.X - 2.0 * reach, p.Y - reach },
       { p.X + 2.0 * reach, p.Y - reach }, { p.X, p.Y + 3.0 * reach } } };
     grid.Visit(around, [&](Index i) {
@@ -305,6 +322,7 @@ std::vector<Segment> FewerPieces(const PlacedPoints& placed, const std::vector<S
   for (std::size_t i = 0; i < bent.size(); ++i)
   {
     const Stretch& one = bent[i];
+    // Hindered: the line stays, piece by piece.
     const std::size_t step = isHindered[i] ? 1 : one.Last - one.First;
     for (std::size_t at = one.First; at < one.Last; at += step)
     {

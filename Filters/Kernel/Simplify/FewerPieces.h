@@ -18,6 +18,10 @@
  * those left out changes its side of a line. Two lines with the same ends may become one piece,
  * given twice.
  *
+ *        :b   :          A piece from a must pass b, c and d within a reach of each (the dots):
+ *   a----+----+--:---    each narrows the range of its slopes. The stretch ends before a point
+ *        :    :c :d      whose own slope is not in the range that those before it leave.
+ *
  * So little beside, because a point that has been left out may be needed later after all, and is
  * then inserted beside the piece.
  *

@@ -15,7 +15,10 @@ namespace elevation
 
 namespace
 {
-/** Keeps the strict corners of a hull, which has candidates by increasing (y, x). */
+/**
+ * Keeps the strict corners of a hull, which has candidates by increasing (y, x). Other points on
+ * its edges need not become vertices.
+ */
 std::vector<Index> CornersOf(const PlacedPoints& placed, const Buffer<Index>& candidates)
 {
   const auto turn = [&placed](Index p, Index q, Index r) {
@@ -40,7 +43,10 @@ std::vector<Index> CornersOf(const PlacedPoints& placed, const Buffer<Index>& ca
   return corners;
 }
 
-/** Puts the points of a bin in order, from the lowest up. */
+/**
+ * Puts the points of a bin in order, from the lowest up: in the grid they are in the order of ids,
+ * or of the tree, and the choice of points must not depend on ids.
+ */
 void SortBin(BinGrid& grid, Index bin)
 {
   Index slot = grid.Starts[bin];
@@ -79,6 +85,7 @@ void SortBins(BinGrid& grid, int threads, const Progress& progress)
     binsAtOnce);
 }
 
+// Hull points are known by their slots before sorting, so their positions are kept and found again.
 /** The slot of a point after SortBins(). */
 Index SlotOf(const BinGrid& grid, const Point2& point)
 {
@@ -96,6 +103,7 @@ Index SlotOf(const BinGrid& grid, const Point2& point)
 Buffer<Index> SortedCandidates(BinGrid& grid, int threads, const Progress& progress)
 {
   std::vector<Point2> corners;
+  // Before the bins are sorted: the hull's search needs the order that the grid has now.
   const Hull hull = FindHull(grid, Progress());
   for (const std::vector<Index>* chain : { &hull.RightChain, &hull.LeftChain })
   {
@@ -150,6 +158,7 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
   {
     return false;
   }
+  // Places have the order of ranks: those of a row begin where all lower rows end.
   const auto placesBefore = [&nodes](Index row) {
     return row < nodes.Rows ? nodes.RankOf(nodes.NodeAt(row, 0)) : nodes.NumberOfPoints();
   };
@@ -168,6 +177,7 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
       }
     }
   });
+  // The ends of rows: nodes between them are no strict corners.
   Buffer<Index> candidates;
   for (Index row = 0; row <= nodes.Rows; ++row)
   {
@@ -236,6 +246,7 @@ std::vector<Segment> PiecesByPlaces(
   {
     ids.insert(ids.end(), { piece.A, piece.B });
   }
+  // The pieces' points are few, all points many: one pass over all looks each up among the few.
   Sort(ids.begin(), ids.end(), std::less<Index>(), progress.Between(0.0, 0.3));
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   std::vector<Index> placeOf(ids.size(), None);
