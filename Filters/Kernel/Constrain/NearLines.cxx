@@ -11,6 +11,7 @@ namespace elevation
 namespace
 {
 
+// Rather too many points than too few: CutLines() looks at those that are sent exactly.
 /** Whether a point is at most so far from a segment, or little more. */
 bool IsWithin(const Ends& segment, const Point2& p, double distance)
 {
@@ -45,6 +46,7 @@ std::vector<Index> ListNearLines(
       largest = std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
     }
   }
+  // Only the points are many: the lines are in the grid.
   const CellGrid grid = GridOf(segments, progress.Between(0.0, 0.2));
   const Progress looking = progress.Between(0.2, 1.0);
   std::vector<Index> near;
@@ -57,6 +59,7 @@ std::vector<Index> ListNearLines(
       continue;
     }
     const double size = reach * std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
+    // A triangle around the square of this reach, as the grid takes triangles.
     const std::array<Point2, 3> around{ { { p.X - 2.0 * size, p.Y - size },
       { p.X + 2.0 * size, p.Y - size }, { p.X, p.Y + 3.0 * size } } };
     bool isNear = false;

@@ -14,6 +14,7 @@ namespace elevation
 namespace
 {
 
+// A sort instead of a hash table: the lowest id of equal points is then known at once.
 /** Makes one vertex of each place of the lines' points. @return the vertex of each point */
 std::vector<Index> CollectPoints(
   const ConstraintLines& lines, const Progress& progress, std::vector<LineVertex>& vertices)
@@ -79,6 +80,7 @@ void SegmentNetwork::Collect(const ConstraintLines& lines, const Progress& progr
   const std::vector<Index> vertexOf =
     CollectPoints(lines, progress.Between(0.0, 0.5), this->Vertices);
   std::vector<char> hasSegment(this->Vertices.size(), 0);
+  // From the lower end up, so that segments in both directions are the same.
   lines.VisitSegments([&](Index line, Index k, Index next) {
     Index p = vertexOf[lines.Vertices[k]], q = vertexOf[lines.Vertices[next]];
     if (p != q)
@@ -108,6 +110,7 @@ void SegmentNetwork::Collect(const ConstraintLines& lines, const Progress& progr
   }
 }
 
+// The one of the lowest rank stays, as it comes first.
 void SegmentNetwork::JoinEqualPieces(const Progress& progress)
 {
   Sort(

@@ -52,6 +52,10 @@ struct ConstraintLines
 Index LinePoint(const ConstraintLines& lines, Index line, Index k);
 
 /** A vertex of the lines. */
+/**
+ * Vertices of lines come first, in the order of their ids; then input points on lines; then
+ * crossings.
+ */
 struct LineVertex
 {
   Point2 Position;
@@ -62,10 +66,12 @@ struct LineVertex
 };
 
 /** Vertices, and the pieces of segments between them. */
+// Plain data: CutLines.cxx and SegmentCrossings.cxx both work on it, in turn.
 struct SegmentNetwork
 {
   std::vector<LineVertex> Vertices;
   std::vector<SegmentPiece> Pieces; ///< each from its lower end to its upper one
+  // Only as current as the last EnterInGrid(): a round finds all cuts before it makes them.
   std::vector<Ends> PieceEnds;      ///< as entered in the grid
   CellGrid Grid{ GridOf({}) };
   std::vector<Segment> Segments;   ///< by rank, which is the order of the lines
