@@ -18,6 +18,7 @@ namespace elevation
 
 bool Cell::HoldsCircle(Point2 a, Point2 b, Point2 c) const
 {
+  // The last level: everything left is settled.
   if (this->IsWholePlane())
   {
     return true;
@@ -34,6 +35,7 @@ bool Cell::HoldsCircle(Point2 a, Point2 b, Point2 c) const
   const double bx = b.X - a.X, by = b.Y - a.Y, cx = c.X - a.X, cy = c.Y - a.Y;
   const double d = 2.0 * (bx * cy - by * cx);
   const double errorD = unit * (std::fabs(bx * cy) + std::fabs(by * cx));
+  // A triangle so thin has a circle that is not known: it is left to the larger cell.
   if (!(std::fabs(d) > 4.0 * errorD && std::fabs(d) > smallest))
   {
     return false;
@@ -44,6 +46,7 @@ bool Cell::HoldsCircle(Point2 a, Point2 b, Point2 c) const
   const double error = relative *
     (std::fabs(cy * b2) + std::fabs(by * c2) + std::fabs(bx * c2) + std::fabs(cx * b2)) /
     std::fabs(d);
+  // A bound that is rounded up; the box around the circle is then rounded outwards once more.
   const double radius = std::hypot(x, y) * (1.0 + unit) + 4.0 * error;
   const auto isInside = [radius](double corner, double centre, double low, double high) {
     const double rounding = unit * (std::fabs(corner) + std::fabs(centre) + radius);
@@ -91,6 +94,8 @@ void CheckAbort(const Progress& progress, std::size_t step)
   }
 }
 
+// The passes, in SettleCell() and SettleSeams(): Triangulated() with what is covered,
+// MarkSettled(), SeamOf(), KeepSettled().
 /** The mesh of points, with the state of its triangles. */
 struct SettledMesh
 {
@@ -128,6 +133,8 @@ void MarkCovered(SettledMesh& mesh)
   {
     return;
   }
+  // Only for seams, which are few points: a cell's first triangulation has nothing covered, and no
+  // twins.
   Mesh surface;
   surface.Points.resize(static_cast<std::size_t>(mesh.Points.Count));
   surface.Triangles.assign(mesh.Result.Triangles.begin(), mesh.Result.Triangles.end());
@@ -143,11 +150,14 @@ void MarkCovered(SettledMesh& mesh)
       stack.push_back(h / 3);
     }
   }
+  // The theory of Pieces.h says that they are all edges of the triangulation: this is a test of the
+  // code.
   if (found != mesh.Seam.size())
   {
     throw std::logic_error(
       "An edge of a settled triangle is missing in the triangulation of seams.");
   }
+  // A flood: covered triangles are those within closed chains of such edges.
   while (!stack.empty())
   {
     const Index t = stack.back();
@@ -175,6 +185,8 @@ void MarkCovered(SettledMesh& mesh)
 std::vector<char> FindBorder(
   Index numberOfPoints, const Buffer<Index>& triangles, const Progress& progress)
 {
+  // Around a vertex of the border, the sum is the difference of the two ends of its fan: never 0.
+  // Unsigned, as sums may wrap around.
   std::vector<std::uint32_t> sums(static_cast<std::size_t>(numberOfPoints), 0);
   for (std::size_t i = 0; i < triangles.size(); i += 3)
   {
@@ -197,6 +209,7 @@ SettledMesh Triangulated(const PointView& points, const std::vector<Index>& edge
   options.UseLattice = LatticeMode::Off;
   SettledMesh mesh;
   mesh.Points = points;
+  // Edges come with seams only.
   const bool areAll = edges.empty(); // points of a cell: mostly a lattice well filled
   mesh.Result =
     lattice ? TriangulateNodes(points, *lattice, options, areAll) : Triangulate(points, options);
@@ -220,6 +233,9 @@ bool Has(const std::vector<Edge>& sorted, Index from, Index to)
  * The edges of settled or covered triangles that have none of these on their right.
  * @param[in] open  the edges of open triangles, sorted
  */
+// An edge of a seam separates what is settled from an open triangle or from the outside. From open
+// triangles, edges are known by their twins; those at the outside are found among edges between
+// border points.
 std::vector<Edge> FindSeamEdges(
   const std::vector<Edge>& open, const SettledMesh& mesh, const Progress& progress)
 {
@@ -278,6 +294,7 @@ Piece SeamOf(const SettledMesh& mesh, const Progress& progress)
     }
     return placeOf[vertex];
   };
+  // Sorted, so that places in the seam depend on the points, not on the order of triangles.
   std::vector<Edge> open;
   for (std::size_t t = 0; t < mesh.States.size(); ++t)
   {
@@ -342,6 +359,8 @@ void MarkSettled(
 
 /**
  * The points on the border of the mesh, or near that of its box: few, if they are spread evenly.
+ * The distance is half the fourth root of their number n, in spacings, so that some n^(3/4) points
+ * are near.
  */
 std::vector<char> FindNear(const SettledMesh& mesh)
 {

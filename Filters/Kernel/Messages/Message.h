@@ -26,6 +26,10 @@
 namespace elevation
 {
 
+// An example, with the values of its Message:
+//   Code    InvalidThreads
+//   Text    {property:NumberOfThreads} is {value}; it must be 0 (those of VTK) to {most}.
+//   Values  value = -1, most = 256
 /** A code, and the text of its messages. */
 struct Sentence
 {
@@ -34,6 +38,7 @@ struct Sentence
 };
 
 /** How many values a text has places for. One that comes again counts once; properties do not. */
+// At compile time, see MakeMessage(): a place that the text names twice takes one value.
 constexpr std::size_t CountValues(std::string_view text)
 {
   std::size_t count = 0;
@@ -78,6 +83,7 @@ public:
   static Message Unpack(const std::string& bytes);
   ///@}
 
+  // All that a message has is in its bytes.
   bool operator==(const Message& other) const { return this->Pack() == other.Pack(); }
 
 private:
@@ -91,6 +97,7 @@ private:
   std::vector<Value> Values;
 };
 
+// One type for all kinds of values, so that MakeMessage() passes them as one list.
 /** What a place is filled with: a number, a text, or another message. */
 class Message::Argument
 {
@@ -134,6 +141,7 @@ Message MakeMessage(const Values&... values)
   return Message(sentence, { Message::Argument(values)... });
 }
 
+// For programs that catch it; elsewhere it is an Error with its sentence.
 /** An Error as data. */
 class CodedError : public Error
 {
