@@ -19,6 +19,7 @@ using Node = BoxTree::Node;
 // Three divisions of the points meet here, so the words mean here: a piece is a stretch of the
 // input; a group is eight rows or more; a block is some consecutive groups with about as many
 // points as a core's cache holds. Pieces are read in parallel, blocks are filled in parallel.
+
 // The mean: with fewer, searches visit many empty bins; with more, they look at points in vain.
 constexpr double PointsPerBin = 1.0;
 // The input is read in pieces of this many points, each by one thread.
@@ -246,8 +247,8 @@ private:
     this->Grid.RowLow.Resize(bins.Rows);
     this->Grid.RowHigh.Resize(bins.Rows);
 
-    // Where density is uneven, a block may hold most of the points: one row cannot be divided.
-    // The few large blocks come last, and report their own progress.
+    // The few large blocks come last, and report their own progress. Where density is uneven, a
+    // block may hold most of the points: one row cannot be divided.
     const auto isLarge = [&bins](const GridBlock& block) { return block.Pieces(bins) > 1; };
     const double large = std::accumulate(this->Blocks.begin(), this->Blocks.end(), 0.0,
       [&](double points, const GridBlock& block) { return points + isLarge(block) * block.Count; });

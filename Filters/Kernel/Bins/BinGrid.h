@@ -9,6 +9,7 @@
  * neighbouring bins of a row are contiguous; duplicates set aside. Where density is even, a bin
  * holds about one point. Where it is not, some bins hold many, and a tree of boxes over the bins
  * leads to few of them (BoxTree.h).
+ *
  *   row 2 | 7  | 8 9|    | 10 |    Slots go through the bins row by row, so the points of any
  *   row 1 | 3 4|    | 5  | 6  |    stretch of a row are contiguous: here slots 5 and 6 for the
  *   row 0 |    | 0 1| 2  |    |    last two bins of row 1. Starts has the first slot of each bin;

@@ -88,15 +88,19 @@ private:
     bool IsLeaf() const { return this->Size() <= FullBin || this->Bounds.Low == this->Bounds.High; }
   };
 
-  // A chain of nodes with one child each would cost steps and hold nothing.
-  /** Joins children in a node; a single one needs none. */
+  /**
+   * Joins children in a node; a single one needs none. A chain of nodes with one child each would
+   * cost steps and hold nothing.
+   */
   Child Join(const Child* children, int count)
   {
     return count == 0 ? Child() : count == 1 ? children[0] : AddNode(children, count, this->Nodes);
   }
 
-  // Of several rows never, as a leaf must be a range of slots.
-  /** Whether the part is a leaf, empty, or one bin: not to be divided by rows and columns. */
+  /**
+   * Whether the part is a leaf, empty, or one bin: not to be divided by rows and columns. Of
+   * several rows never, as a leaf must be a range of slots.
+   */
   bool IsUndivided(const Part& part) const
   {
     if (part.Rows() > 1)
@@ -234,8 +238,8 @@ private:
       });
       return { whole.Bounds, whole.Begin, whole.Size(), whole.Size() };
     }
-    // As in BuildBins(), by numbers of points instead of areas.
-    // Parts that fit into one node are not divided further, so that the lowest nodes are full.
+    // Parts that fit into one node are not divided further, so that the lowest nodes are full. As
+    // in BuildBins(), by numbers of points instead of areas.
     constexpr Index fitting = Node::Places * FullBin;
     const bool isLowest = whole.Size() <= fitting;
     Cluster clusters[Node::Places];
@@ -368,8 +372,8 @@ BoxTree::Child BoxTree::Build(
 
 void BoxTree::Join(std::vector<Child> roots, Index slots, const Progress& progress)
 {
-  // A root that is a leaf gets a node, too: searches begin at a node.
-  // Level by level, eight at a time, until there is one root.
+  // Level by level, eight at a time, until there is one root. A root that is a leaf gets a node,
+  // too: searches begin at a node.
   while (roots.size() > 1 || roots.front().Count > 0)
   {
     std::vector<Child> above;

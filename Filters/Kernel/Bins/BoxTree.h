@@ -8,13 +8,14 @@
  *
  * In: binned points. Out: the tree, and the slots of full bins in the order of its leaves. A leaf
  * is a range of slots: bins of a row, or a few points of a full bin, which is halved until its
- *               [ root ]          A leaf of bins: up to 16 bins of one row, with 32 points.
+ * parts are small. A node has the boxes of up to eight children, which have no point in common.
+ *
+ *              [ root ]            A leaf of bins: up to 16 bins of one row, with 32 points.
  *            /    |   ...  \       A leaf of a full bin: up to 24 points, halved near the
  *       [node] [node] ... [node]   median across the longer side. Children are up to eight,
  *       / | .. \                   so that wide instructions test all boxes of a node in two
  *    leaf leaf leaf                steps of four.
  *
- * parts are small. A node has the boxes of up to eight children, which have no point in common.
  * Cost: linear; n log n in full bins.
  */
 #ifndef elevation_Bins_BoxTree_h
@@ -59,8 +60,10 @@ public:
     bool IsRoot() const { return this->Node->Parent == None; }
   };
 
-  // From a slot upwards: a search around a vertex seldom needs the upper levels.
-  /** The node above the leaf that holds a slot, whose point is p. */
+  /**
+   * The node above the leaf that holds a slot, whose point is p. From a slot upwards: a search
+   * around a vertex seldom needs the upper levels.
+   */
   Step Lowest(Index slot, const Point2& p) const;
   /** The parent of a node that is not the root. */
   Step Above(const Step& step) const { return this->StepTo(step.Node->Parent); }

@@ -29,8 +29,8 @@ Buffer<Index> RowExtremes(const BinGrid& grid, const Progress& progress)
     {
       continue;
     }
-    // The end of the first bin that is not empty, and the begin of the last one.
-    // In the outermost bins with points.
+    // In the outermost bins with points: up to the end of the first one, and from the begin of the
+    // last one on.
     const Index* bounds = &grid.Starts[static_cast<std::size_t>(row) * columns];
     const Index firstEnd = *std::upper_bound(bounds, bounds + columns + 1, slots.first);
     const Index lastBegin = std::lower_bound(bounds, bounds + columns + 1, slots.second)[-1];

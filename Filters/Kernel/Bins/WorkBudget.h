@@ -40,9 +40,11 @@ public:
   void Spend(std::int64_t work) { this->Spent += work; }
   std::int64_t Work() const { return this->Spent; }
 
-  // Work is counted, not time: whether growth is given up depends on the input alone, and so do
-  // tests.
-  /** @throws CannotGrow if more is spent than allowed */
+  /**
+   * Work is counted, not time: whether growth is given up depends on the input alone, and so do
+   * tests.
+   * @throws CannotGrow if more is spent than allowed
+   */
   void Check() const
   {
     if (this->Spent > this->Most)

@@ -96,6 +96,7 @@ void CheckAbort(const Progress& progress, std::size_t step)
 
 // The passes, in SettleCell() and SettleSeams(): Triangulated() with what is covered,
 // MarkSettled(), SeamOf(), KeepSettled().
+
 /** The mesh of points, with the state of its triangles. */
 struct SettledMesh
 {

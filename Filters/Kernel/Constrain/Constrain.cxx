@@ -16,8 +16,10 @@ namespace elevation
 namespace
 {
 
-// Ids of input points stay, so triangles need no translation.
-/** Input points and added ones in one array; empty if nothing is added. */
+/**
+ * Input points and added ones in one array; empty if nothing is added. Ids of input points stay, so
+ * triangles need no translation.
+ */
 Buffer<double> JoinPoints(
   const PointView& points, const std::vector<AddedPoint>& added, const Progress& progress)
 {

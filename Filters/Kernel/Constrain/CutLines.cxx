@@ -107,9 +107,8 @@ private:
     const std::vector<SegmentPiece> pieces = this->Pieces;
     const std::size_t count = this->Vertices.size();
     // Two units cover the rounding of an end and of a crossing. A reach of 0 is for lines no longer
-    // than a few units: the doubles between them are finite in number, so that it ends.
-    // With a reach in units, then without: see UnitsOf(). The second try begins from the exact
-    // pieces.
+    // than a few units: the doubles between them are finite in number, so that it ends. This
+    // second try begins from the exact pieces again.
     if (this->Settle(2.0, true, progress.Between(0.5, 0.9)))
     {
       return;

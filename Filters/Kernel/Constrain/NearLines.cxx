@@ -11,8 +11,10 @@ namespace elevation
 namespace
 {
 
-// Rather too many points than too few: CutLines() looks at those that are sent exactly.
-/** Whether a point is at most so far from a segment, or little more. */
+/**
+ * Whether a point is at most so far from a segment, or little more. Rather too many points than too
+ * few: CutLines() looks at those that are sent exactly.
+ */
 bool IsWithin(const Ends& segment, const Point2& p, double distance)
 {
   const Point2 &a = segment[0], &b = segment[1];

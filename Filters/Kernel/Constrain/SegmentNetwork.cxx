@@ -14,8 +14,11 @@ namespace elevation
 namespace
 {
 
-// A sort instead of a hash table: the lowest id of equal points is then known at once.
-/** Makes one vertex of each place of the lines' points. @return the vertex of each point */
+/**
+ * Makes one vertex of each place of the lines' points. A sort instead of a hash table: the lowest
+ * id of equal points is then known at once.
+ * @return the vertex of each point
+ */
 std::vector<Index> CollectPoints(
   const ConstraintLines& lines, const Progress& progress, std::vector<LineVertex>& vertices)
 {

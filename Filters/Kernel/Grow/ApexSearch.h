@@ -38,10 +38,9 @@ public:
   {
   }
 
-  // In a fan, calls come in this order: SetOrigin(), then Follow() and Find() in turn until the
-  // last neighbour is reached.
   /**
-   * Sets the vertex whose fan is grown next.
+   * Sets the vertex whose fan is grown next. In a fan, calls come in this order: SetOrigin(), then
+   * Follow() and Find() in turn until the last neighbour is reached.
    * @param[in] next  the vertex of the call after this one, or None
    */
   void SetOrigin(Index slot, Index next);
@@ -109,6 +108,7 @@ private:
 
   // Coordinates are relative to the origin A: differences of neighbours are small, so that products
   // lose less to rounding, and error bounds shrink with them.
+
   // The edge.
   double Floor = 0.0; ///< relative to the origin; boxes below are skipped
   Index Origin = None, Target = None;

@@ -16,9 +16,10 @@
 namespace elevation
 {
 
-// Used where a box is fixed beforehand: by the compactness strategy (ApexSearch.h). The other
-// strategy has a disc that shrinks while it searches.
-/** A box, relative to a vertex. */
+/**
+ * A box, relative to a vertex. Used where a box is fixed beforehand: by the compactness strategy
+ * (ApexSearch.h). The other strategy has a disc that shrinks while it searches.
+ */
 struct BoxAround
 {
   double LowX, HighX, LowY, HighY;

@@ -249,10 +249,12 @@ private:
     return Orientation(this->OriginOf(spoke), this->EndOf(spoke), this->Points[vertex]);
   }
 
-  // With left on the hull of the lower points and right on that of the upper ones: as long as one
-  // end lies on the wrong side of the other's hull edge, the other one moves along its hull. Each
-  // moves in one direction only, so this is linear.
-  /** Turns two spokes at the hulls of two triangulations to the ends of their common tangent. */
+  /**
+   * Turns two spokes at the hulls of two triangulations to the ends of their common tangent. With
+   * left on the hull of the lower points and right on that of the upper ones: as long as one end
+   * lies on the wrong side of the other's hull edge, the other one moves along its hull. Each moves
+   * in one direction only, so this is linear.
+   */
   void FindTangent(Index& left, Index& right)
   {
     for (;;)

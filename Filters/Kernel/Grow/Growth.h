@@ -83,8 +83,10 @@ public:
     this->OutputEnd = triangles.end();
   }
 
-  // Reached from GrowStrips() in each round; what it leaves is continued by the next call.
-  /** Grows until the strip is done, the round is over, or for some ten thousand fans. */
+  /**
+   * Grows until the strip is done, the round is over, or for some ten thousand fans. Reached from
+   * GrowStrips() in each round; what it leaves is continued by the next call.
+   */
   void GoOn(const Round& round)
   {
     // Each after WorkPerPause (GridGrowth.cxx, LatticeGrowth.cxx).

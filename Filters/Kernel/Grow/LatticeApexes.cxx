@@ -11,9 +11,11 @@ namespace elevation
 namespace
 {
 
-// A circle of the metric is an ellipse in columns and rows. Floating point serves here to choose
-// rows and columns to look at, always some too many; nodes are compared in integers.
-/** The discs through both ends of an edge, in the metric, in coordinates relative to its origin. */
+/**
+ * The discs through both ends of an edge, in the metric, in coordinates relative to its origin. A
+ * circle of the metric is an ellipse in columns and rows. Floating point serves here to choose rows
+ * and columns to look at, always some too many; nodes are compared in integers.
+ */
 class EdgeDisc
 {
 public:
@@ -38,15 +40,18 @@ public:
     this->NormalY = gx / this->Root;
   }
 
-  // As in ApexSearch.h: s = dot / (2 cross); Root converts the cross product of nodes to an area.
-  /** The position of a disc's centre, in edge lengths along the edge's left normal. */
+  /**
+   * The position of a disc's centre, in edge lengths along the edge's left normal. As in
+   * ApexSearch.h: s = dot / (2 cross); Root converts the cross product of nodes to an area.
+   */
   double PositionOf(const Apex& apex) const
   {
     return 0.5 * static_cast<double>(apex.Dot) / (this->Root * static_cast<double>(apex.Cross));
   }
-  // A disc that reaches a height h over an edge of length 1 has radius h/2 + 1/(8h); its centre is
-  // at h/2 - 1/(8h).
-  /** The same for the disc of a height over the edge. */
+  /**
+   * The same for the disc of a height over the edge. A disc that reaches a height h over an edge of
+   * length 1 has radius h/2 + 1/(8h); its centre is at h/2 - 1/(8h).
+   */
   double HeightPosition(double height) const
   {
     const double h = height / std::sqrt(this->LengthSquared);

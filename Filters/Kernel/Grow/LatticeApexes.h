@@ -63,8 +63,10 @@ inline int CompareQuotients(const Apex& p, const Apex& q)
   return CompareProducts(p.Dot, q.Cross, q.Dot, p.Cross);
 }
 
-// For divide and conquer, whose points are nodes in doubles.
-/** InCircle() in the metric, of nodes as points (column, row); a, b, c are counter-clockwise. */
+/**
+ * InCircle() in the metric, of nodes as points (column, row); a, b, c are counter-clockwise. For
+ * divide and conquer, whose points are nodes in doubles.
+ */
 inline Sign InNodeCircle(
   const LatticeMetric& metric, const Point2& a, const Point2& b, const Point2& c, const Point2& d)
 {
@@ -109,9 +111,9 @@ public:
   /** Nodes between the ends of their rows that are not occupied. */
   std::int64_t NumberOfGaps() const;
 
-  // By far the most searches end here: a few bits of the bitmap are looked at.
   /**
-   * Looks for the apex in the list of an edge vector. Thread-safe.
+   * Looks for the apex in the list of an edge vector. Thread-safe. By far the most searches end
+   * here: a few bits of the bitmap are looked at.
    * @return false if there is no list, or the apex is beyond it
    */
   bool FindInList(Index node, const Offset& e, Offset& place)
@@ -151,8 +153,10 @@ private:
   };
   using Entries = std::vector<Entry>;
 
-  // The first threads that want a list at the same time all make it; one of them is kept.
-  /** The list of an edge vector; null if it is long, or was asked for only a few times so far. */
+  /**
+   * The list of an edge vector; null if it is long, or was asked for only a few times so far. The
+   * first threads that want a list at the same time all make it; one of them is kept.
+   */
   const Entries* ListOf(const Offset& e)
   {
     if (std::abs(e.X) > Longest || std::abs(e.Y) > Longest)

@@ -37,9 +37,9 @@ public:
     // As large as is needed: an Index a point.
     this->First.Recycle(std::move(nodes.Scratch));
     const Point2 &u = nodes.Steps.StepU, &v = nodes.Steps.StepV;
-    // Points may lie off their nodes, so the triangles of cells must be proved, too. Both triangles
-    // of a cell have the same shape, turned by half a turn.
-    // With a shorter limit, a diagonal of a cell may be too long.
+    // With a shorter limit, a diagonal of a cell may be too long. Points may lie off their nodes,
+    // so the triangles of cells must be proved, too. Both triangles of a cell have the same shape,
+    // turned by half a turn.
     this->UseCells = this->IsProved({ 1, 0 }, { 1, 1 }) &&
       (!this->Limit.IsSet() ||
         options.MaximumEdgeLength > 2.0 * (std::hypot(u.X, u.Y) + std::hypot(v.X, v.Y)));
@@ -63,10 +63,12 @@ private:
   }
   Index FirstWordOf(Index row) const { return this->Nodes.NodeAt(row, 0) / 64; }
 
-  // Each corner is off by at most LargestOffset along each step, so each coordinate of p and q is
-  // by twice that. The cross product then changes by at most 2 off (|p.X| + |p.Y| + |q.X| + |q.Y|)
-  // + 8 off^2; the factor covers the rounding.
-  /** Whether no triangle of this shape can be flat or inverted, as far as points are off nodes. */
+  /**
+   * Whether no triangle of this shape can be flat or inverted, as far as points are off nodes. Each
+   * corner is off by at most LargestOffset along each step, so each coordinate of p and q is by
+   * twice that. The cross product then changes by at most 2 off (|p.X| + |p.Y| + |q.X| + |q.Y|) + 8
+   * off^2; the factor covers the rounding.
+   */
   bool IsProved(const Offset& p, const Offset& q) const
   {
     const double off = this->Nodes.LargestOffset;
@@ -273,8 +275,8 @@ std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(const Hull
   const Index count = nodes.NumberOfPoints();
   this->First.Resize(count);
   this->Last.Resize(count);
-  // A wrong figure changes the balance of the threads, not the result.
-  // In units of about a nanosecond. With few gaps, most points are of full cells.
+  // In units of about a nanosecond. With few gaps, most points are of full cells. A wrong figure
+  // changes the balance of the threads, not the result.
   constexpr double perPoint = 6.0, perGap = 9.0, mostGaps = 10.0, perWalkPoint = 500.0,
                    least = 20000.0;
   const auto workOf = [&](double points, double gaps) {

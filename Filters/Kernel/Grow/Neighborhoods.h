@@ -35,8 +35,9 @@ struct Neighborhood
   Index Slots[Room];
 };
 
-// Each strip has its own, so nothing is shared between threads.
-/** The neighborhoods of recent slots. */
+/**
+ * The neighborhoods of recent slots. Each strip has its own, so nothing is shared between threads.
+ */
 class Neighborhoods
 {
 public:

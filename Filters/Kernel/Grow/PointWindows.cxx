@@ -22,6 +22,7 @@ constexpr float NotANumber = std::numeric_limits<float>::quiet_NaN();
 // The passes: EnterRow() rounds the points of four rows of bins; Gather...() copies those of a
 // window relative to its vertex; SetBounds() records how far the window reaches, for the proof.
 // Where bins are full, GatherBox() takes the place of all three.
+
 /** Columns and rows of the windows of bins, the larger first. */
 struct Shape
 {
@@ -52,17 +53,16 @@ PointWindows::PointWindows(const BinGrid& grid, bool isWidest)
   , Leaves(grid)
 {
   const BinGrid::Layout& bins = grid.Bins;
-  // A box reaches 0.9 sides upwards and 0.55 to each side: 1.1 is more than its diagonal.
-  // Two coordinates are rounded, then their difference.
+  // Two coordinates are rounded, then their difference. A box reaches 0.9 sides upwards and 0.55 to
+  // each side: 1.1 is more than its diagonal.
   this->BoxBounds.Set(1.1, (2.0 * Neighborhoods::MostSides + 1.2) * Roundoff, 0.002);
   if (!bins.HasPlainBins)
   {
     return;
   }
-  // A bin has at most 2^22 units, so coordinates in a window have about as many bits as a float;
-  // and at least 2^12, so that rounding to units hides little. The whole grid has at most 2^30
-  // units.
-  // Products of four coordinates stay in the range of float, differences within 32 bits.
+  // Products of four coordinates stay in the range of float, differences within 32 bits. A bin has
+  // at most 2^22 units, so coordinates in a window have about as many bits as a float; and at least
+  // 2^12, so that rounding to units hides little. The whole grid has at most 2^30 units.
   const double width = bins.BinWidth, height = bins.BinHeight;
   const double extent = std::max(bins.Columns * width, bins.Rows * height);
   const double perUnit = std::min(0x1p30 / extent, 0x1p22 / std::max(width, height));
@@ -251,10 +251,10 @@ ELEVATION_WIDEST bool PointWindows::GatherWidest(Window& window, Index firstColu
   const Index endColumn = std::min(firstColumn + Shapes[0].Columns, bins.Columns);
   firstColumn = std::max(firstColumn, 0);
 
-  // Masked loads put the points of a row behind those of the rows before: "places" has the lanes
-  // from count on, low for the first vector, high for the second. What a row writes beyond its
-  // points belongs to later rows, or becomes NaN at the end.
-  // The points of each row overwrite the lanes beyond the previous row.
+  // The points of each row overwrite the lanes beyond the previous row. Masked loads put the points
+  // of a row behind those of the rows before: "places" has the lanes from count on, low for the
+  // first vector, high for the second. What a row writes beyond its points belongs to later rows,
+  // or becomes NaN at the end.
   const __m512i lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   __m512i lowX = lanes, highX = lanes, lowY = lanes, highY = lanes, lowSlot = lanes,
           highSlot = lanes;

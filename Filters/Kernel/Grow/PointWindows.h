@@ -49,9 +49,11 @@ public:
     void Set(double reach, double error, double margin);
   };
 
-  // Lanes: vector i holds lanes 8 i to 8 i + 7. A lane of a list's excess may have the slot of a
-  // point of another bin, so a slot counts only where the coordinate is not NaN.
-  /** The points around a vertex, relative to it; lanes with NaN are empty. */
+  /**
+   * The points around a vertex, relative to it; lanes with NaN are empty. Vector i holds lanes
+   * 8 i to 8 i + 7. A lane of a list's excess may have the slot of a point of another bin, so
+   * a slot counts only where the coordinate is not NaN.
+   */
   struct Window
   {
     alignas(64) float X[Room];
@@ -96,9 +98,10 @@ private:
   static constexpr int RowRoom = 40;            // as whole vectors are read
   static constexpr std::size_t MostPerBin = 32; // mean in rows for which windows are made
 
-  // Rounded once per row, not once per window: each point is in the windows of some twenty
-  // vertices.
-  /** The points of a row of bins in units from the grid's corner. */
+  /**
+   * The points of a row of bins in units from the grid's corner. Rounded once per row, not once per
+   * window: each point is in the windows of some twenty vertices.
+   */
   struct Row
   {
     Index Number = None;

@@ -120,9 +120,11 @@ Triangulation TriangulateSparse(
   return result;
 }
 
-// A given lattice is an order of the user, so a flat triangle is an error here, whereas a lattice
-// that was found is dropped.
-/** @throws NotOnLattice if a triangle is flat or inverted in the coordinates of its points */
+/**
+ * A given lattice is an order of the user, so a flat triangle is an error here, whereas a lattice
+ * that was found is dropped.
+ * @throws NotOnLattice if a triangle is flat or inverted in the coordinates of its points
+ */
 void CheckTriangles(const PointView& points, const Buffer<Index>& triangles)
 {
   for (std::size_t i = 0; i < triangles.size(); i += 3)

@@ -29,6 +29,7 @@ namespace
 // The passes for an edge: Search() guesses the apex and collects those that are not clearly worse;
 // IsInWindow() proves that no point outside the window is; Sift() removes candidates with sharper
 // bounds and exact predicates; IsDecided() says whether one is left.
+
 /** The least of eight values. */
 ELEVATION_WIDE inline float Least(__m256 values)
 {

@@ -16,9 +16,11 @@ namespace elevation
 namespace
 {
 
-// Growth relies on reduced steps: full cells are Delaunay in their metric (LatticeGrowth.h). Steps
-// that are reduced already stay as the user gave them, to the last digit.
-/** A lattice with the same nodes and reduced steps; the given one if it has them. */
+/**
+ * A lattice with the same nodes and reduced steps; the given one if it has them. Growth relies on
+ * reduced steps: full cells are Delaunay in their metric (LatticeGrowth.h). Steps that are reduced
+ * already stay as the user gave them, to the last digit.
+ */
 Lattice Reduced(const Lattice& given)
 {
   const Point2 &u = given.StepU, &v = given.StepV;

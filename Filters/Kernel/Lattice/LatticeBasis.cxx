@@ -129,8 +129,8 @@ void Direct(Point2& u, Point2& v)
   {
     for (const Point2& q : vectors)
     {
-      // Right-handed pairs of the lattice's area, no longer than the reduced ones.
-      // A little more than rounding, so that a hexagonal lattice has all of its bases.
+      // Only right-handed pairs of the lattice's area, no longer than the reduced ones; by a little
+      // more than rounding, so that a hexagonal lattice has all of its bases.
       if (!(Cross(p, q) > 0.5 * area) || !(Cross(p, q) < 1.5 * area) ||
         Dot(p, p) + Dot(q, q) > size * (1.0 + 1e-6))
       {

@@ -21,10 +21,12 @@ constexpr std::size_t Crowd = 32;      // of the sample, in a place that is cut 
 constexpr double SampleSize = 1024.0;
 constexpr int MostCells = 64; // along each side of the first histogram
 
-// A sample by hash is the same for any order of points and any division into parts: a point is in
-// it, or not, by its own coordinates. Multiplication and shifts spread regular coordinates evenly;
-// a grid sampled by rows or columns would look like a line.
-/** A hash of 32 evenly distributed bits, the same for equal points. */
+/**
+ * A hash of 32 evenly distributed bits, the same for equal points. A sample by hash is the same for
+ * any order of points and any division into parts: a point is in it, or not, by its own
+ * coordinates. Multiplication and shifts spread regular coordinates evenly; a grid sampled by rows
+ * or columns would look like a line.
+ */
 std::uint64_t HashOf(const Point2& p)
 {
   const double x = p.X + 0.0, y = p.Y + 0.0; // -0 becomes 0
@@ -184,8 +186,10 @@ struct Histogram
   std::vector<Index> Counts;
 };
 
-// Before KeepFullest(), whose halving would need many passes over so many points.
-/** Keeps only the points in the fullest cell of their box, repeatedly, until few are left. */
+/**
+ * Keeps only the points in the fullest cell of their box, repeatedly, until few are left. Before
+ * KeepFullest(), whose halving would need many passes over so many points.
+ */
 void KeepFullestCells(std::vector<Point2>& points, const Progress& progress)
 {
   // Between two reports.

@@ -11,8 +11,10 @@ namespace elevation
 {
 namespace
 {
-// Written out, as not all compilers have integers of 128 bits.
-/** High and low word of the product of two numbers. */
+/**
+ * High and low word of the product of two numbers. Written out, as not all compilers have integers
+ * of 128 bits.
+ */
 struct Product
 {
   std::uint64_t High, Low;
@@ -99,9 +101,8 @@ bool LatticeMetric::Set(const Lattice& lattice)
   const double scale = most / std::max(a, c);
   this->A = std::llround(a * scale);
   this->C = std::llround(c * scale);
-  // Full cells rely on it: with 2 |B| <= min(A, C), their triangles have no node inside their
-  // circles.
-  // Still reduced after rounding.
+  // Still reduced after rounding. Full cells rely on it: with 2 |B| <= min(A, C), their triangles
+  // have no node inside their circles.
   const std::int64_t largest = std::min(this->A, this->C) / 2;
   this->B = std::min(std::max(std::int64_t(std::llround(b * scale)), -largest), largest);
   // The shorter step would have fewer than ten bits: its direction would be lost.

@@ -108,8 +108,8 @@ public:
     {
       return false;
     }
-    // From nodes that are rounded once more, as better steps may move far points to other nodes.
-    // Fit the whole sample twice: from the directed steps, then from the fitted ones.
+    // Fit the whole sample twice: from the directed steps, then from the fitted ones, by which far
+    // points may be on other nodes.
     Direct(this->Steps.StepU, this->Steps.StepV);
     if (!this->FitAll() || !this->FitAll())
     {

@@ -12,8 +12,10 @@ namespace
 /** Of sums of a few products: a bound on their rounding errors, relative to the sum of sizes. */
 constexpr double Unit = 32.0 * std::numeric_limits<double>::epsilon();
 
-// A running error analysis: values are computed together with bounds on their errors.
-/** A number, and a bound on its error. */
+/**
+ * A number, and a bound on its error. A running error analysis: values are computed together with
+ * bounds on their errors.
+ */
 struct Bounded
 {
   double Value, Error;
@@ -39,8 +41,8 @@ Bounded Product(const Bounded& a, const Bounded& b)
 bool IsLatticeByChance(double count, double tolerance)
 {
   // Three points make a lattice; every other one fits with the probability of its node's area; the
-  // number of lattices to choose from grows with the nodes allowed.
-  // In logarithms: the probability itself would underflow.
+  // number of lattices to choose from grows with the nodes allowed. In logarithms: the probability
+  // itself would underflow.
   const double fits = std::log(1.0 / std::min(4.0 * tolerance * tolerance + 1e-12, 0.99));
   return (count - 3.0) * fits < std::log(MaximumNodesPerPoint * count) + std::log(1e6);
 }
@@ -55,8 +57,8 @@ bool SharedLattice::Set(
   this->ToNode = NodeFinder(steps);
   const Point2 &u = steps.StepU, &v = steps.StepV;
   const double off = tolerance + NodeRoundoff + this->ToNode.Roundoff(cloud.Low, cloud.High);
-  // Besides, nodes are rounded when they are computed from steps.
-  // The largest indices that a node of the cloud has.
+  // Besides, nodes are rounded when they are computed from steps, in proportion to the largest
+  // indices of the cloud.
   const double across = nodes.Columns() + std::fabs(nodes.FirstI());
   const double up = nodes.Rows() + std::fabs(nodes.FirstJ());
   const auto reach = [&](double origin, double alongU, double alongV) {

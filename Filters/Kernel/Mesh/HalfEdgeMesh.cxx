@@ -244,8 +244,6 @@ private:
     ForEachStretch(this->Surface.NumberOfTriangles(), progress, [&](Index begin, Index end) {
       for (; begin < end; begin += Few)
       {
-        // Each group of triangles twice: the falling half-edges are listed first, without branches,
-        // then connected.
         // Prefetch what is needed soon, but not in order.
         constexpr Index ahead = 1 << 13, line = 16;
         for (Index h = 3 * begin; h < 3 * begin + 3 * Few; h += line)
@@ -254,6 +252,8 @@ private:
           Prefetch(&this->Surface.Twins[place]);
           Prefetch(&this->Rising[std::min(place / 2, total)]);
         }
+        // The falling half-edges of some triangles are listed first, without branches, then
+        // connected.
         std::size_t size = 0;
         this->ForEachHalfEdge(begin, std::min(begin + Few, end), [&](Index h, Index a, Index b) {
           falling[size] = { a, b, h }; // without branches, again

@@ -27,8 +27,10 @@
 namespace elevation
 {
 
-// For code that has points but no mesh, such as rings and lines.
-/** Points, and the ids by which messages name them; without ids, by their indices. */
+/**
+ * Points, and the ids by which messages name them; without ids, by their indices. For code that has
+ * points but no mesh, such as rings and lines.
+ */
 struct NamedPoints
 {
   NamedPoints(std::vector<Point2> places = {}, std::vector<Index> ids = {})

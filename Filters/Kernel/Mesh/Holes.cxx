@@ -16,6 +16,7 @@ namespace
 {
 // The passes of Holes.h: TraceBorder(), StartAtLowest(), then BorderSweep, which classifies walks
 // (FindRims), sweeps (ProcessEvents at each point) and lists the walks of each hole (MakeHoles).
+
 /** Orders half-edges by origin, then, at pinched vertices, by destination. */
 struct IsLowerEdge
 {
@@ -259,9 +260,8 @@ private:
       behind = this->Status.erase(this->Places[this->Events[first].Segment]);
       haveEnded = true;
     }
-    // behind is the first edge to the right of the point, through the first one that passes through
-    // it.
-    // Edges that pass through this point stay; without a contact there are none.
+    // Edges that pass through this point stay; without a contact there are none. behind is the
+    // first edge to the right of the point, through the first one that passes through it.
     if (!haveEnded)
     {
       behind = this->Status.lower_bound(p);

@@ -56,8 +56,10 @@ public:
     return true;
   }
 
-  // In parts, a region may lie in several of them; only its border has been brought together.
-  /** Of a mesh of borders (MakeBorderMesh), with the regions on the right of their edges. */
+  /**
+   * Of a mesh of borders (MakeBorderMesh), with the regions on the right of their edges. In parts,
+   * a region may lie in several of them; only its border has been brought together.
+   */
   void RunOnBorder(const std::vector<Index>& regionOf, const Progress& progress)
   {
     std::vector<Index>& vertices = this->Result.Walks.Vertices;
@@ -440,8 +442,10 @@ bool OpenLongTriangles(
 
 namespace
 {
-// For both kinds of lists in Holes: walks of a hole, inner edges of a region (two values each).
-/** Of groups, entries offsets[i] to offsets[i+1] - 1 of some values each, keeps those flagged. */
+/**
+ * Of groups, entries offsets[i] to offsets[i+1] - 1 of some values each, keeps those flagged. For
+ * both kinds of lists in Holes: walks of a hole, inner edges of a region (two values each).
+ */
 void KeepGroups(const std::vector<char>& keep, std::ptrdiff_t valuesPerEntry,
   std::vector<Index>& offsets, std::vector<Index>& values)
 {

@@ -102,11 +102,11 @@ private:
   std::vector<Ends> Segments; ///< from lower to upper end, sorted by the lower
 };
 
-// For JoinOverlaps(), which needs to find the pieces on one line among all: by a hash in n log n,
-// where comparing pairs would be quadratic. A wrong match is caught by exact orientations. A missed
-// one is possible only if the prime divides a difference of coordinates.
 // Coordinates modulo a prime. Sums and products are exact, so that what depends on a line alone is
-// equal for all segments on it.
+// equal for all segments on it. For JoinOverlaps(), which needs to find the pieces on one line
+// among all: by a hash in n log n, where comparing pairs would be quadratic. A wrong match is
+// caught by exact orientations. A missed one is possible only if the prime divides a difference of
+// coordinates.
 constexpr std::uint64_t Prime = 0x7FFFFFFF; // 2^31 - 1
 
 std::uint64_t RemainderOf(double x)

@@ -31,8 +31,10 @@ using Ends = std::array<Point2, 2>;
  */
 CellGrid GridOf(const std::vector<Ends>& segments, const Progress& progress = Progress());
 
-// Touching is not crossing: an end on the other segment is found as a vertex on it (IsInside).
-/** Whether two segments cross: each has the ends of the other on opposite sides. */
+/**
+ * Whether two segments cross: each has the ends of the other on opposite sides. Touching is not
+ * crossing: an end on the other segment is found as a vertex on it (IsInside).
+ */
 bool Cross(const Ends& s, const Ends& t);
 
 /** Whether a point lies on the segment and is not one of its ends. */

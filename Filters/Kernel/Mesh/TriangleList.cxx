@@ -42,8 +42,11 @@ bool CopyPoints(
   return areFinite;
 }
 
-// Points without triangles may have any coordinates, so only those of corners are refused.
-/** Makes a triangle, whose corners exist, counter-clockwise. @throws Error */
+/**
+ * Makes a triangle, whose corners exist, counter-clockwise. Points without triangles may have any
+ * coordinates, so only those of corners are refused.
+ * @throws Error
+ */
 void Turn(const TriangleList& list, Index t, bool areFinite, Mesh& mesh)
 {
   const auto name = [&]() { return std::to_string(static_cast<std::int64_t>(list.FirstCell) + t); };
@@ -91,8 +94,8 @@ Mesh MeshOf(const TriangleList& list, int threads, const Progress& progress)
   const bool areFinite = CopyPoints(list.Points, threads, progress.Between(0.0, 0.2), mesh.Points);
   mesh.Triangles.resize(3 * static_cast<std::size_t>(list.Count));
   const auto read = [&](Index, Index begin, Index end) {
-    // Two passes over each group: the first checks ids and prefetches, the second computes.
-    // Few at a time, so that their points can be prefetched.
+    // Few at a time, so that their points can be prefetched. Two passes over each group: the first
+    // checks ids and prefetches, the second computes.
     constexpr Index few = 128;
     for (; begin < end; begin += few)
     {

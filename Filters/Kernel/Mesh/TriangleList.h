@@ -15,8 +15,10 @@
 namespace elevation
 {
 
-// What filters have before a mesh exists. TriangleSweep reads it in place; MeshOf() copies it.
-/** Triangles in the layout of a cell array, and their points; not owned. */
+/**
+ * Triangles in the layout of a cell array, and their points; not owned. What filters have before a
+ * mesh exists. TriangleSweep reads it in place; MeshOf() copies it.
+ */
 struct TriangleList
 {
   const Index* Corners = nullptr; ///< three a triangle

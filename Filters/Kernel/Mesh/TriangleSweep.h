@@ -60,11 +60,11 @@ struct SweptEdge
   Index Upper;
 };
 
-// "Up" and "down" are by the order of points, not by ids: ids may be in any order.
 /**
  * The half-edges whose twins have not come yet. Each is stored at the lower end of its edge, which
  * has room for one that leads up and one that leads down: no more are open at a time when triangles
- * come by their lowest vertices. Others go to a hash set.
+ * come by their lowest vertices. Others go to a hash set. "Up" and "down" are by the order of
+ * points, not by ids: ids may be in any order.
  */
 template <typename Vertex>
 class OpenEdges
@@ -80,8 +80,8 @@ public:
   /** Matches a half-edge with its open twin; without one, leaves it open. */
   void Add(const SweptEdge& edge)
   {
-    // Three conditions in one test without branches: room, no twin here, and none in the set.
-    // The fast path, as most stay open. A half-edge that is open already takes the slow one.
+    // The fast path, as most stay open. A half-edge that is open already takes the slow one. Three
+    // conditions in one test without branches: room, no twin here, and none in the set.
     Vertex& at = this->Vertices[edge.Lower];
     if ((at.Upper[edge.IsDown] == None) & (at.Upper[1 - edge.IsDown] != edge.Upper) &
       (at.NumberOfOthers == 0))
@@ -206,8 +206,8 @@ inline bool IsExactlyCounterClockwise(Point2 a, Point2 b, Point2 c)
 
 inline bool IsCounterClockwise(Point2 a, Point2 b, Point2 c)
 {
-  // NaN fails every comparison, and so does infinity less infinity.
-  // The filter of Orientation(), which coordinates that are not finite never pass.
+  // The filter of Orientation(), which coordinates that are not finite never pass. NaN fails every
+  // comparison, and so does infinity less infinity.
   const double left = (a.X - c.X) * (b.Y - c.Y);
   const double right = (a.Y - c.Y) * (b.X - c.X);
   return left - right > 1e-15 * (std::fabs(left) + std::fabs(right)) + 1e-290 ||

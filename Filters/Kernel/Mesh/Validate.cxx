@@ -35,8 +35,8 @@ public:
     {
       this->CheckManifold();
     }
-    // In the order of what the next check needs.
-    // What follows presumes a consistent mesh of counter-clockwise triangles.
+    // What follows presumes a consistent mesh of counter-clockwise triangles. In the order of what
+    // the next check needs.
     if (!this->Findings.empty())
     {
       return this->Findings;

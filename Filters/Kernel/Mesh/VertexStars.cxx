@@ -83,8 +83,8 @@ Index VertexStars::Toward(const Mesh& mesh, Index from, Index to)
   {
     return None;
   }
-  // Searches counter-clockwise from a half-edge.
-  // From a half-edge a little before the direction, to the triangle in which it lies.
+  // Searches counter-clockwise, from a half-edge a little before the direction to the triangle in
+  // which it lies.
   const auto look = [&](Index first, Index most) {
     Sign side = Orientation(a, b, mesh.PointOf(mesh.Destination(first)));
     Index h = first;

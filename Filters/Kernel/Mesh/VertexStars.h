@@ -88,8 +88,10 @@ public:
     });
   }
 
-  // Recovery calls this for every half-edge of the triangles that it has written.
-  /** Enters half-edge h at its origin, in place of one that may no longer exist. */
+  /**
+   * Enters half-edge h at its origin, in place of one that may no longer exist. Recovery calls this
+   * for every half-edge of the triangles that it has written.
+   */
   void Replace(const Mesh& mesh, Index h)
   {
     Index& first = this->First[mesh.Origin(h)];

@@ -26,11 +26,14 @@
 namespace elevation
 {
 
-// An example, with the values of its Message:
-//   Code    InvalidThreads
-//   Text    {property:NumberOfThreads} is {value}; it must be 0 (those of VTK) to {most}.
-//   Values  value = -1, most = 256
-/** A code, and the text of its messages. */
+/**
+ * A code, and the text of its messages.
+ *
+ * An example, with the values of its Message:
+ *   Code    InvalidThreads
+ *   Text    {property:NumberOfThreads} is {value}; it must be 0 (those of VTK) to {most}.
+ *   Values  value = -1, most = 256
+ */
 struct Sentence
 {
   const char* Code;
@@ -97,8 +100,10 @@ private:
   std::vector<Value> Values;
 };
 
-// One type for all kinds of values, so that MakeMessage() passes them as one list.
-/** What a place is filled with: a number, a text, or another message. */
+/**
+ * What a place is filled with: a number, a text, or another message. One type for all kinds of
+ * values, so that MakeMessage() passes them as one list.
+ */
 class Message::Argument
 {
 public:
@@ -141,8 +146,9 @@ Message MakeMessage(const Values&... values)
   return Message(sentence, { Message::Argument(values)... });
 }
 
-// For programs that catch it; elsewhere it is an Error with its sentence.
-/** An Error as data. */
+/**
+ * An Error as data. For programs that catch it; elsewhere it is an Error with its sentence.
+ */
 class CodedError : public Error
 {
 public:

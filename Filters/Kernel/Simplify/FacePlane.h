@@ -67,8 +67,10 @@ private:
   /** More than the results above lose together that are below the least normal number. */
   static constexpr double Smallest = 8.0 * std::numeric_limits<double>::denorm_min();
 
-  // A difference that becomes subnormal may lose bits; then there is no bound.
-  /** @return whether nothing was lost */
+  /**
+   * A difference that becomes subnormal may lose bits; then there is no bound.
+   * @return whether nothing was lost
+   */
   static bool Scale(double& difference, double scale)
   {
     const double before = difference;

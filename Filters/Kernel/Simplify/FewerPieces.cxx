@@ -16,8 +16,10 @@ namespace
 {
 constexpr double BesidePerLength = 0.001; // of the shorter piece at a point
 
-// Rather too large: what is near by rounding counts as near.
-/** Of a place from the line through two others; with what rounding may have taken from it. */
+/**
+ * Of a place from the line through two others; with what rounding may have taken from it. Rather
+ * too large: what is near by rounding counts as near.
+ */
 double DistanceFromLine(const Point2& p, const Point2& q, const Point2& r)
 {
   constexpr double unit = 4e-15;
@@ -235,8 +237,10 @@ private:
   const double Error;
 };
 
-// Twice, so that two stretches that are each bent a little do not meet either.
-/** Whether a place that is not an end is within twice the distance of a stretch's own places. */
+/**
+ * Whether a place that is not an end is within twice the distance of a stretch's own places. Twice,
+ * so that two stretches that are each bent a little do not meet either.
+ */
 bool IsNear(const PlacedPoints& placed, const Stretch& one, Index place)
 {
   const Point2 a = placed.At(one.Begin()), b = placed.At(one.End()), p = placed.At(place);

@@ -21,9 +21,11 @@
 namespace elevation
 {
 
-// Unlike the half-edges of Mesh: a face is replaced as a whole while others stay, several threads
-// take new ones, and a face has the list of its points.
-/** A triangle, counter-clockwise; edge k runs from corner k to the next. */
+/**
+ * A triangle, counter-clockwise; edge k runs from corner k to the next. Unlike the half-edges of
+ * Mesh: a face is replaced as a whole while others stay, several threads take new ones, and a face
+ * has the list of its points.
+ */
 struct Face
 {
   Index Corners[3];
@@ -49,8 +51,10 @@ struct ElevatedPlace
   double X, Y, Z;
 };
 
-// Differences from a corner lose less to rounding than z = a x + b y + c.
-/** A plane through a place: z = Z + X x + Y y from there. */
+/**
+ * A plane through a place: z = Z + X x + Y y from there. Differences from a corner lose less to
+ * rounding than z = a x + b y + c.
+ */
 struct Slopes
 {
   double X, Y;

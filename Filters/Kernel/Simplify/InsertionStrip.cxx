@@ -22,6 +22,7 @@ constexpr float LargestLevel = std::numeric_limits<float>::max();
 
 // The passes of an insertion, see the drawing in InsertionStrip.h: MayBegin() or Move(),
 // FindCavity(), FillCavity(), MovePoints(), and FlipByData() for data-dependent edges.
+
 /**
  * The two triangles beside an edge from P to D: the first one, right of it, with A, the second one
  * with B.

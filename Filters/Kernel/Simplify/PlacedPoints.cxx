@@ -85,8 +85,10 @@ void SortBins(BinGrid& grid, int threads, const Progress& progress)
     binsAtOnce);
 }
 
-// Hull points are known by their slots before sorting, so their positions are kept and found again.
-/** The slot of a point after SortBins(). */
+/**
+ * The slot of a point after SortBins(). Hull points are known by their slots before sorting, so
+ * their positions are kept and found again.
+ */
 Index SlotOf(const BinGrid& grid, const Point2& point)
 {
   const Index column = grid.Bins.Column(point.X);

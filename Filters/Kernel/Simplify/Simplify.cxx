@@ -25,6 +25,7 @@ namespace
 // 2. GreedyInsertion: points, until no error is too large;
 // 3. Measurement: the same errors with a bound on rounding, and again from 2. if one is too large;
 // 4. TrianglesOf() and ListUnused(): the result, in the order of Triangulate.h.
+
 /**
  * The triangulation of the corners, with Twins, by places.
  * @param[in] pieces  by corners
