@@ -93,6 +93,7 @@ private:
       [&](Index id, const Point2& p) { visit(id, p.X * scale, p.Y * scale); });
   }
 
+  /** Lays out the bins, and chooses a scale where coordinates are extreme. */
   void Lay(const Box& extent)
   {
     const Point2 &low = extent.Low, &high = extent.High;
@@ -215,6 +216,7 @@ private:
     return begins;
   }
 
+  /** Copies each point to the memory of its block, with its bin there. */
   void SortIntoBlocks(const Progress& progress)
   {
     const BinGrid::Layout& bins = this->Grid.Bins;
@@ -235,6 +237,7 @@ private:
       PiecePoints);
   }
 
+  /** Fills the blocks in parallel, each into its slots of the grid. */
   void FillBlocks(const Progress& progress)
   {
     const std::size_t count = this->Count;
@@ -346,6 +349,9 @@ private:
     this->Grid.Tree.Join(std::move(roots), this->Grid.NumberOfPoints(), progress);
   }
 
+  /**
+   * One of several shares of a block's bins, slots and nodes: only large blocks have more than one.
+   */
   void JoinPiece(GridBlock& block, Index firstNode, std::size_t part, std::size_t parts)
   {
     const auto forEach = [&](std::size_t count, auto&& work) {

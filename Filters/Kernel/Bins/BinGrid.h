@@ -38,9 +38,17 @@
 namespace elevation
 {
 
+/**
+ * Made once, then read by all threads. Some members are moved out by those who need the memory, see
+ * PlacedPoints.cxx and GridGrowth.h.
+ */
 class BinGrid
 {
 public:
+  /**
+   * Where the bins are. Functions of a coordinate are total: what lies outside counts for the
+   * outermost bin.
+   */
   struct Layout
   {
     double OriginX = 0.0, OriginY = 0.0; ///< lower left corner of the points' bounding box

@@ -52,6 +52,7 @@ Child AddNode(const Child* children, std::size_t count, Buffer<Node>& nodes)
   return joined;
 }
 
+/** Builds the tree of one block; recursion is as deep as the tree, a logarithm. */
 class TreeBuilder
 {
   using Placed = BoxTree::Placed;
@@ -139,6 +140,7 @@ private:
     return count > unit ? (count / 2 + unit - 1) / unit * unit : count / 2;
   }
 
+  /** The tree over bins: a node of up to eight parts, each built in turn. */
   Child BuildBins(const Part& whole)
   {
     if (this->IsUndivided(whole))
@@ -226,6 +228,7 @@ private:
     return this->BuildCluster(cluster);
   }
 
+  /** The same over points of a full bin. */
   Child BuildCluster(const Cluster& whole)
   {
     if (whole.IsLeaf())
@@ -346,6 +349,10 @@ private:
       slots.first, slots.second, [this](double) { this->ReportProgress(0); }, work);
   }
 
+  /**
+   * Reports after so many points of bins; at once for the points of a full bin, which count when it
+   * is done.
+   */
   void ReportProgress(Index visited)
   {
     this->Visited += visited;
@@ -416,6 +423,7 @@ void BoxTree::Join(std::vector<Child> roots, Index slots, const Progress& progre
   }
 }
 
+/** A node with its box, which its parent has. */
 BoxTree::Step BoxTree::StepTo(Index node) const
 {
   const Node& own = this->Nodes[node];

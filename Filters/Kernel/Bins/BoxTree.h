@@ -29,6 +29,10 @@
 namespace elevation
 {
 
+/**
+ * Flat: nodes in one array, which name children and parents by their places. Built in blocks by
+ * Build(), joined by Join(); then read by all threads.
+ */
 class BoxTree
 {
 public:

@@ -94,6 +94,7 @@ private:
     });
   }
 
+  /** Sets the order of each row by (y, x), and the range of its y. */
   void SortRows()
   {
     const BinGrid::Layout& bins = this->Grid.Bins;
@@ -146,6 +147,9 @@ private:
     });
   }
 
+  /**
+   * Moves slots together where duplicates have been set aside, and changes all that names slots.
+   */
   void CloseGaps()
   {
     // Slots move down by the number of gaps before them; so do starts, order and leaves, which name

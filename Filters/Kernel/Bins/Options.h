@@ -48,6 +48,9 @@ enum class SearchStrategy
   Compactness
 };
 
+/**
+ * What a triangulation is asked for. Those that say "for tests" change how it is found, not what.
+ */
 struct DelaunayOptions
 {
   SearchStrategy Strategy = SearchStrategy::VoxelTraversal;
@@ -79,6 +82,7 @@ struct DelaunayOptions
   bool DivideAtOnce = false;
 };
 
+/** The result, by ids of the input's points. */
 struct Triangulation
 {
   Buffer<Index> Triangles;         ///< three point ids per triangle, counter-clockwise

@@ -58,6 +58,7 @@ private:
   static constexpr Index Few = 16;
   static constexpr int MaximumDepth = 3;
 
+  // With its y, since slots of a row are not in that order in memory.
   struct Entry
   {
     double Y;

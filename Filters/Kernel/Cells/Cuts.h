@@ -33,6 +33,7 @@
 namespace elevation
 {
 
+/** The same on all ranks, which have the same sample. */
 class Cuts
 {
 public:

@@ -115,6 +115,7 @@ struct SettledMesh
 
   const Index* CornersOf(std::size_t t) const { return this->Result.Triangles.data() + 3 * t; }
 
+  /** Whether a half-edge has a triangle on its left that a smaller cell has settled. */
   bool IsOnSeam(Index halfEdge) const
   {
     return std::binary_search(this->Seam.begin(), this->Seam.end(), this->EndsOf(halfEdge));
@@ -203,6 +204,10 @@ std::vector<char> FindBorder(
   return isOnBorder;
 }
 
+/**
+ * Triangulates, and finds what is covered and the border. @param[in] edges  of a Piece; empty: the
+ * points are all those of a cell
+ */
 SettledMesh Triangulated(const PointView& points, const std::vector<Index>& edges,
   DelaunayOptions options, const SharedLattice* lattice)
 {
@@ -225,6 +230,7 @@ SettledMesh Triangulated(const PointView& points, const std::vector<Index>& edge
   return mesh;
 }
 
+/** Whether a sorted list has an edge in this direction. */
 bool Has(const std::vector<Edge>& sorted, Index from, Index to)
 {
   return std::binary_search(sorted.begin(), sorted.end(), Edge{ from, to });

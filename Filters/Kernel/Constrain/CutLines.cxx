@@ -264,6 +264,7 @@ private:
     }
   }
 
+  /** Enters an input point at a vertex; of several, the one that the policy prefers. */
   void SetInput(Index vertex, Index id)
   {
     Index& input = this->Vertices[vertex].Input;
@@ -325,6 +326,7 @@ private:
     }
   }
 
+  /** Crossings of pieces: each of the segments in one with each in the other. */
   void CountCrossings(const std::vector<Crossing>& crossings)
   {
     for (const auto& [p, q] : Counted(crossings))

@@ -25,6 +25,10 @@
 namespace elevation
 {
 
+/**
+ * The search for one strip: it has state of the current vertex, and a budget, so that each thread
+ * needs its own.
+ */
 class ApexSearch
 {
 public:

@@ -40,6 +40,10 @@ struct HullEnds
 class Division
 {
 public:
+  /**
+   * @param[in] points  by increasing (y, x); indices are ranks, so "higher" and "greater index" are
+   *        the same
+   */
   Division(const Buffer<Point2>& points, const Progress& progress, const LatticeMetric* metric)
     : Points(points)
     , Metric(metric)
@@ -213,6 +217,10 @@ private:
     return spoke;
   }
 
+  /**
+   * Takes both spokes out of their rings, in constant time; the first of them heads the list of
+   * those to be used again.
+   */
   void RemoveEdge(Index spoke)
   {
     const Index even = spoke & ~1;
@@ -227,6 +235,9 @@ private:
     this->Removed = even;
   }
 
+  /**
+   * The triangulation of three points: a triangle of either orientation, or two edges on one line.
+   */
   HullEnds ConnectThree(Index begin)
   {
     // Two edges in line, and the third one if the points are not collinear: the turn decides on
@@ -244,6 +255,7 @@ private:
     return turn == Positive ? HullEnds{ first, Twin(second) } : HullEnds{ Twin(third), third };
   }
 
+  /** On which side of a spoke's line a vertex lies: Positive is left. */
   Sign SideOf(Index vertex, Index spoke) const
   {
     return Orientation(this->OriginOf(spoke), this->EndOf(spoke), this->Points[vertex]);

@@ -78,6 +78,10 @@ private:
   Buffer<Ends> Pool; ///< the edge pool: for the fan of each vertex, counter-clockwise
 };
 
+/**
+ * A strip of points; vertices are slots, in the order of BinGrid::Order. The pool is shared, but
+ * each strip writes only the entries of its own vertices.
+ */
 class Growth::GridStrip : public Strip<GridStrip>
 {
 public:
@@ -98,6 +102,7 @@ public:
   bool IsDone() const { return this->Next == this->End; }
   double Done() const { return this->Next - this->Begin; }
 
+  /** See Strip. By position: slots of one row are not in the order of y. */
   bool IsBelow(Index slot) const
   {
     return IsLower(this->Grid.PointAt(slot), this->Grid.PointAt(this->Order[this->Begin]));

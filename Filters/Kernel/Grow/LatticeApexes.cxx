@@ -60,6 +60,10 @@ public:
 
   double Length() const { return std::sqrt(this->LengthSquared); }
 
+  /**
+   * Chooses the disc by the position of its centre; sets the bounds that rows and columns are
+   * clipped to.
+   */
   void Set(double position)
   {
     this->RadiusSquared = this->LengthSquared * (0.25 + position * position);

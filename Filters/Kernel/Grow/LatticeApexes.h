@@ -52,6 +52,7 @@ struct Apex
   std::int64_t Dot, Cross;
 };
 
+/** The node p as an apex over the edge from a node to e; its products are exact. */
 inline Apex ApexAt(const LatticeMetric& metric, const Offset& e, const Offset& p)
 {
   return { p, metric.Dot(p.X, p.Y, p.X - e.X, p.Y - e.Y), Cross(e, p) };
@@ -87,6 +88,7 @@ inline Sign InNodeCircle(
  */
 bool IsBetter(const Apex& p, const Apex& q, const Offset& e);
 
+/** Shared by all strips: rows' ends are fixed, and lists, once made, do not change. */
 class LatticeApexes
 {
 public:

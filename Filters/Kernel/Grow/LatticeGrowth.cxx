@@ -55,6 +55,7 @@ public:
   const LatticeMetric* const Metric;
 
 private:
+  /** How many columns and rows lie between two nodes. */
   Offset Between(Index from, Index to) const
   {
     const Index fromRow = this->Nodes.RowOf(from), toRow = this->Nodes.RowOf(to);
@@ -163,6 +164,10 @@ bool Growth::ToIds(Index* triangle) const
   return this->IsLeftIn({ 0, 0 }, { 0, 0 }, triangle[0], triangle[1], triangle[2]);
 }
 
+/**
+ * A strip of whole rows; vertices are node numbers. Begin and End count vertices, FirstWord and
+ * EndWord the words of the bitmap that hold them.
+ */
 class Growth::LatticeStrip : public Strip<LatticeStrip>
 {
 public:
@@ -240,6 +245,10 @@ public:
   void GrowFans();
 
 private:
+  /**
+   * Records an end of a fan, unless its vertex is above the strip. @return whether it is in the
+   * strip
+   */
   bool Set(Buffer<Index>& ends, Index rank, Index end) const
   {
     const bool isInStrip = rank < this->End;
@@ -250,6 +259,7 @@ private:
     return isInStrip;
   }
 
+  /** The difference of node numbers that leads to an offset. */
   Index StepTo(const Offset& p) const
   {
     return static_cast<Index>(p.Y * this->Nodes.WordsPerRow * 64 + p.X);

@@ -53,6 +53,7 @@ public:
   const Neighborhood& Around(Index slot);
 
 private:
+  /** Fills a neighborhood for the leaf of a slot; its Count is 0 if there are too many points. */
   void Gather(Index slot, Neighborhood& around) const;
 
   const BinGrid& Grid;

@@ -40,6 +40,7 @@ ELEVATION_WIDE inline __m256i EightUnits(const double* values, __m256d from, __m
   return _mm256_set_m128i(high, low);
 }
 
+/** The same for one coordinate. */
 ELEVATION_WIDE inline std::int32_t Units(double value, double from, double perUnit)
 {
   return _mm_cvtsd_si32(_mm_set_sd((value - from) * perUnit)); // to the nearest, as above
@@ -47,6 +48,10 @@ ELEVATION_WIDE inline std::int32_t Units(double value, double from, double perUn
 
 } // namespace
 
+/**
+ * Chooses the unit, as large as the ranges of float and of 32 bits allow; windows of bins are not
+ * used where bins are too unequal for one unit.
+ */
 PointWindows::PointWindows(const BinGrid& grid, bool isWidest)
   : Grid(grid)
   , IsWidest(isWidest)
@@ -204,6 +209,7 @@ ELEVATION_WIDE void PointWindows::EnterRow(Index number)
   }
 }
 
+/** Rounds the coordinates of a row's points to units, eight at a time. */
 ELEVATION_WIDE void PointWindows::ReadRow(Row& row)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;

@@ -23,12 +23,15 @@
 namespace elevation
 {
 
-// A window takes WidestVectors, EvenVectors or MostVectors vectors of eight floats:
-// - AVX-512: up to 32 points of 6 x 4 bins, packed into two vectors of sixteen;
-// - AVX2, even density: one vector for each of the four rows, a fifth for what is beyond eight;
-// - smaller windows of bins, or a box: packed into as many as are needed.
-// For each of the numbers there is one instance of the search (WideApexSearch.cxx), whose loops
-// over vectors the compiler unrolls.
+/**
+ * The windows of one strip's vertices, one after another. A window takes WidestVectors, EvenVectors
+ * or MostVectors vectors of eight floats:
+ * - AVX-512: up to 32 points of 6 x 4 bins, packed into two vectors of sixteen;
+ * - AVX2, even density: one vector for each of the four rows, a fifth for what is beyond eight;
+ * - smaller windows of bins, or a box: packed into as many as are needed.
+ * For each of the numbers there is one instance of the search (WideApexSearch.cxx), whose loops
+ * over vectors the compiler unrolls.
+ */
 class PointWindows
 {
 public:
@@ -113,6 +116,7 @@ private:
 
   void EnterRow(Index number);
   void ReadRow(Row& row);
+  /** Fills the window of window.Origin by the first of the ways that succeeds. */
   void GatherInto(Window& window);
   void SetBounds(Window& window, int shape, Index firstColumn, Index endColumn,
     std::int32_t originX, std::int32_t originY) const;

@@ -250,6 +250,7 @@ ELEVATION_WIDE WideApexSearch::Candidates WideApexSearch::FindCandidates(Index b
   return found;
 }
 
+/** Follow() for windows of so many vectors of eight. */
 template <int Vectors>
 ELEVATION_WIDE_INLINE int WideApexSearch::FollowVectors(
   Index b, Index last, Index* neighbors, Candidates& open) const

@@ -36,6 +36,7 @@
 namespace elevation
 {
 
+/** The windows of one strip's vertices, and the search in them. */
 class WideApexSearch
 {
 public:
@@ -81,6 +82,7 @@ private:
 
   // The functions in the order of use: place the end, search, prove, sift, decide.
   bool PlaceEnd(Index b, std::uint64_t lanes, float& x, float& y) const;
+  // The edge's end is (bx, by), from the vertex, in the window's units.
   template <int Vectors>
   Candidates Search(float bx, float by, int& guess) const;
   template <int Vectors>

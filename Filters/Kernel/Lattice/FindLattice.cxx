@@ -76,6 +76,7 @@ std::vector<Point2> SortedOutwards(
 
 } // namespace
 
+// Tried with each tolerance in turn, from the strictest on: the first lattice that fits is taken.
 bool FitLattice(const LatticeSample& sample, std::vector<Point2>&& inFullestPlace, double tolerance,
   const Progress& progress, Lattice& lattice)
 {

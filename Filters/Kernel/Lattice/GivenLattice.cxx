@@ -58,6 +58,7 @@ Lattice CheckedSteps(const Lattice& given)
   return Reduced(given);
 }
 
+// On one thread: the first such point is wanted, whatever the number of threads.
 Index FirstOffLattice(const PointView& points, const std::vector<Index>& notFinite,
   const Lattice& steps, double tolerance, const Progress& progress)
 {

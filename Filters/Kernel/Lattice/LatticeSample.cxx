@@ -96,6 +96,7 @@ private:
     return true;
   }
 
+  /** Doubles the slots, which are a power of two so that a mask chooses one. */
   void Grow()
   {
     const std::vector<Point2> places = this->Places();
@@ -266,6 +267,7 @@ void LatticeSample::Add(LatticeSample&& part)
   SortUnique(this->Points);
 }
 
+// Each range of points has its own set; they are joined, and sorted, at the end.
 LatticeSample SampleForLattice(const PointView& points, double totalCount, int threads,
   const Progress& progress, std::vector<Index>& notFinite)
 {
@@ -290,6 +292,8 @@ LatticeSample SampleForLattice(const PointView& points, double totalCount, int t
   return sample;
 }
 
+// From the sample alone, with the counts of the cloud estimated from it: no further look at the
+// points.
 Box FullestPlace(const LatticeSample& sample)
 {
   Box place = sample;

@@ -20,6 +20,7 @@ struct Product
   std::uint64_t High, Low;
 };
 
+/** By halves of 32 bits, as on paper. */
 Product Multiply(std::uint64_t a, std::uint64_t b)
 {
   const std::uint64_t half = 0xffffffffu;
@@ -60,6 +61,8 @@ int CompareProducts(std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t
   return left * larger;
 }
 
+// Perpendicular steps, which nearly all lattices have, get small exact ratios; others are scaled to
+// 20 bits and rounded.
 bool LatticeMetric::Set(const Lattice& lattice)
 {
   // Bounds of LatticeGrowth.h: perpendicular, and equal, are what differs by less than isEqual;

@@ -37,6 +37,7 @@ struct NodeBox : Box
   double WordsPerRow() const { return std::floor((this->Columns() + 63.0) / 64.0) + 1.0; }
   double Words() const { return this->WordsPerRow() * (this->Rows() + RowsBeyond) + 2.0; }
 
+  /** In floating point, as a box may have more columns than any integer holds. */
   bool IsSmallEnough() const
   {
     return this->Columns() <= MaximumSide && this->Rows() <= MaximumSide;
@@ -69,6 +70,7 @@ public:
 
   void Extend(NodeBox& box, const Point2& p) const { box.Add({ this->I(p), this->J(p) }); }
 
+  /** From here on, columns and rows are counted from the box's first. */
   void Start(const NodeBox& box)
   {
     this->FirstI = box.FirstI();

@@ -104,6 +104,7 @@ private:
     Index Count() const { return static_cast<Index>(this->Begins.size()) - 1; }
   };
 
+  /** The box of all nodes, in steps from the search's origin. */
   NodeBox FindBox(const Progress& progress) const
   {
     return FindNodeBox(this->NodeOf, this->Search, this->Search.Steps, [&]() {
@@ -209,6 +210,7 @@ private:
     elevation::ForEachRange(this->Points.Count, this->Threads, progress, work);
   }
 
+  /** The way for scattered points: bucket by bucket, so that bitmap and ids are in the cache. */
   bool PlaceSorted(Buckets& sorted, IdSet& duplicates, const Progress& progress)
   {
     ForEachPiece(sorted.Count(), this->Threads, progress.Between(0.0, 0.35),
@@ -231,6 +233,7 @@ private:
     return true;
   }
 
+  /** The way for points in some order: range by range, prefetching. */
   bool PlaceInOrder(IdSet& duplicates, const Progress& progress)
   {
     if (this->IsScattered)
@@ -468,6 +471,7 @@ void LatticeNodes::Placement::Occupy(Index begin, Index end, std::vector<Index>&
   }
 }
 
+/** Sets Before, and makes room for as many ids as there are occupied nodes. */
 void LatticeNodes::Placement::CountBefore()
 {
   const Index words = static_cast<Index>(this->Nodes.Memory.size());

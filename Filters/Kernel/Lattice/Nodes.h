@@ -31,6 +31,10 @@
 namespace elevation
 {
 
+/**
+ * See above. Once made it does not change, so all threads read it; functions of a node take
+ * constant time, but for Following() and Previous() across empty words.
+ */
 class LatticeNodes
 {
 public:
@@ -43,6 +47,7 @@ public:
     DuplicatePolicy policy, int threads, const Progress& progress);
 
   Index NumberOfPoints() const { return static_cast<Index>(this->Ids.size()); }
+  // Between row and column, node number, and rank: three ways to name a node.
   Index NodeAt(Index row, Index column) const
   {
     return (row * this->WordsPerRow + 1) * 64 + column;

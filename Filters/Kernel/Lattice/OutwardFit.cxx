@@ -19,6 +19,7 @@ namespace
 class Fit
 {
 public:
+  /** Adds a point p at node (i, j). */
   void Add(double i, double j, const Point2& p)
   {
     this->N += 1.0;
@@ -84,6 +85,7 @@ double Rounded(double value, double allowed)
   return value;
 }
 
+/** One run of FitOutwards(): the basis grows finer, the steps follow the points. */
 class OutwardFit
 {
 public:
@@ -166,6 +168,7 @@ private:
     return this->Basis.Rank == 1 ? this->Refine(beside) : Outcome::Fitted;
   }
 
+  /** Inserts the remainder of a point between nodes into the basis. */
   Outcome Refine(const Point2& vector)
   {
     return this->Basis.Insert(vector) ? Outcome::Refined : Outcome::TooFine;
@@ -194,6 +197,7 @@ private:
     return Dot(rest, rest) == 0.0;
   }
 
+  /** Fits the steps to all points, each at the node nearest by the steps so far. */
   bool FitAll()
   {
     Fit fit;

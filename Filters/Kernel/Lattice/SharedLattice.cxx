@@ -31,6 +31,7 @@ Bounded Sum(double p, const Bounded& a, double q, const Bounded& b)
     std::fabs(p) * a.Error + std::fabs(q) * b.Error + Unit * size };
 }
 
+/** a times b. */
 Bounded Product(const Bounded& a, const Bounded& b)
 {
   const double value = a.Value * b.Value;

@@ -128,6 +128,7 @@ private:
   static constexpr Index AtOnce = 4; // edges compared without a branch
   static constexpr Index Few = 128;  // triangles at a time
 
+  // A rising half-edge in the list of its origin, and a falling one that looks for its twin.
   struct RisingEdge
   {
     Index Destination;
@@ -140,6 +141,7 @@ private:
     Index HalfEdge;
   };
 
+  /** Numbers vertices as triangles name them; Corners then has numbers instead of ids. */
   void NumberVertices(const Progress& progress)
   {
     const std::vector<Index>& triangles = this->Surface.Triangles;
@@ -198,6 +200,7 @@ private:
     }
   }
 
+  /** Writes each rising half-edge into the list of its origin. */
   void ListRising(const Progress& progress)
   {
     const Index total = this->Ends[this->Used];
@@ -407,6 +410,7 @@ private:
   // Below, comparing all is faster. Without the search, a star of many pinches would be quadratic.
   static constexpr std::ptrdiff_t Many = 16;
 
+  /** Lists the half-edges with nothing, or no flagged triangle, on their right. */
   void FindBorders(const Progress& progress)
   {
     const Mesh& mesh = this->Surface;
@@ -425,6 +429,10 @@ private:
     });
   }
 
+  /**
+   * Enters each border at its origin: the first in Leaving, which is all that most vertices need,
+   * others in Further.
+   */
   void ListLeaving(const Progress& progress)
   {
     this->Leaving.assign(this->Surface.NumberOfPoints(), None);
@@ -504,6 +512,7 @@ private:
     return best;
   }
 
+  /** From each border not seen yet, until the walk is back there. */
   Rings Walk(const Progress& progress) const
   {
     Rings walks;
@@ -533,10 +542,12 @@ private:
   }
 
   Index Count() const { return static_cast<Index>(this->Borders.size()); }
+  /** Where the further borders of a vertex begin in Further. */
   Place FirstAt(Index vertex) const
   {
     return std::lower_bound(this->Further.begin(), this->Further.end(), Leave(vertex, 0));
   }
+  /** The point that the border of a place leads to. */
   const Point2& EndOf(Index place) const
   {
     return this->Surface.PointOf(this->Surface.Destination(this->Borders[place]));

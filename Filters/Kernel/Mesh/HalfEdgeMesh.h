@@ -54,6 +54,11 @@ std::string NameOf(std::int64_t number, const Point2& p);
 std::string NameOf(const NamedPoints& points, Index i);
 std::string NameOf(const Mesh& mesh, Index vertex);
 
+/**
+ * A mesh of triangles. All arrays are public: passes over the whole mesh read and write them
+ * directly. A function that changes Triangles must keep Twins right, or leave them to
+ * ConnectTwins().
+ */
 class Mesh
 {
 public:
@@ -72,6 +77,7 @@ public:
   /** How messages number the point of an id, if not by the id. */
   std::function<std::int64_t(Index id)> NumberOf;
 
+  // Queries in constant time. h is a half-edge; those that follow its triangle need no Twins.
   Index NumberOfPoints() const { return static_cast<Index>(this->Points.size()); }
   Index NumberOfTriangles() const { return static_cast<Index>(this->Triangles.size() / 3); }
   Index NumberOfHalfEdges() const { return static_cast<Index>(this->Triangles.size()); }
@@ -162,6 +168,7 @@ struct Components
 class LabelSets
 {
 public:
+  /** A new component. @return its label on side 0 */
   Index Add()
   {
     this->JoinedTo.push_back(static_cast<Index>(2 * this->JoinedTo.size()));
@@ -204,6 +211,10 @@ public:
   Index operator()(Index label) const { return this->JoinedTo[label / 2] ^ (label & 1); }
 
 private:
+  /**
+   * The label that a label stands for now. Halves the paths that it follows, so that later calls
+   * are short.
+   */
   Index Find(Index label)
   {
     while (this->JoinedTo[label / 2] != (label & ~1))

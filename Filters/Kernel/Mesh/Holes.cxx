@@ -183,6 +183,7 @@ private:
   static constexpr Index NotLocated = -2;
   static constexpr Index Outside = None; ///< the empty region around everything
 
+  /** Each border edge as a segment from its lower to its higher end, with an event at either. */
   void MakeSegments(const Progress& progress)
   {
     const Rings& walks = this->Result.Walks;
@@ -348,6 +349,7 @@ private:
     return true;
   }
 
+  /** The cell of a segment, as messages number it. */
   std::string CellOf(const Segment& segment) const
   {
     return std::to_string(
@@ -359,6 +361,7 @@ private:
       std::to_string(this->Surface.Destination(segment.HalfEdge));
   }
 
+  // Both make the message, and return false for the caller to return.
   bool RefuseCrossing(const Segment& s, const Segment& t)
   {
     this->Message = "Cell " + this->CellOf(s) + " overlaps cell " + this->CellOf(t) +
@@ -434,6 +437,7 @@ private:
     }
   }
 
+  /** Marks the hole that a region is; the outside needs no mark, as it is never filled. */
   void Touch(Index region)
   {
     if (region != Outside)

@@ -101,10 +101,15 @@ private:
     return this->NumberOfRegions > 0;
   }
 
+  /**
+   * The region of a half-edge's triangle, as a hole; None if the triangle is not long, or none is
+   * there.
+   */
   Index RegionAt(Index h) const
   {
     return h == Mesh::Border ? None : this->Result.RegionOf[Mesh::Triangle(h)];
   }
+  /** Whether a half-edge has its region on the left, and something else on the right. */
   bool IsBorder(Index h) const
   {
     return this->RegionAt(h) != None && this->RegionAt(this->Surface.Twin(h)) == None;
@@ -212,6 +217,7 @@ private:
     }
   }
 
+  // From the lower vertex to the higher one; the region counts from 0.
   struct InnerEdge
   {
     Index Region;

@@ -43,6 +43,7 @@ public:
     this->Edges.clear();
   }
 
+  /** Makes the triangles, in two steps: some that fill the polygon, then those that are right. */
   void Fill(const Mesh& mesh)
   {
     this->Scan(mesh);
@@ -89,6 +90,7 @@ private:
     this->Twins[this->Stack.back().Twin] = ~static_cast<Index>(this->Corners.size() - 1);
   }
 
+  /** Makes two half-edges twins; a polygon's edge has no half-edge of its own. */
   void Connect(Index h, Index twin)
   {
     this->Twins[h] = twin;
@@ -143,6 +145,10 @@ private:
     }
   }
 
+  /**
+   * Whether the edge of the twins a and b is to be flipped. Both triangles lie in the polygon, but
+   * their quadrilateral need not be convex: then neither apex is in the other's circle.
+   */
   bool IsToFlip(const Mesh& mesh, Index a, Index b) const
   {
     return ShouldFlip(mesh.PointOf(this->Triangles[a]), mesh.PointOf(this->Triangles[b]),
@@ -221,6 +227,7 @@ public:
   }
 
 private:
+  /** Flags both half-edges of an edge. */
   void Constrain(Index h)
   {
     this->Constrained[h] = 1;
@@ -230,6 +237,7 @@ private:
     }
   }
 
+  /** @throws Error if a segment crosses an edge that must stay */
   void CheckIsFree(Index crossed, const Segment& segment) const
   {
     if (this->Constrained[crossed])
@@ -376,6 +384,10 @@ private:
     }
   }
 
+  /**
+   * Gives the polygons' edges their new ids: in their twins, in Constrained, and in the stars of
+   * vertices where they are borders.
+   */
   void ReconnectEdges()
   {
     Mesh& mesh = this->Surface;
@@ -422,6 +434,7 @@ private:
       (from == segment.A ? "." : " after " + NameOf(this->Surface, from) + "."));
   }
 
+  // An edge of a polygon before and after: its half-edge, the twin, whether it must stay.
   struct OldEdge
   {
     Index Before;

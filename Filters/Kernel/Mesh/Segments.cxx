@@ -34,6 +34,7 @@ public:
     }
   }
 
+  /** Runs the sweep, and ends at the first crossing. */
   bool FindsCrossing(const Progress& progress)
   {
     std::vector<Ends>& all = this->Segments;
@@ -109,6 +110,7 @@ private:
 // coordinates.
 constexpr std::uint64_t Prime = 0x7FFFFFFF; // 2^31 - 1
 
+/** A coordinate modulo the prime: exact, also for fractions, as 2 has an inverse. */
 std::uint64_t RemainderOf(double x)
 {
   int exponent = 0;
@@ -140,6 +142,7 @@ std::uint64_t LineHash(const Point2& a, const Point2& b)
   return slope << 32 | (y + Prime - slope * x % Prime) % Prime;
 }
 
+// A piece with the hash of its line, to be sorted by it.
 struct LinePiece
 {
   std::uint64_t Line;

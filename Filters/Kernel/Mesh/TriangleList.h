@@ -27,6 +27,7 @@ struct TriangleList
   Index FirstCell = 0; ///< messages name triangle t as cell FirstCell + t
 
   const Index* CornersOf(Index t) const { return this->Corners + 3 * static_cast<std::size_t>(t); }
+  /** Points come in any order, so loops ask for them some triangles ahead. */
   void PrefetchPoint(Index vertex) const
   {
     const std::size_t k = 3 * static_cast<std::size_t>(vertex);

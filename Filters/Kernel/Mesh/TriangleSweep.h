@@ -127,6 +127,7 @@ public:
     return true;
   }
 
+  /** Leaves a half-edge open: at the vertex if there is room, else in the set. */
   void Open(const SweptEdge& edge)
   {
     Vertex& at = this->Vertices[edge.Lower];
@@ -179,6 +180,7 @@ public:
   }
 
 private:
+  /** Origin and destination in one number; isDown is passed, as the twin's key is wanted, too. */
   static std::uint64_t KeyOf(const SweptEdge& edge, int isDown)
   {
     return isDown ? std::uint64_t(edge.Upper) << 32 | std::uint32_t(edge.Lower)
@@ -204,6 +206,7 @@ inline bool IsExactlyCounterClockwise(Point2 a, Point2 b, Point2 c)
   return Orientation(a, b, c) == Positive;
 }
 
+/** Whether a triangle is counter-clockwise with finite corners. */
 inline bool IsCounterClockwise(Point2 a, Point2 b, Point2 c)
 {
   // The filter of Orientation(), which coordinates that are not finite never pass. NaN fails every
@@ -227,6 +230,7 @@ class TriangleSweep
 public:
   using Vertex = typename Visitor::Vertex;
 
+  /** @param threads  0: all there are; few triangles are swept on fewer */
   TriangleSweep(const TriangleList& list, int threads)
     : List(list)
     , Threads(ResolveNumberOfThreads(threads))

@@ -61,6 +61,7 @@ public:
   }
 
 private:
+  /** Adds a finding, unless there are enough: a broken mesh may have one at every edge. */
   void Add(Rule rule, Index where, const std::string& message)
   {
     if (this->Findings.size() < this->Options.MaximumFindings)
@@ -69,6 +70,7 @@ private:
     }
   }
 
+  /** Ids, then Orientation: no later check may read beyond the points. */
   void CheckTriangles()
   {
     const auto& ids = this->Checked.Triangles;
@@ -99,6 +101,7 @@ private:
     }
   }
 
+  /** By connecting the copy, which throws at an edge that is not manifold. */
   void CheckManifold()
   {
     this->Checked.Twins.clear();
@@ -153,6 +156,7 @@ private:
     }
   }
 
+  /** One loop that never turns inwards, and goes around once. */
   void CheckHull()
   {
     if (this->Checked.NumberOfTriangles() == 0)

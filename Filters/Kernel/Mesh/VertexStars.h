@@ -21,6 +21,10 @@
 namespace elevation
 {
 
+/**
+ * The stars of all vertices of a mesh: one half-edge for each vertex, from which the mesh leads on.
+ * Functions take the mesh as an argument, since Recovery and Trim change it while the stars follow.
+ */
 class VertexStars
 {
 public:

@@ -111,6 +111,7 @@ private:
     }
   }
 
+  /** Follows a way to the next place that stays, or around a closed line. */
   std::vector<Index> ChainFrom(std::size_t way, WorkReporter& reporter)
   {
     const Index start = this->Ways[way].A;
@@ -164,6 +165,7 @@ struct Stretch
   Index End() const { return (*this->Chain)[this->Last]; }
 };
 
+/** Finds how far one piece can replace those of a chain. */
 class Straightening
 {
 public:

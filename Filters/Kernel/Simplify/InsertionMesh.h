@@ -60,6 +60,7 @@ struct Slopes
   double X, Y;
 };
 
+/** The plane through three places; not finite if they are on one line. */
 inline Slopes SlopesOf(const ElevatedPlace& a, const ElevatedPlace& b, const ElevatedPlace& c)
 {
   const double bx = b.X - a.X, by = b.Y - a.Y, bz = b.Z - a.Z;
@@ -80,6 +81,10 @@ inline float ErrorOf(const ElevatedPlace& p, const ElevatedPlace& a, const Slope
 /** Triangles that may be entered on the way to a place: see FaceOf(). */
 constexpr auto IsAnyFace = [](const Face&) { return true; };
 
+/**
+ * Faces, and lists of places; the operations are those of InsertionStrip, which all strips call at
+ * the same time on different faces.
+ */
 class InsertionMesh
 {
 public:

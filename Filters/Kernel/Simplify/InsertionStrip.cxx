@@ -37,6 +37,7 @@ struct TwoTriangles
     , Second(SlopesOf(p, d, b))
   {
   }
+  /** By rounded sides: near the edge either plane is nearly right. */
   bool IsInFirst(const ElevatedPlace& q) const
   {
     return (this->D.X - this->P.X) * (q.Y - this->P.Y) -
@@ -53,6 +54,7 @@ struct TwoTriangles
 };
 } // namespace
 
+/** The number of a face that is free, entered in Faces. */
 Index InsertionStrip::NewFace()
 {
   // In stretches, as the counter is shared. Which numbers a strip gets depends on threads; the

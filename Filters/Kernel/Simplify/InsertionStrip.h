@@ -47,6 +47,10 @@ public:
     return this->HasCorner(face.Corners[0]) && this->HasCorner(face.Corners[1]) &&
       this->HasCorner(face.Corners[2]);
   }
+  /**
+   * Chooses the first level from the largest error of the strip's faces. @param[in] mostVertices
+   * at about so many, the strip ends
+   */
   void SetLevels(double error, double mostVertices);
   /** @return false when done; it may be called again from there on */
   bool Work(const Round& round);

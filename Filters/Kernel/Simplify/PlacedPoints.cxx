@@ -71,6 +71,7 @@ void SortBin(BinGrid& grid, Index bin)
   }
 }
 
+/** The same for all bins. From here on the grid's Order and Tree are wrong. */
 void SortBins(BinGrid& grid, int threads, const Progress& progress)
 {
   constexpr Index binsAtOnce = 2048;

@@ -102,6 +102,7 @@ private:
     return this->Placed.Metric ? this->Points.At(this->Placed.Ids[place]) : this->Placed.At(place);
   }
   double ElevationOf(Index place) const { return this->Placed.Places[place].Z; }
+  /** By the coordinates and elevations of the input. */
   FacePlane PlaneOf(const Face& face) const
   {
     const Index* const c = face.Corners;
@@ -109,6 +110,10 @@ private:
       this->At(c[2]), this->ElevationOf(c[2]) };
   }
 
+  /**
+   * Measures the points of one face; those beyond are added, the largest distance of others is
+   * kept.
+   */
   void MeasureFace(Index number, double most, double& largest, std::vector<Index>& beyond) const
   {
     const Face& face = this->Mesh.At(number);
@@ -303,6 +308,7 @@ void ListUnused(Index count, const PlacedPoints& placed, const GreedyInsertion* 
   });
 }
 
+/** All passes, after points have been placed. @throws NotOnLattice as Measurement */
 Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   const std::vector<Segment>& pieces, const DelaunayOptions& options, int threads,
   const Progress& progress)
