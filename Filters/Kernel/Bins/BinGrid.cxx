@@ -228,6 +228,7 @@ private:
         Index* const to = next.data() + static_cast<std::size_t>(piece) * blocks.size();
         this->ForEach(begin, end, [&](Index id, double x, double y) {
           const Index row = bins.Row(y);
+          // Each piece of the input writes its own stretch of each block, so threads need no locks.
           const Index block = this->BlockOf[row >> this->Shift];
           const Index bin = (row - blocks[block].FirstRow) * bins.Columns + bins.Column(x);
           // With the bin, so that it is not computed again.

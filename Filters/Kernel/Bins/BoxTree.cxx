@@ -163,6 +163,7 @@ private:
     // The part with the largest area is halved, until there are eight or none is worth it.
     while (count < Node::Places)
     {
+      // In bins, as the shape of bins is nearly square.
       const auto widest = std::max_element(areas, areas + count) - areas;
       if (areas[widest] == 0.0)
       {
@@ -294,6 +295,7 @@ private:
       sample[i] = key(begin[static_cast<std::int64_t>(i) * size / samples]);
     }
     std::nth_element(sample, sample + samples / 2, sample + samples);
+    // Not by the sample's points themselves: all equal to the value go one way.
     Placed* middle = this->Divide(cluster, key, sample[samples / 2], isWide);
     if (std::min(middle - begin, end - middle) < size / 8)
     {

@@ -128,6 +128,7 @@ private:
     const BoxTree::Rows& local = this->Local;
     Index kept = 0;
     this->ForEach(this->Filled.Count, 0.9, 0.95, [&](Index i) {
+      // Compared with the last one that is kept, so any number of equal points become one.
       const Index first = this->Order[kept], slot = this->Order[i];
       if (local.Y[first] != local.Y[slot] || local.X[first] != local.X[slot])
       {

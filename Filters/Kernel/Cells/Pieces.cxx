@@ -267,6 +267,7 @@ std::vector<Edge> FindSeamEdges(
     }
   }
   std::sort(across.begin(), across.end());
+  // An edge of the border occurs in one direction only.
   const auto isBorder = [&across](const Edge& edge) {
     return Has(across, edge.first, edge.second) && !Has(across, edge.second, edge.first);
   };
@@ -294,6 +295,7 @@ Piece SeamOf(const SettledMesh& mesh, const Progress& progress)
   const auto place = [&](Index vertex) {
     if (placeOf[vertex] == None)
     {
+      // A vertex enters the seam when it is first asked for.
       placeOf[vertex] = seam.Count();
       const Point2 p = mesh.Points.At(vertex);
       seam.Coordinates.insert(seam.Coordinates.end(), { p.X, p.Y, mesh.Points.Elevation(vertex) });

@@ -125,6 +125,7 @@ ConstrainedTriangulation TriangulateConstrained(
   ConstrainedTriangulation constrained;
   Triangulation& result = constrained.Result;
   const Progress& progress = asked.Monitor;
+  // By the input points; the vertices that lines add get ids behind theirs.
   static_cast<LinePieces&>(constrained) =
     CutLines(points, lines, asked.Duplicates, progress.Between(0.0, 0.17));
   if (constrained.AreNone)

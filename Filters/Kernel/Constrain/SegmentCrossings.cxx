@@ -82,6 +82,7 @@ private:
     const std::size_t before = this->Cuts.size();
     for (const auto& [piece, other] : { crossing, Crossing(crossing.second, crossing.first) })
     {
+      // The piece whose own units say how far rounding moves it is the one to be bent.
       const SegmentPiece& to = this->Network.Pieces[other];
       VisitEndsInReach(this->Network.PieceEnds[other], this->Network.PieceEnds[piece],
         this->Network.Pieces[piece].Unit, this->Reach, [this, &to, bent = piece](int end) {

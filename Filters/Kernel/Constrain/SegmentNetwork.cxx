@@ -92,6 +92,7 @@ void SegmentNetwork::Collect(const ConstraintLines& lines, const Progress& progr
       {
         std::swap(p, q);
       }
+      // Ranks are in the order of lines, for which elevations at crossings are taken.
       const Index rank = static_cast<Index>(this->Segments.size());
       this->Pieces.push_back({ p, q, rank, 1, UnitsOf(this->At(p), this->At(q)) });
       this->SegmentLines.push_back(line);
@@ -108,6 +109,8 @@ void SegmentNetwork::Collect(const ConstraintLines& lines, const Progress& progr
   {
     if (!hasSegment[v])
     {
+      // A line of one point: a piece of no length keeps its vertex in the grid, so that an input
+      // point at the same place is found.
       this->Pieces.push_back({ static_cast<Index>(v), static_cast<Index>(v), None, 0 });
     }
   }

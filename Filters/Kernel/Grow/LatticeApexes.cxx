@@ -204,6 +204,8 @@ const LatticeApexes::Entries* LatticeApexes::MakeList(
 {
   constexpr std::size_t most = 64;
   std::vector<Apex> all;
+  // All nodes in range on the left of the edge, whether occupied or not: the list serves every edge
+  // with this vector.
   for (std::int64_t y = e.Y < 0 ? -Range : 0; y <= Range; ++y)
   {
     for (std::int64_t x = -Range; x <= Range; ++x)
@@ -416,6 +418,7 @@ private:
     bool isBetter = false;
     for (Index w = firstWord; w <= lastWord; ++w)
     {
+      // Bits outside of the range of columns are shifted out at either end.
       std::uint64_t bits = this->Nodes.Word(w);
       if (w == firstWord)
       {

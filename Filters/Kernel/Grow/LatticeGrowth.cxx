@@ -108,6 +108,7 @@ private:
 Hull Growth::FindHull() const
 {
   const LatticeNodes& nodes = this->Nodes;
+  // A lattice's box may have empty rows below and above its points.
   const Index lowest = nodes.RowOf(nodes.Following(nodes.NodeAt(0, -1)));
   const Index highest = nodes.RowOf(nodes.Previous(nodes.NodeAt(nodes.Rows - 1, nodes.Columns)));
   Buffer<Index> candidates;
@@ -146,6 +147,7 @@ Buffer<Point2> Growth::Places(const Progress&)
     const Index begin = this->FirstWordOf(row);
     for (Index w = begin; w < begin + nodes.WordsPerRow - 1; ++w)
     {
+      // Each turn takes the lowest bit off.
       for (std::uint64_t bits = nodes.Word(w); bits; bits &= bits - 1)
       {
         places.Append({ 64.0 * (w - begin) + LowestBit(bits), 1.0 * row });
@@ -375,6 +377,7 @@ void Growth::LatticeStrip::GrowFans()
     while (rest)
     {
       const int bit = LowestBit(rest);
+      // As many vertices as there are consecutive full cells from here on, within the word.
       const std::uint64_t run = full >> bit;
       if (run & 1)
       {

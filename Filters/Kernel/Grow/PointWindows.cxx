@@ -251,6 +251,8 @@ ELEVATION_WIDE_INLINE void PointWindows::SetBounds(Window& window, int shape, In
 }
 
 /** Gathers at most 32 points, packed into two vectors. */
+// With wide registers, packing is cheap: an expanding load puts a row's points where the row before
+// has ended.
 ELEVATION_WIDEST bool PointWindows::GatherWidest(Window& window, Index firstColumn)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
@@ -275,6 +277,7 @@ ELEVATION_WIDEST bool PointWindows::GatherWidest(Window& window, Index firstColu
       return false;
     }
     const std::uint32_t places = static_cast<std::uint32_t>(~std::uint64_t(0) << count);
+    // Shifts of 64 bits, as count may be 32: then no lane is left.
     const __mmask16 low = static_cast<__mmask16>(places);
     const __mmask16 high = static_cast<__mmask16>(places >> 16);
     // How many of the row's points go to the first vector; the second one continues there.
@@ -285,6 +288,7 @@ ELEVATION_WIDEST bool PointWindows::GatherWidest(Window& window, Index firstColu
     highX = _mm512_mask_expandloadu_epi32(highX, high, x + inLow);
     lowY = _mm512_mask_expandloadu_epi32(lowY, low, y);
     highY = _mm512_mask_expandloadu_epi32(highY, high, y + inLow);
+    // Slots of a row are consecutive, so they follow from the lane.
     const __m512i offset = _mm512_set1_epi32(first - static_cast<Index>(count));
     lowSlot = _mm512_mask_add_epi32(lowSlot, low, lanes, offset);
     highSlot =
@@ -380,6 +384,7 @@ ELEVATION_WIDE bool PointWindows::GatherEven(Window& window, Index firstColumn)
 }
 
 /** Adds the points of rows beyond the eighth, as one vector. */
+// Few points, one by one: rows with more than eight are seldom where density is even.
 ELEVATION_WIDE void PointWindows::AddBeyondEight(
   Window& window, Index firstColumn, const Index* counts) const
 {
@@ -426,6 +431,7 @@ ELEVATION_WIDE bool PointWindows::GatherBins(Window& window, Index column, int s
     for (Index slot = first; slot < end; slot += 8)
     {
       // Whole vectors: the excess is overwritten by the next row, or by NaN.
+      // Room has eight lanes to spare for this.
       const int at = count + (slot - first);
       const __m256i unitsX =
         _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.X.data() + (slot - row.FirstSlot)));

@@ -163,11 +163,13 @@ Triangulation TriangulateNodes(const PointView& points, const SharedLattice& lat
   if (isFilled)
   {
     LatticeSearch search;
+    // Of these points alone: the bitmap need not hold the nodes of other pieces.
     static_cast<Extent&>(search) = FindExtent(
       points, ThreadsAtOnce(options.NumberOfThreads), Progress(), [](Index, const Point2&) {});
     search.Found = true;
     search.Steps = lattice.Steps();
     DelaunayOptions onLattice = options;
+    // That of the whole cloud, with which the lattice was found.
     onLattice.LatticeTolerance = lattice.Tolerance();
     Triangulation result;
     if (TriangulateOnLattice(points, search, onLattice, result))

@@ -128,6 +128,8 @@ ELEVATION_WIDE_INLINE WideApexSearch::Candidates WideApexSearch::Search(
   }
   std::uint32_t bits;
   std::memcpy(&bits, &best, sizeof bits);
+  // From here on the guess is the point to compare with; its products are computed once more, since
+  // a lane of a vector cannot be picked by a variable.
   guess = static_cast<int>(bits & 63u);
   const float x = this->Windows.Current().X[guess], y = this->Windows.Current().Y[guess];
   const float cross = bx * y - by * x;
@@ -350,6 +352,7 @@ struct WidestWindow
 };
 
 /** FollowVectors() for windows of two vectors of sixteen. In one, as all of it is in registers. */
+// The same steps as FollowVectors(), with coordinates and products of all 32 points in registers.
 ELEVATION_WIDEST int WideApexSearch::FollowWidest(
   Index b, Index last, Index* neighbors, Candidates& open) const
 {

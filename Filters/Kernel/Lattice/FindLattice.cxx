@@ -61,6 +61,7 @@ std::vector<Point2> SortedOutwards(
   const LatticeSample& sample, const std::vector<Point2>& around, const Point2& middle)
 {
   std::vector<Point2> points = sample.Some();
+  // The sample reaches far, the points around are dense: the fit needs both.
   points.insert(points.end(), around.begin(), around.end());
   SortUnique(points);
   for (Point2& p : points)
@@ -93,6 +94,8 @@ bool FitLattice(const LatticeSample& sample, std::vector<Point2>&& inFullestPlac
   // A finer lattice has more nodes than the bitmap would hold: steps that rounding errors have
   // made.
   const double leastArea = 0.5 * area / MaximumNodesPerPoint;
+  // A lattice of the whole cloud is one of its fullest part, where differences are shortest and
+  // rounding errors smallest.
   const std::vector<Point2> differences = ShortestDifferences(around);
   const auto isLattice = [&](double zeroTolerance) {
     Generators generators(leastArea, 1e-9 * extent / sample.Count, zeroTolerance);

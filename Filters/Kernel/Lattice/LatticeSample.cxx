@@ -219,6 +219,7 @@ void KeepFullest(std::vector<Point2>& points)
     const Point2 &low = box.Low, &high = box.High;
     // Halve the longer side.
     const bool isWide = box.Width() > box.Height();
+    // The middle of the box, not the median: the half with more points is the denser one.
     const double middle = isWide ? 0.5 * (low.X + high.X) : 0.5 * (low.Y + high.Y);
     const auto isLow = [&](const Point2& p) { return (isWide ? p.X : p.Y) < middle; };
     const std::size_t lower =

@@ -29,6 +29,7 @@ bool AreScattered(
   {
     std::array<Index, 3> column{}, row{};
     Index count = 0;
+    // Three points in a row of the input, at places spread over it.
     const Index first = sample * (points.Count / samples);
     ForEachPoint(points, first, first + 3, notFinite, [&](Index, const Point2& p) {
       nodeOf(p, column[count], row[count]);
@@ -513,6 +514,7 @@ void LatticeNodes::Placement::PlaceIds(Index begin, Index end)
   std::array<Index, Few> ranks;
   for (; begin < end; begin += Few)
   {
+    // Three loops, so that each asks for the memory that the next one needs.
     const Index size = std::min(Few, end - begin);
     const Index* const here = nodes + begin;
     for (Index i = 0; i < size; ++i)

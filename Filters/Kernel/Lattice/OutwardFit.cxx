@@ -74,6 +74,7 @@ double Rounded(double value, double allowed)
 {
   for (int decimals = -9; decimals <= 15; ++decimals)
   {
+    // Multiplied or divided by a power that is exact, so that 0.1 becomes the double 0.1.
     const double power = std::pow(10.0, std::abs(decimals));
     const double candidate =
       decimals < 0 ? std::round(value / power) * power : std::round(value * power) / power;
@@ -152,6 +153,7 @@ private:
       Point2 rest;
       if (!this->IsNode(this->Sample[k], fit, rest))
       {
+        // The fitted steps are better than those of the generators.
         this->Basis.U = this->Steps.StepU;
         this->Basis.V = this->Steps.StepV;
         return this->Refine(rest);

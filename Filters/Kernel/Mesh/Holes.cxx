@@ -258,6 +258,8 @@ private:
     bool haveEnded = false;
     for (; first < last && !this->Events[first].IsStart; ++first)
     {
+      // Edges that end at one point are neighbours, so what follows the last one erased is the
+      // first edge to the right of the point.
       behind = this->Status.erase(this->Places[this->Events[first].Segment]);
       haveEnded = true;
     }
@@ -286,6 +288,8 @@ private:
     for (std::size_t i = first; i < last; ++i)
     {
       const Index segment = this->Events[i].Segment;
+      // With its neighbour as a hint, in constant time; the order among those that start here is
+      // found by IsLeftOf.
       this->Places[segment] = this->Status.insert(behind, segment);
     }
     // From the neighbour on the left to the one on the right, also where nothing has started: two

@@ -71,6 +71,7 @@ public:
       const std::size_t first = vertices.size();
       std::transform(walks.Begin(walk), walks.End(walk), std::back_inserter(vertices),
         [this](Index h) { return this->Surface.Origin(h); });
+      // All edges of a walk are of one region, so its first edge says which.
       this->EndWalk(first, regionOf[Mesh::Triangle(*walks.Begin(walk))]);
     }
     this->NumberOfRegions = 1 + *std::max_element(regionOf.begin(), regionOf.end());
@@ -178,6 +179,7 @@ private:
   void StartAtLowest(std::size_t first)
   {
     std::vector<Index>& v = this->Result.Walks.Vertices;
+    // The vertex after a place, around the walk.
     const auto next = [&](std::size_t i) { return v[i + 1 == v.size() ? first : i + 1]; };
     std::size_t lowest = first;
     for (std::size_t i = first + 1; i < v.size(); ++i)
@@ -331,6 +333,7 @@ private:
       ReportStep(progress, steps.Count(), 8 * gaps.size());
       const auto [gap, v] = queue.top();
       queue.pop();
+      // To the neighbours, what is left of the gap after the way there.
       const auto spread = [&, from = gap, p = mesh.PointOf(v)](Index w) {
         const Point2& q = mesh.PointOf(w);
         const double left = from - GapDecay * std::hypot(q.X - p.X, q.Y - p.Y);

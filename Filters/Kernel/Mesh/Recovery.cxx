@@ -271,6 +271,7 @@ private:
     this->Right.Clear();
     this->Left.Corners.push_back(from);
     this->Right.Corners.push_back(from);
+    // The sides of the first triangle, from the segment's start to the ends of the crossed edge.
     this->Left.Edges.push_back(Mesh::Next(crossed));
     this->Right.Edges.push_back(Mesh::Previous(crossed));
     // The crossed edge always runs from the right of the segment to its left.
@@ -293,12 +294,15 @@ private:
       {
         this->Right.Corners.pop_back();
         this->Left.Edges.push_back(Mesh::Previous(beyond));
+        // beyond runs from the left end to the right one; the segment leaves its triangle between
+        // the right end and the apex.
         crossed = Mesh::Next(beyond);
       }
       else if (side == Negative)
       {
         this->Left.Corners.pop_back();
         this->Right.Edges.push_back(Mesh::Next(beyond));
+        // Between the apex and the left end.
         crossed = Mesh::Previous(beyond);
       }
       else
@@ -346,6 +350,7 @@ private:
       const Index size = static_cast<Index>(side->Triangles.size());
       for (Index h = 0; h < size; ++h)
       {
+        // The triangles of a side have consecutive slots of the sorted ones.
         const Index here = 3 * first[h / 3] + h % 3;
         mesh.Triangles[here] = side->Triangles[h];
         this->Constrained[here] = 0;

@@ -303,6 +303,8 @@ bool IsWithin(double most, Real unit, const PointView& points, const Index* corn
     whole += area[k];
     wholeSize += areaSize[k];
   }
+  // At least so large is the area, so the quotient is an upper bound; no bound for a triangle
+  // without area.
   const Real least = whole - unit * wholeSize;
   return least > 0.0 && (size(sum) + unit * sumSize) / least <= most;
 }
@@ -335,6 +337,7 @@ std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points,
     {
       continue;
     }
+    // Whether any triangle covers the point, and whether it is near one of those that do.
     bool isCovered = false, isNear = false;
     const auto look = [&](Index t, double by) {
       const Index* const c = cornersOf(t);

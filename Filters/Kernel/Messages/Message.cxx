@@ -70,6 +70,7 @@ Message::Message(const Sentence& sentence, const std::vector<Argument>& values)
       return InBraces(place);
     }
     const std::string name(place);
+    // Values come in the order of places; a place that comes again takes the value it had.
     auto at = std::find(places.begin(), places.end(), name);
     const bool isNew = at == places.end();
     const Argument& value = isNew ? *next++ : values[at - places.begin()];

@@ -323,6 +323,7 @@ std::vector<Segment> FewerPieces(const PlacedPoints& placed, const std::vector<S
       }
     }
   }
+  // Only stretches that are not exactly straight can have a point between line and piece.
   const std::vector<char> isHindered =
     bent.empty() ? std::vector<char>() : FindHindered(placed, bent, progress.Between(0.6, 1.0));
   for (std::size_t i = 0; i < bent.size(); ++i)

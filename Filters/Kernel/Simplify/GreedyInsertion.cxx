@@ -109,6 +109,7 @@ std::vector<InsertionStrip> GreedyInsertion::MakeStrips(Index count, bool areShi
   // Shifted, the first and the last strip are halves.
   for (Index i = 0; i < count + (areShifted ? 1 : 0); ++i)
   {
+    // Where the strip would end if rows could be cut; it ends with the row.
     const double end = (i + (areShifted ? 0.5 : 1.0)) / count * all;
     const auto row = std::lower_bound(
       this->Rows.begin(), this->Rows.end() - 1, static_cast<Index>(std::min(end, all)));

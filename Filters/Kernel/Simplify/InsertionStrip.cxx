@@ -474,6 +474,7 @@ bool InsertionStrip::Work(const Round& round)
     }
     if (!this->Due.empty())
     {
+      // The newest face first: it is near the last insertion, whose points are in the cache.
       const Index face = this->Due.back();
       this->Due.pop_back();
       // Checked again, as an insertion since may have changed the face.

@@ -169,6 +169,7 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
   ForEachPiece(nodes.Rows, threads, progress.Between(0.8, 1.0), [&](Index row) {
     Index place = placesBefore(row);
     const Index first = nodes.NodeAt(row, 0) / 64;
+    // Rows are converted in parallel, each from its first place on.
     const Index words = (nodes.Columns + 63) / 64;
     for (const Index word : Counted(words))
     {

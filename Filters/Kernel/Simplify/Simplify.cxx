@@ -321,6 +321,7 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   {
     lines = FewerPieces(placed, lines, options.MaximumElevationError, progress.Between(0.01, 0.02));
   }
+  // The first mesh has these corners alone; its triangles then get the numbers of places.
   const std::vector<Segment> byCorners = AddEnds(lines, placed, progress.Between(0.02, 0.03));
   std::vector<char> fixed;
   const Mesh first = FirstMesh(placed, byCorners, fixed, progress.Between(0.03, 0.05));
