@@ -190,9 +190,11 @@ private:
     }
   }
 
-  /** Where the points of each (piece, block) begin, block by block for each piece. */
-  // As of a counting sort with the pieces as threads: within a block, the points of earlier pieces
-  // come first, so they stay in the order of ids.
+  /**
+   * Where the points of each (piece, block) begin, block by block for each piece. As of a counting
+   * sort with the pieces as threads: within a block, the points of earlier pieces come first, so
+   * they stay in the order of ids.
+   */
   std::vector<Index> BeginsInBlocks() const
   {
     const std::size_t blocks = this->Blocks.size();

@@ -38,9 +38,9 @@ class BoxTree
 public:
   /**
    * Bounding boxes of the points of up to eight children. The other places hold the empty box, from
-   * infinity to minus infinity.
+   * infinity to minus infinity. Arrays by coordinate instead of an array of boxes: four children in
+   * one vector.
    */
-  // Arrays by coordinate instead of an array of boxes: four children in one vector.
   struct Node
   {
     static constexpr int Places = 8;

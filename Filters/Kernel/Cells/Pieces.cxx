@@ -237,12 +237,11 @@ bool Has(const std::vector<Edge>& sorted, Index from, Index to)
 }
 
 /**
- * The edges of settled or covered triangles that have none of these on their right.
+ * The edges of settled or covered triangles that have none of these on their right. An edge of a
+ * seam separates what is settled from an open triangle or from the outside. From open triangles,
+ * edges are known by their twins; those at the outside are found among edges between border points.
  * @param[in] open  the edges of open triangles, sorted
  */
-// An edge of a seam separates what is settled from an open triangle or from the outside. From open
-// triangles, edges are known by their twins; those at the outside are found among edges between
-// border points.
 std::vector<Edge> FindSeamEdges(
   const std::vector<Edge>& open, const SettledMesh& mesh, const Progress& progress)
 {

@@ -49,8 +49,9 @@ Buffer<double> JoinPoints(
   return joined;
 }
 
-/** A triangle, its lowest vertex first. */
-// Also as a view of three ids in a list of triangles.
+/**
+ * A triangle, its lowest vertex first. Also as a view of three ids in a list of triangles.
+ */
 using Corners = std::array<Index, 3>;
 
 /** The order of Triangulate.h: by lowest vertex, then counter-clockwise around it. */

@@ -296,9 +296,11 @@ private:
     return work.Count() <= most;
   }
 
-  /** Counts the pairs of segments that cross at a vertex: both run through it, not on one line. */
-  // Around one vertex, each segment crosses all that are not on its line; sorted by direction,
-  // those on one line are adjacent.
+  /**
+   * Counts the pairs of segments that cross at a vertex: both run through it, not on one line.
+   * Around one vertex, each segment crosses all that are not on its line; sorted by direction,
+   * those on one line are adjacent.
+   */
   void CountCrossingsAtVertices(std::vector<Passage>& passages, const Progress& progress)
   {
     Sort(

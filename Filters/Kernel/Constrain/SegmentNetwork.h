@@ -51,10 +51,9 @@ struct ConstraintLines
 /** The id of vertex k of the lines. @throws Error if it does not exist or is not finite */
 Index LinePoint(const ConstraintLines& lines, Index line, Index k);
 
-/** A vertex of the lines. */
 /**
- * Vertices of lines come first, in the order of their ids; then input points on lines; then
- * crossings.
+ * A vertex of the lines. Vertices of lines come first, in the order of their ids; then input points
+ * on lines; then crossings.
  */
 struct LineVertex
 {
@@ -65,8 +64,10 @@ struct LineVertex
   Index To;
 };
 
-/** Vertices, and the pieces of segments between them. */
-// Plain data: CutLines.cxx and SegmentCrossings.cxx both work on it, in turn.
+/**
+ * Vertices, and the pieces of segments between them. Plain data: CutLines.cxx and
+ * SegmentCrossings.cxx both work on it, in turn.
+ */
 struct SegmentNetwork
 {
   std::vector<LineVertex> Vertices;

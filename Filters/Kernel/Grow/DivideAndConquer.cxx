@@ -310,11 +310,12 @@ private:
    * Merges two triangulations along the line that separates them, from the right common tangent of
    * their hulls to the left one. Each new edge is the base of the next triangle, whose apex is the
    * neighbour of either end with an empty circle; edges that it would cross are removed.
+   *
+   *   ...--u--p    The base p-q is the tangent on the right at first, and moves to the left.
+   *         \ |    u and l are the neighbours of its ends that FindApex() stops at; the one with
+   *          \|    the empty circle is the apex. Its edge to the other end is the next base: here
+   *   ...--l--q    u-q, and then l or a further neighbour of u may be next.
    */
-  //   ...--u--p    The base p-q is the tangent on the right at first, and moves to the left.
-  //         \ |    u and l are the neighbours of its ends that FindApex() stops at; the one with
-  //          \|    the empty circle is the apex. Its edge to the other end is the next base: here
-  //   ...--l--q    u-q, and then l or a further neighbour of u may be next.
   HullEnds Merge(HullEnds lower, HullEnds upper)
   {
     // From the highest of the lower points and the lowest of the upper ones: each is on the hull of

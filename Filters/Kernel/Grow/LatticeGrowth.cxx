@@ -428,9 +428,10 @@ void Growth::LatticeStrip::WriteCells(const Index* here, const Index* up, int le
   this->Budget.Spend(10 * length);
 }
 
-/** Grows the fan of a vertex from its first edge to its last. */
-// Offsets are carried along with node numbers and ranks: each would take a division or a count to
-// compute again.
+/**
+ * Grows the fan of a vertex from its first edge to its last. Offsets are carried along with node
+ * numbers and ranks: each would take a division or a count to compute again.
+ */
 void Growth::LatticeStrip::GrowFan(Index row, Index node, Index rank, Index first, Index last)
 {
   const LatticeNodes& nodes = this->Nodes;

@@ -20,9 +20,9 @@ namespace elevation
 
 /**
  * The points around a leaf of the tree: those in the boxes of all its points, relative to its
- * middle. Vertices of a full bin come in the order of y, so several leaves alternate.
+ * middle. Vertices of a full bin come in the order of y, so several leaves alternate. A plain
+ * struct of fixed size: recent ones are reused in place, without memory to allocate.
  */
-// A plain struct of fixed size: recent ones are reused in place, without memory to allocate.
 struct Neighborhood
 {
   static constexpr int MostPoints = 120;

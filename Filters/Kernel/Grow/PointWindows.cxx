@@ -250,9 +250,10 @@ ELEVATION_WIDE_INLINE void PointWindows::SetBounds(Window& window, int shape, In
   window.Errors = &this->ShapeBounds[shape];
 }
 
-/** Gathers at most 32 points, packed into two vectors. */
-// With wide registers, packing is cheap: an expanding load puts a row's points where the row before
-// has ended.
+/**
+ * Gathers at most 32 points, packed into two vectors. With wide registers, packing is cheap: an
+ * expanding load puts a row's points where the row before has ended.
+ */
 ELEVATION_WIDEST bool PointWindows::GatherWidest(Window& window, Index firstColumn)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
@@ -383,8 +384,10 @@ ELEVATION_WIDE bool PointWindows::GatherEven(Window& window, Index firstColumn)
   return true;
 }
 
-/** Adds the points of rows beyond the eighth, as one vector. */
-// Few points, one by one: rows with more than eight are seldom where density is even.
+/**
+ * Adds the points of rows beyond the eighth, as one vector. Few points, one by one: rows with more
+ * than eight are seldom where density is even.
+ */
 ELEVATION_WIDE void PointWindows::AddBeyondEight(
   Window& window, Index firstColumn, const Index* counts) const
 {
@@ -407,8 +410,10 @@ ELEVATION_WIDE void PointWindows::AddBeyondEight(
   _mm256_store_ps(window.Square + 32, _mm256_fmadd_ps(x, x, _mm256_mul_ps(y, y)));
 }
 
-/** Gathers a smaller window, packed. */
-// An odd number of columns with the vertex's in the middle, as points are dense here.
+/**
+ * Gathers a smaller window, packed. An odd number of columns with the vertex's in the middle, as
+ * points are dense here.
+ */
 ELEVATION_WIDE bool PointWindows::GatherBins(Window& window, Index column, int shape)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;

@@ -352,7 +352,6 @@ struct WidestWindow
 };
 
 /** FollowVectors() for windows of two vectors of sixteen. In one, as all of it is in registers. */
-// The same steps as FollowVectors(), with coordinates and products of all 32 points in registers.
 ELEVATION_WIDEST int WideApexSearch::FollowWidest(
   Index b, Index last, Index* neighbors, Candidates& open) const
 {

@@ -20,8 +20,10 @@ constexpr std::size_t Vectors = 128; // the shortest differences of points
 // coordinates at large multiples of the steps; rounded coordinates need a large one.
 constexpr std::array<double, 3> ZeroTolerances{ 0.02, 0.06, 0.15 };
 
-/** The shortest differences of the points, by increasing length. */
-// Of at most 128 points (FullestPart), so of some 8,000 pairs.
+/**
+ * The shortest differences of the points, by increasing length. Of at most 128 points
+ * (FullestPart), so of some 8,000 pairs.
+ */
 std::vector<Point2> ShortestDifferences(const std::vector<Point2>& points)
 {
   struct Difference

@@ -355,10 +355,9 @@ namespace
 /**
  * Class of the angle from b->r counter-clockwise to b->u: 0 less than half a turn, 1 half a turn, 2
  * more; -1 for equal directions, where two borders lie back to back with an empty wedge of no width
- * between them.
+ * between them. Angles are compared by class first, then by one Orientation() within a class:
+ * exact, without computing an angle.
  */
-// Angles are compared by class first, then by one Orientation() within a class: exact, without
-// computing an angle.
 int TurnClass(const Point2& b, const Point2& r, const Point2& u)
 {
   const Sign side = Orientation(b, r, u);
@@ -406,8 +405,10 @@ private:
   using Leave = std::pair<Index, Index>;
   using Place = std::vector<Leave>::const_iterator;
 
-  /** Where more meet, they are sorted by angle from the one in Leaving, for binary search. */
-  // Below, comparing all is faster. Without the search, a star of many pinches would be quadratic.
+  /**
+   * Where more meet, they are sorted by angle from the one in Leaving, for binary search. Below,
+   * comparing all is faster. Without the search, a star of many pinches would be quadratic.
+   */
   static constexpr std::ptrdiff_t Many = 16;
 
   /** Lists the half-edges with nothing, or no flagged triangle, on their right. */

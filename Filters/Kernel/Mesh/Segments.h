@@ -74,9 +74,10 @@ void VisitCrossings(const std::vector<Ends>& segments, const CellGrid& grid,
 
 /**
  * Calls visit(0) for the first and visit(1) for the second end of a segment if it is in reach of
- * the other segment, which has these units. @return whether any is
+ * the other segment, which has these units. See SnapRounding.h: lines that rounding has moved are
+ * bent to a vertex that is within reach.
+ * @return whether any is
  */
-// See SnapRounding.h: lines that rounding has moved are bent to a vertex that is within reach.
 template <typename Visitor>
 bool VisitEndsInReach(
   const Ends& segment, const Ends& other, const RoundingUnits& units, double reach, Visitor&& visit)
@@ -117,8 +118,10 @@ void SortAlong(Cuts& cuts, EndsOf&& endsOf, PlaceOf&& placeOf, const Progress& p
     progress);
 }
 
-/** Part of one or several segments. */
-// Constrain/CutLines.cxx cuts lines to pieces; where lines overlap, one piece stands for several.
+/**
+ * Part of one or several segments. Constrain/CutLines.cxx cuts lines to pieces; where lines
+ * overlap, one piece stands for several.
+ */
 struct SegmentPiece
 {
   Index A; ///< vertices; equal for a point that no segment ends in

@@ -321,8 +321,10 @@ std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points,
     const Index* const c = cornersOf(static_cast<Index>(t));
     return std::array<Point2, 3>{ mesh.PointOf(c[0]), mesh.PointOf(c[1]), mesh.PointOf(c[2]) };
   });
-  /** Whether a point is on the left of an edge, or at most so far to its right. */
-  // Exact for the triangles that cover a point; a distance only beside the mesh.
+  /**
+   * Whether a point is on the left of an edge, or at most so far to its right. Exact for the
+   * triangles that cover a point; a distance only beside the mesh.
+   */
   const auto isLeftOf = [&mesh](Index from, Index to, const Point2& p, double by) {
     const Point2 a = mesh.PointOf(from), b = mesh.PointOf(to);
     const long double x = b.X - a.X, y = b.Y - a.Y;

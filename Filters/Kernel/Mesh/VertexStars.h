@@ -137,9 +137,11 @@ private:
   /** The half-edge that VisitToward() looks for; None if not found. */
   Index Toward(const Mesh& mesh, Index from, Index to);
 
-  /** An edge of a vertex when its star was sorted; the half-edge may no longer exist. */
-  // The vertex is kept, as its position gives the direction in which the star was sorted, whatever
-  // the half-edge has become since.
+  /**
+   * An edge of a vertex when its star was sorted; the half-edge may no longer exist. The vertex is
+   * kept, as its position gives the direction in which the star was sorted, whatever the half-edge
+   * has become since.
+   */
   struct Spoke
   {
     Index Vertex; ///< at its other end

@@ -40,8 +40,10 @@ struct Sentence
   const char* Text;
 };
 
-/** How many values a text has places for. One that comes again counts once; properties do not. */
-// At compile time, see MakeMessage(): a place that the text names twice takes one value.
+/**
+ * How many values a text has places for. One that comes again counts once; properties do not. At
+ * compile time, see MakeMessage().
+ */
 constexpr std::size_t CountValues(std::string_view text)
 {
   std::size_t count = 0;

@@ -153,8 +153,10 @@ struct Range
   }
 };
 
-/** A stretch of a chain that one piece replaces: the places from First to Last. */
-// A chain by address: chains are all made before the first stretch.
+/**
+ * A stretch of a chain that one piece replaces: the places from First to Last. A chain by address:
+ * chains are all made before the first stretch.
+ */
 struct Stretch
 {
   const std::vector<Index>* Chain;
