@@ -105,6 +105,7 @@ private:
       this->ChooseScale(greatest);
     }
     const double scale = this->Grid.Scale;
+    // Everything below is in scaled coordinates; only ids lead back to the input.
     this->Grid.Bins.OriginX = low.X * scale;
     this->Grid.Bins.OriginY = low.Y * scale;
     ChooseBins(
@@ -166,6 +167,7 @@ private:
     Index sum = 0;
     for (Index group = 0; group < this->Groups; ++group)
     {
+      // The first row of the group.
       const Index row = group << this->Shift;
       // A block ends when it has enough points, or enough bins: its bins must fit into the cache,
       // too.

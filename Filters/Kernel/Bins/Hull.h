@@ -47,6 +47,7 @@ Hull FindHull(const Buffer<Index>& candidates, const Turn& turn, const Progress&
     for (const std::size_t i : Counted(candidates.size()))
     {
       ReportStep(progress, i, candidates.size());
+      // At most one point is pushed for each candidate, so the whole is linear.
       while (
         chain.size() > 1 && turn(chain[chain.size() - 2], chain.back(), candidates[i]) == outside)
       {

@@ -111,6 +111,7 @@ private:
     // As many buckets as entries: one in each, if y is even.
     const double last = count - 1;
     const double perHeight = last / (high - low);
+    // Also where all y are equal, or so near that buckets cannot divide them.
     if (count <= Few || depth > MaximumDepth || !(perHeight > 0.0 && perHeight <= DBL_MAX))
     {
       this->ForEach(0, count, [&](Index i) { sorted[i] = get(i); });
@@ -125,6 +126,7 @@ private:
     const auto bucketOf = [=](const Entry& p) {
       return static_cast<Index>(std::max(0.0, std::min(last, (p.Y - low) * perHeight)));
     };
+    // One list for each depth, used again by every bucket there.
     Buffer<Index>& ends = this->Ends[depth];
     ends.Resize(static_cast<std::size_t>(count) + 1);
     this->ForEach(0, count + 1, [&](Index i) { ends[i] = 0; });

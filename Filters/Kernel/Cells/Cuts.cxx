@@ -63,6 +63,8 @@ void Cuts::Cut(Iterator first, Iterator last, int begin, int end)
     Box box;
     std::for_each(first, last, [&box](Point2 p) { box.Add(p); });
     line.IsY = box.Height() > box.Width();
+    // Numbers of cells need not be powers of two: of three, one third of the points goes to the
+    // first.
     const double ratio = static_cast<double>(middle - begin) / (end - begin);
     cut += static_cast<std::ptrdiff_t>(ratio * static_cast<double>(last - first));
     cut = CutAt(first, cut, last, line.IsY);

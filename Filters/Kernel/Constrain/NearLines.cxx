@@ -36,6 +36,7 @@ std::vector<Index> ListNearLines(
   // Pieces and crossings stay within some hundred units in the last place of their lines.
   constexpr double reach = 1e-9;
   std::vector<Ends> segments;
+  // Also the points of lines of one point, as segments of no length.
   lines.VisitSegments([&](Index line, Index k, Index next) {
     segments.push_back({ lines.Points.At(LinePoint(lines, line, k)),
       lines.Points.At(LinePoint(lines, line, next)) });

@@ -28,6 +28,8 @@ public:
 
   void Run(const std::vector<Crossing>& crossings, const Progress& progress)
   {
+    // First all crossings with an end in reach, which need no place; the others are sorted by their
+    // place.
     std::vector<Place> places;
     for (const std::size_t i : Counted(crossings.size()))
     {

@@ -71,6 +71,7 @@ Index LinePoint(const ConstraintLines& lines, Index line, Index k)
   if (!exists || !std::isfinite(points.At(id).X) || !std::isfinite(points.At(id).Y) ||
     !std::isfinite(points.Elevation(id)))
   {
+    // Messages name the line by the cell of the input, not by its place in the list.
     const Index cell = lines.Cells[line];
     throw exists ? MakeError<sentences::NonFinitePointOfLine>(id, "constraints'", cell)
                  : MakeError<sentences::NoSuchPointOfLine>(id, "constraints'", cell);

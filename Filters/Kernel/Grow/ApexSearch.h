@@ -13,6 +13,11 @@
  * search, and shrinks with it. The search looks first among the points around the edge's origin
  * (WideApexSearch.h), then in the bins around it, then in the tree of boxes, nearest box first.
  *
+ *        ..p..         The discs through a and b, by their third point on the left of a-b. That of
+ *      .'  q  '.       q lies within that of p there, so q is better; to the right it is the other
+ *      : '   ' :       way round, but no apex is there. The position s of the centre along the
+ *       a-----b        edge's normal, in edge lengths, grows with the disc: s = dot / (2 cross).
+ *
  * Cost: constant for even density, logarithmic in the number of points otherwise; linear in the
  * number of points on the circle, which a budget limits.
  */

@@ -22,6 +22,8 @@ constexpr std::int64_t WorkPerVertex = 340;
  * the apex among few points.
  */
 constexpr std::int64_t WorkPerFan = 40;
+// A pause comes between two searches only; one search ends by MostLooks at the latest
+// (ApexSearch.cxx).
 constexpr std::int64_t WorkPerPause = 10000;
 
 /** Growth over the points of a grid, numbered by their slots. */
@@ -185,6 +187,8 @@ private:
     {
       return true;
     }
+    // Both ends of the fan are known: every triangle below this vertex has been written, in this
+    // strip or by a walk.
     const Index first = this->Pool[lowest][0], end = this->Pool[lowest][1];
     // The triangles below meet above this vertex: it has no triangle of its own.
     if (first == end && first != None)
@@ -234,6 +238,7 @@ private:
   {
     const std::size_t triangles = this->Fan.size() - 1;
     const Index lowestId = this->Grid.Ids[lowest];
+    // Once per fan, so that Write() needs no check.
     this->NeedRoom(triangles, lowestId);
     const auto pointOf = [this](Index slot) { return this->Grid.PointAt(slot); };
     Index current = this->Fan[0];

@@ -238,6 +238,7 @@ void GrowStrips(const std::vector<std::unique_ptr<AnyStrip>>& strips, int thread
   // A strip stays with its thread until it is done, whose caches hold its points and windows.
   std::vector<Index> atWork(std::max(threads, 1), None); // the current strip of each thread
   std::atomic<Index> next{ 0 };
+  // Read between rounds, when no strip is at work.
   const auto fraction = [&]() {
     double done = 0.0;
     for (const auto& strip : strips)
@@ -248,6 +249,7 @@ void GrowStrips(const std::vector<std::unique_ptr<AnyStrip>>& strips, int thread
   };
   InRounds(std::min<int>(threads, number), progress, fraction,
     [&](Index thread, const Round& round) {
+      // The thread's strip, or the next one that nobody has begun.
       for (Index& i = atWork[thread];; i = None)
       {
         i = i == None ? next++ : i;

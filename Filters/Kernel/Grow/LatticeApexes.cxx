@@ -305,7 +305,10 @@ private:
     {
       return;
     }
+    // The left of an edge upwards is to the left of its ends in their rows; of an edge downwards,
+    // to the right.
     const bool isUpwards = this->E.Y > 0;
+    // Without an occupied node on that side, there is none to compare.
     const RowEnds& ends = this->Apexes.EndsOf(static_cast<Index>(this->Row + end.Y));
     const std::int64_t column = this->Column + end.X;
     if (isUpwards ? column <= ends.Left : column >= ends.Right)
@@ -345,6 +348,8 @@ private:
     {
       y = static_cast<Index>(std::max(std::ceil(this->Disc.Bottom - 1e-6), -double(this->Row)));
     }
+    // From the lowest row of the disc up. The disc shrinks as better nodes are found, and with it
+    // Top.
     for (; this->Row + y < this->Nodes.Rows && y <= this->Disc.Top + 1e-6; ++y)
     {
       if (y == 0 || y == this->E.Y)
@@ -414,6 +419,7 @@ private:
     const Index firstNode = origin + static_cast<Index>(std::ceil(left));
     const Index lastNode = origin + static_cast<Index>(std::floor(right));
     const Index firstWord = firstNode >> 6, lastWord = lastNode >> 6;
+    // Long empty stretches within a row cost a word for each 64 nodes.
     this->Budget.Spend(lastWord - firstWord);
     bool isBetter = false;
     for (Index w = firstWord; w <= lastWord; ++w)

@@ -237,6 +237,7 @@ public:
       {
         apex = other;
       }
+      // Some node on the left must be known, to bound the search.
       place = this->Shared.Apexes.Search(
         row, this->Nodes.ColumnOf(this->High, row), e, apex, this->Budget);
     }
@@ -317,6 +318,8 @@ std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(const Hull
     work += ends.IsEmpty() ? 0.0 : workOf(points, ends.Right - ends.Left + 1.0 - points);
     const bool isFull =
       this->PointsPerStrip > 0 ? end - first >= this->PointsPerStrip : work >= perStrip;
+    // A strip ends with a row, so rows are never split: the bitmap's words, and the order of nodes,
+    // make that simple.
     if (end > first && (isFull || end == count))
     {
       strips.push_back(std::make_unique<LatticeStrip>(*this, hull, first, end, firstWord, endWord));

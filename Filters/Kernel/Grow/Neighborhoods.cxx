@@ -159,6 +159,7 @@ const Neighborhood& Neighborhoods::Around(Index slot)
       return known;
     }
   }
+  // A ring of neighborhoods: the one that was made first goes, as the sweep has left it behind.
   const std::size_t oldest = this->Oldest;
   this->Oldest = (oldest + 1) % this->Recent.size();
   Neighborhood& made = this->Recent[oldest];

@@ -12,6 +12,14 @@
  * the four rows are rounded to multiples of a unit that is small compared with the bins, so that
  * differences are exact. Boxes are taken from the points around a leaf (Neighborhoods.h).
  *
+ *   +--+--+--+--+--+--+ -- Top     The window of v: six columns, of which v lies in one of the two
+ *   |  |  |  |  |  |  |            in the middle; its row, and three rows above it. Nothing below
+ *   |  |  |  |  |  |  |            is needed, as v is the lowest vertex of its triangles. An apex
+ *   |  |  |  |  |  |  |            is proved if its disc, above v, keeps within Left, Right and
+ *   |  |  |v |  |  |  |            Top, less a margin.
+ *   +--+--+--+--+--+--+
+ *  Left             Right
+ *
  * Cost: constant per vertex; memory proportional to a row of bins and to the square root of the
  * number of points.
  */

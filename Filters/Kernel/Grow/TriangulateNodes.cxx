@@ -97,6 +97,7 @@ Triangulation TriangulateSparse(
   // Relative to the lowest node, offsets are small: nodes of a shared lattice have 64 bits, and
   // doubles hold them exactly only up to 2^53.
   const LatticeNode lowest = placed.front().Node;
+  // As of a lattice that growth has placed: its origin is the lowest occupied node.
   result.Steps.Origin =
     result.Steps.Node(static_cast<double>(lowest.I), static_cast<double>(lowest.J));
   Buffer<Point2> nodes;

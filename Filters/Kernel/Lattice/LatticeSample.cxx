@@ -15,6 +15,13 @@ namespace elevation
 namespace
 {
 
+// The search looks at samples only, so that it costs two passes over the coordinates:
+// 1. SampleForLattice(): the extent, and a wide sample by hash;
+// 2. FullestPlace(): where that sample is densest, cell by cell;
+// 3. DistinctPointsIn(): all points there; FullestPart() cuts them down to the 128 that are closest
+//    together.
+// Some() is a smaller sample of the sample, by a lower limit of the same hash: the lattice is
+// fitted to it.
 constexpr Index FewestPoints = 6;      // fewer fit some lattice by chance
 constexpr std::size_t Neighbors = 128; // points whose differences begin the search
 constexpr std::size_t Crowd = 32;      // of the sample, in a place that is cut no further

@@ -22,7 +22,7 @@ constexpr Index Few = 32;
 bool AreScattered(
   const PointView& points, const std::vector<Index>& notFinite, const NodeFinder& nodeOf)
 {
-  // Smaller clouds are in the cache in any order. A sample of a thousand places tells orders apart.
+  // Smaller clouds are in the cache in any order. A thousand places are enough of a sample.
   constexpr Index fewest = 1 << 20, samples = 1024, shortStep = 256;
   Index scattered = 0;
   for (Index sample = 0; points.Count >= fewest && sample < samples; ++sample)

@@ -128,6 +128,10 @@ public:
   }
 
 private:
+  /**
+   * Of one attempt to go outwards. Run() repeats while it is Refined; Fitted means that all points
+   * of the sample are on nodes of the final steps, but for the tolerance of zero.
+   */
   enum class Outcome
   {
     Fitted,  ///< all points are on nodes

@@ -146,6 +146,7 @@ struct Rings
   /** For the place of a vertex in Vertices, that of the next one on its ring. */
   Index After(Index place) const
   {
+    // The ring's end is the first offset beyond the place, its begin the one before.
     const auto end = std::upper_bound(this->Offsets.begin(), this->Offsets.end(), place);
     return place + 1 == *end ? end[-1] : place + 1;
   }
@@ -181,10 +182,14 @@ public:
     const Index root = this->Find(other);
     const Index low = std::min(label, root);
     const Index high = std::max(label, root);
+    // The same component already. If the sides differ, the relation contradicts itself, as around
+    // the end of a line within the mesh: the label then stays as it is.
     if (low / 2 == high / 2)
     {
       return label;
     }
+    // The higher component becomes part of the lower one; if its root's side 1 is what is joined,
+    // its sides are exchanged.
     this->JoinedTo[high / 2] = low ^ (high & 1);
     return low;
   }
@@ -258,6 +263,7 @@ Components FindComponents(const Mesh& mesh, const Progress& progress, Relation&&
         if (step >= 0)
         {
           const Index other = components.Labels[Mesh::Triangle(twin)] ^ step;
+          // All earlier neighbours of a triangle are of one component from now on.
           label = label == None || label == other ? other : joined.Join(label, other);
         }
       }

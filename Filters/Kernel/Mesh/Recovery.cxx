@@ -205,6 +205,7 @@ public:
     // In stretches between vertices that lie exactly on the segment.
     while (vertex != segment.B)
     {
+      // Either there is an edge on the way already, or the next stretch is dug out and filled.
       const SegmentStep step = StepAlong(this->Surface, this->Stars, vertex, segment.B);
       if (step.HalfEdge != None)
       {

@@ -152,6 +152,10 @@ struct LinePiece
 /**
  * Replaces pieces on one line, which overlap one after another and are sorted by their lower ends,
  * by pieces from vertex to vertex.
+ *
+ *   A-----------B          Three pieces, drawn apart. Vertices in their order: A C E F B D. Pieces
+ *      C-------------D     from one to the next: A-C stands for one segment, C-E for two, E-F for
+ *         E--F             three, F-B for two, B-D for one. At C, E, F and B some run through.
  */
 void JoinRun(const LinePiece* begin, const LinePiece* end, const std::vector<Point2>& places,
   std::vector<SegmentPiece>& joined, std::vector<Passage>& passages, WorkReporter& work)

@@ -115,7 +115,15 @@ public:
   /** Changes the id of a border that leaves the vertex from @a before to @a after. */
   void ReplaceBorder(Index vertex, Index before, Index after);
 
-  /** Visits one fan, from its first half-edge on or once around. @return whether all of it */
+  /**
+   * Visits one fan, from its first half-edge on or once around.
+   *
+   *    w   u      h is v-u. The half-edge before it in its triangle is w-v, whose twin v-w is
+   *     \ /       the next one that leaves v, counter-clockwise. Where it has none, v-w is the
+   *      v        border that ends the fan.
+   *
+   * @return whether all of it
+   */
   template <typename Visitor>
   static bool VisitFan(const Mesh& mesh, Index first, Visitor&& visit)
   {

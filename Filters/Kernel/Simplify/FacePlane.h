@@ -58,6 +58,7 @@ public:
   {
     constexpr double unit = 8.0 * 0x1p-53;
     const double dx = p.X - this->A.X, dy = p.Y - this->A.Y;
+    // The distance itself; the other terms below bound what rounding may have taken from it.
     const double distance = std::fabs(z - this->Az - this->X * dx - this->Y * dy);
     return distance + this->ErrorX * std::fabs(dx) + this->ErrorY * std::fabs(dy) +
       unit * (std::fabs(z) + std::fabs(this->Az)) + Smallest;

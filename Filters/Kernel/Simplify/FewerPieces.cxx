@@ -14,6 +14,12 @@ namespace elevation
 
 namespace
 {
+// The passes of FewerPieces():
+// 1. Network::Chains(): the pieces as chains, each between two places that stay.
+// 2. Straightening::From(): along a chain, the longest stretch that one piece can replace, again
+//    and again.
+// 3. FindHindered(): of stretches that are not exactly straight, those with a point between the
+//    chain and the new piece; they keep their pieces.
 constexpr double BesidePerLength = 0.001; // of the shorter piece at a point
 
 /**

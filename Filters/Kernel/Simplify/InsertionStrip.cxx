@@ -322,6 +322,7 @@ bool InsertionStrip::Insert(Index place, Index face)
   }
   const std::size_t count = this->Rim.size() - (isClosed ? 0 : 1);
   this->FillCavity(place, count, isClosed);
+  // Lists and errors of the new faces come with their points.
   this->MovePoints(place, count, isClosed);
   if (this->Edges == EdgeCriterion::DataDependent)
   {

@@ -350,6 +350,7 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   } while (!beyond.empty());
   result.Triangles = TrianglesOf(placed, mesh, progress.Between(0.9, 0.98));
   ListUnused(points.Count, placed, &mesh, progress.Between(0.98, 1.0), result);
+  // Euler's formula, with the vertices that are left.
   result.NumberOfHullPoints = 2 * (placed.Count() - result.NumberOfRedundant) - 2 -
     static_cast<Index>(result.Triangles.size() / 3);
   Report(progress, 1.0);
