@@ -295,7 +295,7 @@ private:
       sample[i] = key(begin[static_cast<std::int64_t>(i) * size / samples]);
     }
     std::nth_element(sample, sample + samples / 2, sample + samples);
-    // Not by the sample's points themselves: all equal to the value go one way.
+    // Equal coordinates go to one side, so parts may be very unequal even at the median.
     Placed* middle = this->Divide(cluster, key, sample[samples / 2], isWide);
     if (std::min(middle - begin, end - middle) < size / 8)
     {
@@ -352,8 +352,8 @@ private:
   }
 
   /**
-   * Reports after so many points of bins; at once for the points of a full bin, which count when it
-   * is done.
+   * Counts points, and reports for each 65,536 of them; with 0, at once: work on a full bin takes
+   * long.
    */
   void ReportProgress(Index visited)
   {

@@ -37,7 +37,7 @@ public:
     this->SortIntoBins();
     if (this->Filled.Pieces(this->Grid.Bins) > 1)
     {
-      // About a node for each 48 points; with fewer, the buffer grows.
+      // Room for a node for each 48 points; if there are more, the buffer grows.
       this->Filled.Nodes.Reserve(this->Filled.Count / 48); // growing it takes long
     }
     this->Filled.Root = BoxTree::Build(this->Local, this->Rows, this->Filled.Points,

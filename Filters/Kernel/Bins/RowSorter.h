@@ -54,7 +54,7 @@ public:
   }
 
 private:
-  // So many entries are sorted by insertion, which is faster than anything else for them.
+  // So few entries are sorted by insertion.
   static constexpr Index Few = 16;
   static constexpr int MaximumDepth = 3;
 

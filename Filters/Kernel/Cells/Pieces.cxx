@@ -205,8 +205,8 @@ std::vector<char> FindBorder(
 }
 
 /**
- * Triangulates, and finds what is covered and the border. @param[in] edges  of a Piece; empty: the
- * points are all those of a cell
+ * Triangulates, and finds what is covered and the border.
+ * @param[in] edges  of a Piece; empty: the points are all those of a cell
  */
 SettledMesh Triangulated(const PointView& points, const std::vector<Index>& edges,
   DelaunayOptions options, const SharedLattice* lattice)

@@ -249,8 +249,8 @@ public:
 
 private:
   /**
-   * Records an end of a fan, unless its vertex is above the strip. @return whether it is in the
-   * strip
+   * Records an end of a fan, unless its vertex is above the strip.
+   * @return whether it is in the strip
    */
   bool Set(Buffer<Index>& ends, Index rank, Index end) const
   {

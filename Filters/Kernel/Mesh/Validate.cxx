@@ -35,8 +35,7 @@ public:
     {
       this->CheckManifold();
     }
-    // What follows presumes a consistent mesh of counter-clockwise triangles. In the order of what
-    // the next check needs.
+    // What follows presumes a consistent mesh of counter-clockwise triangles.
     if (!this->Findings.empty())
     {
       return this->Findings;

@@ -12,13 +12,14 @@ namespace elevation
 
 namespace
 {
-// The sizes of samples, and when one has served its purpose: with a vertex for each dozen of its
-// points, triangles have so few of them that the next sample is needed.
 // The passes of Run(), for each sample from the coarsest to all points:
 // 1. AddSample(): each new point of the sample is put into the list of its face.
 // 2. Refine(), with strips, with shifted strips, and with one: points are inserted level by level,
 //    until errors are small or the sample has enough vertices.
 // Insert() serves the caller, who has found points that rounding had hidden (Simplify.cxx).
+
+// The sizes of samples, and when one has served its purpose: with a vertex for each dozen of its
+// points, triangles have so few of them that the next sample is needed.
 constexpr std::uint32_t SampleFactor = 16;
 constexpr double LeastSample = 2000.0;
 constexpr double PointsPerVertex = 12.0; // of a sample, where it ends

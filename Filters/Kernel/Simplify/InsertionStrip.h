@@ -48,8 +48,9 @@ public:
       this->HasCorner(face.Corners[2]);
   }
   /**
-   * Chooses the first level from the largest error of the strip's faces. @param[in] mostVertices
-   * at about so many, the strip ends
+   * Chooses the first level from the largest error of the strip's faces.
+   * @param[in] error         the level to end at
+   * @param[in] mostVertices  at about so many, the strip ends before that
    */
   void SetLevels(double error, double mostVertices);
   /** @return false when done; it may be called again from there on */
