@@ -98,6 +98,7 @@ public:
   Layout Bins;
   Buffer<Index> Order;            ///< all slots by increasing (y, x): row after row
   Buffer<Index> Starts;           ///< first slot of each bin, row by row; last, the number of slots
+  // Narrower than the row of bins: the hull's candidates are chosen by it (Hull.cxx).
   Buffer<double> RowLow, RowHigh; ///< range of y of the points in each row
   BoxTree Tree;
 

@@ -72,6 +72,7 @@ public:
   /** The parent of a node that is not the root. */
   Step Above(const Step& step) const { return this->StepTo(step.Node->Parent); }
 
+  // The way down is by First, the way up by Parent; a node's own box is in its parent.
   Buffer<Node> Nodes;      ///< children before parents: the root is the last
   Buffer<Index> LeafNodes; ///< for each eight consecutive slots, a node above one of their leaves
 

@@ -23,6 +23,7 @@ struct Hull
 {
   std::vector<Index> RightChain, LeftChain;
 
+  /** Whether all points are on one line: both chains then have all of them. */
   bool IsLine() const { return this->RightChain == this->LeftChain; }
   std::size_t NumberOfPoints() const
   {

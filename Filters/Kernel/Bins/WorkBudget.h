@@ -70,6 +70,7 @@ private:
   }
 
   const std::int64_t Most, PerPause;
+  // What is spent since the last pause is not yet counted as work: see Account().
   std::int64_t Spent = 0, Pause = 0, Accounted = 0;
 };
 

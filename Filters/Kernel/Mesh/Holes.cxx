@@ -228,6 +228,7 @@ private:
       }
 
       // Every edge goes up from here; the wedge that opens downwards is the one with a left turn.
+      // The outside of a component is below its lowest vertex; of a hole, the surface is there.
       bool isOutside = false;
       // A pinched walk passes its lowest point several times: all of its wedges there are looked
       // at.
@@ -404,9 +405,11 @@ private:
     for (std::size_t i = begin; i < last; ++i)
     {
       const Index other = vertexAt(this->Segments[this->Events[i].Segment]);
+      // Two vertices at one place, as where cells do not share their points.
       coincide = coincide || (vertex != None && other != vertex);
       vertex = other;
     }
+    // Nearly always.
     if (!coincide && this->Passing.empty())
     {
       return;

@@ -336,6 +336,7 @@ private:
     {
       for (const Index h : side->Edges)
       {
+        // A border has no twin, but an id that its vertex's star knows.
         this->Old.push_back({ h, mesh.Twin(h), this->Constrained[h], None });
       }
     }

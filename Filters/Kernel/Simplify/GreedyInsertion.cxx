@@ -176,6 +176,7 @@ void GreedyInsertion::Refine(double error, double density, std::vector<Insertion
 void GreedyInsertion::Run(double error, int threads, const Progress& progress)
 {
   const double count = static_cast<double>(this->Inserted.Places.size());
+  // Of ten million points, samples have 2,441, then 39,062, then 625,000 points, then all.
   std::uint32_t every = 1;
   // The coarsest sample has some thousand points.
   while (count / every / SampleFactor >= LeastSample)

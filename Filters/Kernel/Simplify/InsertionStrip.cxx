@@ -192,7 +192,13 @@ bool InsertionStrip::FindCavity(Index place, Index face)
   return isOwn;
 }
 
-/** Joins the place to the edges of the rim; the last one may be a gap. */
+/**
+ * Joins the place to the edges of the rim; the last one may be a gap.
+ *
+ *       p         The face of rim edge From-To: its corners are From, To and the place p. Edge 0 is
+ *      / \        the rim edge, 1 leads from To to p, 2 from p to From. Over them lie the face
+ *   From--To      outside, the next face of the fan, and the one before.
+ */
 void InsertionStrip::FillCavity(Index place, std::size_t count, bool isClosed)
 {
   Buffer<Face>& faces = this->Surface.Faces;
@@ -383,7 +389,15 @@ bool InsertionStrip::IsBetterFlipped(Index face) const
   return sum < 0.0;
 }
 
-/** The face becomes the triangle before the new edge, its neighbour the one after it. */
+/**
+ * The face becomes the triangle before the new edge, its neighbour the one after it.
+ *
+ *      to             to         p is the new place. The face p from to and the one beyond, d to
+ *     / | \          /   \        from, give their edge from-to for p-d: then the face is p from d,
+ *    p  |  d  -->  p --- d       the other p d to. Points go by their side of p-d.
+ *     \ | /          \   /
+ *      from           from
+ */
 void InsertionStrip::Flip(Index face)
 {
   Buffer<Face>& faces = this->Surface.Faces;

@@ -324,7 +324,10 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   // The first mesh has these corners alone; its triangles then get the numbers of places.
   const std::vector<Segment> byCorners = AddEnds(lines, placed, progress.Between(0.02, 0.03));
   std::vector<char> fixed;
+  // Few triangles, mostly long: the hull's corners, and the ends of lines.
   const Mesh first = FirstMesh(placed, byCorners, fixed, progress.Between(0.03, 0.05));
+  // All points are on one line, or fewer than three: duplicates and points that are not finite are
+  // still reported.
   if (first.NumberOfTriangles() == 0)
   {
     ListUnused(points.Count, placed, nullptr, progress.Between(0.05, 1.0), result);
