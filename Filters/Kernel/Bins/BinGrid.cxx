@@ -16,6 +16,10 @@ namespace
 {
 using Node = BoxTree::Node;
 
+// Three divisions of the points meet here, so the words mean here: a piece is a stretch of the
+// input; a group is eight rows or more; a block is some consecutive groups with about as many
+// points as a core's cache holds. Pieces are read in parallel, blocks are filled in parallel.
+
 // The mean: with fewer, searches visit many empty bins; with more, they look at points in vain.
 constexpr double PointsPerBin = 1.0;
 // The input is read in pieces of this many points, each by one thread.
@@ -26,10 +30,12 @@ constexpr Index MaximumGroups = 4096;
 /** Chooses the numbers of bins along both sides of a box; bins are as square as possible. */
 void ChooseBins(BinGrid::Layout& bins, double width, double height, Index count)
 {
+  // Bins are wanted per point, whatever the points' distribution: the tree serves uneven ones.
   const double number = std::max(1.0, count / PointsPerBin);
   // A box without height is a row, one without width a column; the quotient may be 0 or infinite.
   const double proportion = width > 0.0 ? (height > 0.0 ? width / height : DBL_MAX) : 0.0;
   const double columns =
+    // At most number: a flat box gets one row of bins, of one point each in the mean.
     std::min(std::max(1.0, std::floor(std::sqrt(number * proportion))), number);
   bins.Columns = static_cast<Index>(columns);
   bins.Rows = height > 0.0 ? static_cast<Index>(std::max(1.0, std::floor(number / columns))) : 1;
@@ -37,6 +43,7 @@ void ChooseBins(BinGrid::Layout& bins, double width, double height, Index count)
   bins.PerY = height > 0.0 ? std::min(bins.Rows / height, DBL_MAX) : 0.0;
   bins.BinWidth = width / bins.Columns;
   bins.BinHeight = height / bins.Rows;
+  // Rounding errors of a few 1e-16 of the coordinates are then below a thousandth of a bin.
   const auto isPlain = [](double bin, double low, double extent) {
     return bin > 1e-12 && bin < 1e12 && bin > 1e-12 * (std::fabs(low) + extent);
   };
@@ -44,6 +51,7 @@ void ChooseBins(BinGrid::Layout& bins, double width, double height, Index count)
     isPlain(bins.BinWidth, bins.OriginX, width) && isPlain(bins.BinHeight, bins.OriginY, height);
 }
 
+// The passes, in the order of Run(). All depend on the points alone, none on the number of threads.
 class GridBuilder
 {
 public:
@@ -66,6 +74,7 @@ public:
     this->Lay(extent);
     const Progress filling = progress.Between(0.0, 0.875);
     this->CountInGroups(filling.Between(0.0, 0.1));
+    // From counts: blocks are known before a point is moved.
     this->MakeBlocks();
     this->SortIntoBlocks(filling.Between(0.1, 0.3));
     this->FillBlocks(filling.Between(0.3, 1.0));
@@ -84,9 +93,11 @@ private:
       [&](Index id, const Point2& p) { visit(id, p.X * scale, p.Y * scale); });
   }
 
+  /** Lays out the bins, and chooses a scale where coordinates are extreme. */
   void Lay(const Box& extent)
   {
     const Point2 &low = extent.Low, &high = extent.High;
+    // Squares, and products of four coordinates, stay within doubles from 1e-60 to 1e60.
     const double greatest = std::max(
       std::max(std::fabs(low.X), std::fabs(high.X)), std::max(std::fabs(low.Y), std::fabs(high.Y)));
     if (greatest > 1e60 || (greatest > 0.0 && greatest < 1e-60))
@@ -94,6 +105,7 @@ private:
       this->ChooseScale(greatest);
     }
     const double scale = this->Grid.Scale;
+    // Everything below is in scaled coordinates; only ids lead back to the input.
     this->Grid.Bins.OriginX = low.X * scale;
     this->Grid.Bins.OriginY = low.Y * scale;
     ChooseBins(
@@ -110,6 +122,7 @@ private:
         least = magnitude > 0.0 ? std::min(least, magnitude) : least;
       }
     });
+    // A power of two: the product is exact, unless it becomes subnormal and loses bits.
     int exponent;
     std::frexp(greatest, &exponent);
     // The factor itself must not overflow.
@@ -125,6 +138,7 @@ private:
   {
     const BinGrid::Layout& bins = this->Grid.Bins;
     this->Shift = 3; // the tree's lowest nodes are of eight rows
+    // So that the table of counts, piece by group, stays small.
     while (bins.Rows >> this->Shift > MaximumGroups)
     {
       ++this->Shift;
@@ -138,6 +152,7 @@ private:
       this->Points.Count, this->Threads, progress,
       [&](Index piece, Index begin, Index end) {
         Index* const counts = this->InGroup.data() + static_cast<std::size_t>(piece) * this->Groups;
+        // Only rows matter here: blocks are of whole rows.
         this->ForEach(begin, end, [&](Index, double, double y) { ++counts[bins.Row(y) >> shift]; });
         TouchPages(this->Memory, begin, end);
       },
@@ -152,7 +167,10 @@ private:
     Index sum = 0;
     for (Index group = 0; group < this->Groups; ++group)
     {
+      // The first row of the group.
       const Index row = group << this->Shift;
+      // A block ends when it has enough points, or enough bins: its bins must fit into the cache,
+      // too.
       if (this->Blocks.empty() || this->Blocks.back().Count >= GridBlock::UsualPoints ||
         (row - this->Blocks.back().FirstRow) * static_cast<double>(bins.Columns) >=
           GridBlock::UsualPoints)
@@ -174,7 +192,11 @@ private:
     }
   }
 
-  /** Where the points of each (piece, block) begin, block by block for each piece. */
+  /**
+   * Where the points of each (piece, block) begin, block by block for each piece. As of a counting
+   * sort with the pieces as threads: within a block, the points of earlier pieces come first, so
+   * they stay in the order of ids.
+   */
   std::vector<Index> BeginsInBlocks() const
   {
     const std::size_t blocks = this->Blocks.size();
@@ -198,6 +220,7 @@ private:
     return begins;
   }
 
+  /** Copies each point to the memory of its block, with its bin there. */
   void SortIntoBlocks(const Progress& progress)
   {
     const BinGrid::Layout& bins = this->Grid.Bins;
@@ -209,18 +232,22 @@ private:
         Index* const to = next.data() + static_cast<std::size_t>(piece) * blocks.size();
         this->ForEach(begin, end, [&](Index id, double x, double y) {
           const Index row = bins.Row(y);
+          // Each piece of the input writes its own stretch of each block, so threads need no locks.
           const Index block = this->BlockOf[row >> this->Shift];
           const Index bin = (row - blocks[block].FirstRow) * bins.Columns + bins.Column(x);
+          // With the bin, so that it is not computed again.
           this->Memory[to[block]++] = { x, y, id, bin };
         });
       },
       PiecePoints);
   }
 
+  /** Fills the blocks in parallel, each into its slots of the grid. */
   void FillBlocks(const Progress& progress)
   {
     const std::size_t count = this->Count;
     const BinGrid::Layout& bins = this->Grid.Bins;
+    // Wide instructions read up to eight values beyond the last slot.
     this->Grid.X.Reserve(count + 8);
     this->Grid.Y.Reserve(count + 8);
     this->Resize(this->Count);
@@ -228,7 +255,8 @@ private:
     this->Grid.RowLow.Resize(bins.Rows);
     this->Grid.RowHigh.Resize(bins.Rows);
 
-    // The few large blocks come last, and report their own progress.
+    // The few large blocks come last, and report their own progress. Where density is uneven, a
+    // block may hold most of the points: one row cannot be divided.
     const auto isLarge = [&bins](const GridBlock& block) { return block.Pieces(bins) > 1; };
     const double large = std::accumulate(this->Blocks.begin(), this->Blocks.end(), 0.0,
       [&](double points, const GridBlock& block) { return points + isLarge(block) * block.Count; });
@@ -252,6 +280,7 @@ private:
         fill(block, progress.Between(begin, done));
       }
     }
+    // Growth writes its triangles there.
     this->Grid.Scratch.Recycle(std::move(this->Memory));
   }
 
@@ -271,6 +300,7 @@ private:
     Index slots = 0;
     for (GridBlock& block : this->Blocks)
     {
+      // Downwards only, so each block may be moved before the next one is read.
       const auto move = [&](auto& values) {
         CountWork(static_cast<std::size_t>(block.Count));
         std::copy_n(values.begin() + block.Begin, block.Count, values.begin() + slots);
@@ -306,6 +336,7 @@ private:
     {
       if (block.Count > 0)
       {
+        // A block's root is a leaf, a slot of the block, or a node, one of the block's.
         roots.push_back(block.Root);
         roots.back().First += block.Root.Count > 0 ? block.Begin : nodes;
       }
@@ -323,6 +354,9 @@ private:
     this->Grid.Tree.Join(std::move(roots), this->Grid.NumberOfPoints(), progress);
   }
 
+  /**
+   * One of several shares of a block's bins, slots and nodes: only large blocks have more than one.
+   */
   void JoinPiece(GridBlock& block, Index firstNode, std::size_t part, std::size_t parts)
   {
     const auto forEach = [&](std::size_t count, auto&& work) {
@@ -336,6 +370,7 @@ private:
     };
     const std::size_t columns = this->Grid.Bins.Columns;
     const Index begin = block.Begin;
+    // What blocks count from their own first bin, slot and node becomes a number in the grid.
     Index* const starts = this->Grid.Starts.data() + block.FirstRow * columns;
     forEach(
       (block.EndRow - block.FirstRow) * columns, [&](std::size_t bin) { starts[bin] += begin; });
@@ -375,6 +410,7 @@ private:
 BinGrid::BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress,
   int threads, Extent* known)
 {
+  // A search for a lattice has found the extent already.
   const auto look = [&]() {
     return FindExtent(points, threads, progress.Between(0.0, 0.2), [](Index, const Point2&) {});
   };

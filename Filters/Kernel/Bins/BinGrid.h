@@ -9,6 +9,12 @@
  * neighbouring bins of a row are contiguous; duplicates set aside. Where density is even, a bin
  * holds about one point. Where it is not, some bins hold many, and a tree of boxes over the bins
  * leads to few of them (BoxTree.h).
+ *
+ *   row 2 | 7  | 8 9|    | 10 |    Slots go through the bins row by row, so the points of any
+ *   row 1 | 3 4|    | 5  | 6  |    stretch of a row are contiguous: here slots 5 and 6 for the
+ *   row 0 |    | 0 1| 2  |    |    last two bins of row 1. Starts has the first slot of each bin;
+ *                                  Order has the slots of a row by (y, x), as growth takes them.
+ *
  * The passes: find the bounds and lay out the bins; sort the points into blocks of rows that fit
  * into a core's cache; in each block sort the points into bins, build a part of the tree, sort the
  * rows by (y, x), and set duplicates aside, which are then adjacent; join the blocks. The blocks
@@ -32,9 +38,17 @@
 namespace elevation
 {
 
+/**
+ * Made once, then read by all threads. Some members are moved out by those who need the memory, see
+ * PlacedPoints.cxx and GridGrowth.h.
+ */
 class BinGrid
 {
 public:
+  /**
+   * Where the bins are. Functions of a coordinate are total: what lies outside counts for the
+   * outermost bin.
+   */
   struct Layout
   {
     double OriginX = 0.0, OriginY = 0.0; ///< lower left corner of the points' bounding box
@@ -84,6 +98,7 @@ public:
   Layout Bins;
   Buffer<Index> Order;            ///< all slots by increasing (y, x): row after row
   Buffer<Index> Starts;           ///< first slot of each bin, row by row; last, the number of slots
+  // Narrower than the row of bins: the hull's candidates are chosen by it (Hull.cxx).
   Buffer<double> RowLow, RowHigh; ///< range of y of the points in each row
   BoxTree Tree;
 

@@ -3,6 +3,10 @@
 /**
  * @file
  * Options and result of a triangulation, the points in bins, and their convex hull.
+ *
+ * Where to begin: BinGrid.h, whose slots all of growth counts in; then BoxTree.h, the tree over
+ * them. GridBlock.h and RowSorter.h fill both. Options.h has what a triangulation is asked for, and
+ * its result; Hull.h, WorkBudget.h and Instructions.h serve growth.
  */
 #ifndef elevation_Bins_Bins_h
 #define elevation_Bins_Bins_h

@@ -12,6 +12,9 @@ namespace
 using Child = BoxTree::Child;
 using Node = BoxTree::Node;
 
+// The passes: BuildBins() halves rows and columns of bins until a part is a run of bins of one row
+// (BuildRun); a full bin goes on by points (BuildFullBin, BuildCluster). Join() puts the trees of
+// all blocks under one root, and gives nodes their parents and slots their leaves.
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 // A bin with more points is halved until no part has more; rare if points are evenly spread.
 constexpr Index FullBin = 24;
@@ -30,6 +33,8 @@ Child AddNode(const Child* children, std::size_t count, Buffer<Node>& nodes)
   {
     const Child child = place < count ? children[place] : Child();
     node.LowX[place] = child.Size > 0 ? child.Bounds.Low.X : Infinity;
+    // The empty box of a place without child fails every comparison, so loops test all eight
+    // places.
     node.HighX[place] = child.Size > 0 ? child.Bounds.High.X : -Infinity;
     node.LowY[place] = child.Size > 0 ? child.Bounds.Low.Y : Infinity;
     node.HighY[place] = child.Size > 0 ? child.Bounds.High.Y : -Infinity;
@@ -47,6 +52,7 @@ Child AddNode(const Child* children, std::size_t count, Buffer<Node>& nodes)
   return joined;
 }
 
+/** Builds the tree of one block; recursion is as deep as the tree, a logarithm. */
 class TreeBuilder
 {
   using Placed = BoxTree::Placed;
@@ -83,13 +89,19 @@ private:
     bool IsLeaf() const { return this->Size() <= FullBin || this->Bounds.Low == this->Bounds.High; }
   };
 
-  /** Joins children in a node; a single one needs none. */
+  /**
+   * Joins children in a node; a single one needs none. A chain of nodes with one child each would
+   * cost steps and hold nothing.
+   */
   Child Join(const Child* children, int count)
   {
     return count == 0 ? Child() : count == 1 ? children[0] : AddNode(children, count, this->Nodes);
   }
 
-  /** Whether the part is a leaf, empty, or one bin: not to be divided by rows and columns. */
+  /**
+   * Whether the part is a leaf, empty, or one bin: not to be divided by rows and columns. Of
+   * several rows never, as a leaf must be a range of slots.
+   */
   bool IsUndivided(const Part& part) const
   {
     if (part.Rows() > 1)
@@ -119,12 +131,16 @@ private:
     return this->Grid.Slots(part.FirstRow, part.FirstColumn, part.EndColumn - 1);
   }
 
-  /** About half, rounded up to whole units if there are several. */
+  /**
+   * About half, rounded up to whole units if there are several: then parts of eight rows or sixteen
+   * columns come out whole, and the lowest nodes are full.
+   */
   static Index HalfOf(Index count, Index unit)
   {
     return count > unit ? (count / 2 + unit - 1) / unit * unit : count / 2;
   }
 
+  /** The tree over bins: a node of up to eight parts, each built in turn. */
   Child BuildBins(const Part& whole)
   {
     if (this->IsUndivided(whole))
@@ -144,8 +160,10 @@ private:
     parts[0] = whole;
     areas[0] = whole.Area();
     int count = 1;
+    // The part with the largest area is halved, until there are eight or none is worth it.
     while (count < Node::Places)
     {
+      // In bins, as the shape of bins is nearly square.
       const auto widest = std::max_element(areas, areas + count) - areas;
       if (areas[widest] == 0.0)
       {
@@ -154,6 +172,7 @@ private:
       Part& part = parts[widest];
       Part& other = parts[count++];
       other = part;
+      // Rather by rows: a leaf is a run of columns, up to sixteen of them.
       if (part.Rows() == 1 || (part.Columns() > part.Rows() && part.Columns() > LeafColumns))
       {
         part.EndColumn = other.FirstColumn = part.FirstColumn + HalfOf(part.Columns(), LeafColumns);
@@ -198,6 +217,8 @@ private:
     return child;
   }
 
+  // Its points are copied out, sorted by the tree's order, and written back to the same slots: bins
+  // keep their slots, only the order within this bin changes.
   Child BuildFullBin(std::pair<Index, Index> slots)
   {
     Cluster cluster{ slots.first, slots.second, Box() };
@@ -208,6 +229,7 @@ private:
     return this->BuildCluster(cluster);
   }
 
+  /** The same over points of a full bin. */
   Child BuildCluster(const Cluster& whole)
   {
     if (whole.IsLeaf())
@@ -220,7 +242,8 @@ private:
       });
       return { whole.Bounds, whole.Begin, whole.Size(), whole.Size() };
     }
-    // Parts that fit into one node are not divided further, so that the lowest nodes are full.
+    // Parts that fit into one node are not divided further, so that the lowest nodes are full. As
+    // in BuildBins(), by numbers of points instead of areas.
     constexpr Index fitting = Node::Places * FullBin;
     const bool isLowest = whole.Size() <= fitting;
     Cluster clusters[Node::Places];
@@ -272,6 +295,7 @@ private:
       sample[i] = key(begin[static_cast<std::int64_t>(i) * size / samples]);
     }
     std::nth_element(sample, sample + samples / 2, sample + samples);
+    // Equal coordinates go to one side, so parts may be very unequal even at the median.
     Placed* middle = this->Divide(cluster, key, sample[samples / 2], isWide);
     if (std::min(middle - begin, end - middle) < size / 8)
     {
@@ -291,6 +315,8 @@ private:
     cluster.End = other.Begin;
     for (Cluster* half : { &cluster, &other })
     {
+      // The boxes of the points themselves, not of the cut: they are smaller, and skip the void
+      // between.
       Box bounds;
       this->ForEach({ half->Begin, half->End }, [&](Index slot) {
         bounds.Add({ this->Points[slot].X, this->Points[slot].Y });
@@ -303,6 +329,7 @@ private:
   template <typename Key>
   Placed* Divide(const Cluster& cluster, const Key& key, double value, bool isWide)
   {
+    // If the value is the lowest coordinate, "below" would leave one part empty.
     const bool hasBefore = (isWide ? cluster.Bounds.Low.X : cluster.Bounds.Low.Y) < value;
     Placed* end = this->Points + cluster.Begin;
     this->ForEach({ cluster.Begin, cluster.End }, [&](Index slot) {
@@ -324,6 +351,10 @@ private:
       slots.first, slots.second, [this](double) { this->ReportProgress(0); }, work);
   }
 
+  /**
+   * Counts points, and reports for each 65,536 of them; with 0, at once: work on a full bin takes
+   * long.
+   */
   void ReportProgress(Index visited)
   {
     this->Visited += visited;
@@ -350,7 +381,8 @@ BoxTree::Child BoxTree::Build(
 
 void BoxTree::Join(std::vector<Child> roots, Index slots, const Progress& progress)
 {
-  // Level by level, eight at a time, until there is one root.
+  // Level by level, eight at a time, until there is one root. A root that is a leaf gets a node,
+  // too: searches begin at a node.
   while (roots.size() > 1 || roots.front().Count > 0)
   {
     std::vector<Child> above;
@@ -364,6 +396,8 @@ void BoxTree::Join(std::vector<Child> roots, Index slots, const Progress& progre
   this->Nodes.Shrink();
   Report(progress, 1.0);
 
+  // From the root down: parents are known before their children are looked at. Where leaves share
+  // eight slots, the last one enters its node.
   this->LeafNodes.Resize((static_cast<std::size_t>(slots) + 7) / 8);
   this->Nodes[this->Nodes.size() - 1].Parent = None;
   StepCount steps;
@@ -391,6 +425,7 @@ void BoxTree::Join(std::vector<Child> roots, Index slots, const Progress& progre
   }
 }
 
+/** A node with its box, which its parent has. */
 BoxTree::Step BoxTree::StepTo(Index node) const
 {
   const Node& own = this->Nodes[node];
@@ -400,6 +435,7 @@ BoxTree::Step BoxTree::StepTo(Index node) const
   }
   const Node& parent = this->Nodes[own.Parent];
   int place = 0;
+  // A leaf's First is a slot, which may have the same number as a node.
   while (parent.First[place] != node || parent.Count[place] > 0)
   {
     ++place;
@@ -411,12 +447,16 @@ BoxTree::Step BoxTree::StepTo(Index node) const
 BoxTree::Step BoxTree::Lowest(Index slot, const Point2& p) const
 {
   const Index eight = slot / 8, last = static_cast<Index>(this->LeafNodes.size()) - 1;
+  // Eight slots may belong to several leaves; the entry names the node above one of them. The
+  // others are mostly below the same node, or known at the neighbouring eight.
   for (Index at : { eight, std::max(eight - 1, 0), std::min(eight + 1, last) })
   {
     const Node& node = this->Nodes[this->LeafNodes[at]];
     unsigned int isWithin = 0;
     for (int place = 0; place < Node::Places; ++place)
     {
+      // Of a child node Count is 0, which no difference is below. Unsigned, one comparison does for
+      // both ends.
       const unsigned int after = static_cast<unsigned int>(slot - node.First[place]);
       isWithin |= after < static_cast<unsigned int>(node.Count[place]);
     }

@@ -9,6 +9,13 @@
  * In: binned points. Out: the tree, and the slots of full bins in the order of its leaves. A leaf
  * is a range of slots: bins of a row, or a few points of a full bin, which is halved until its
  * parts are small. A node has the boxes of up to eight children, which have no point in common.
+ *
+ *              [ root ]            A leaf of bins: up to 16 bins of one row, with 32 points.
+ *            /    |   ...  \       A leaf of a full bin: up to 24 points, halved near the
+ *       [node] [node] ... [node]   median across the longer side. Children are up to eight,
+ *       / | .. \                   so that wide instructions test all boxes of a node in two
+ *    leaf leaf leaf                steps of four.
+ *
  * Cost: linear; n log n in full bins.
  */
 #ifndef elevation_Bins_BoxTree_h
@@ -22,12 +29,17 @@
 namespace elevation
 {
 
+/**
+ * Flat: nodes in one array, which name children and parents by their places. Built in blocks by
+ * Build(), joined by Join(); then read by all threads.
+ */
 class BoxTree
 {
 public:
   /**
    * Bounding boxes of the points of up to eight children. The other places hold the empty box, from
-   * infinity to minus infinity.
+   * infinity to minus infinity. Arrays by coordinate instead of an array of boxes: four children in
+   * one vector.
    */
   struct Node
   {
@@ -52,11 +64,15 @@ public:
     bool IsRoot() const { return this->Node->Parent == None; }
   };
 
-  /** The node above the leaf that holds a slot, whose point is p. */
+  /**
+   * The node above the leaf that holds a slot, whose point is p. From a slot upwards: a search
+   * around a vertex seldom needs the upper levels.
+   */
   Step Lowest(Index slot, const Point2& p) const;
   /** The parent of a node that is not the root. */
   Step Above(const Step& step) const { return this->StepTo(step.Node->Parent); }
 
+  // The way down is by First, the way up by Parent; a node's own box is in its parent.
   Buffer<Node> Nodes;      ///< children before parents: the root is the last
   Buffer<Index> LeafNodes; ///< for each eight consecutive slots, a node above one of their leaves
 

@@ -15,6 +15,8 @@ namespace
 {
 using Node = BoxTree::Node;
 
+// The passes, in the order of Run(): a counting sort into bins; the tree, which orders the slots of
+// full bins; a sort of each row by (y, x); duplicates, which that sort has made neighbours.
 class BlockFiller
 {
 public:
@@ -35,6 +37,7 @@ public:
     this->SortIntoBins();
     if (this->Filled.Pieces(this->Grid.Bins) > 1)
     {
+      // Room for a node for each 48 points; if there are more, the buffer grows.
       this->Filled.Nodes.Reserve(this->Filled.Count / 48); // growing it takes long
     }
     this->Filled.Root = BoxTree::Build(this->Local, this->Rows, this->Filled.Points,
@@ -79,6 +82,7 @@ private:
     this->ForEach(
       this->Bins, 0.05, 0.05, [&](Index bin) { sum += std::exchange(starts[bin + 1], sum); });
     const Progress here = this->Monitor.Between(0.05, 0.05);
+    // The writes below jump from bin to bin; see TouchPages().
     TouchPages(this->Grid.X, begin, begin + count, here);
     TouchPages(this->Grid.Y, begin, begin + count, here);
     TouchPages(this->Grid.Ids, begin, begin + count, here);
@@ -90,6 +94,7 @@ private:
     });
   }
 
+  /** Sets the order of each row by (y, x), and the range of its y. */
   void SortRows()
   {
     const BinGrid::Layout& bins = this->Grid.Bins;
@@ -104,6 +109,8 @@ private:
       {
         const double done = 0.6 + 0.3 * row / this->Rows;
         inSort = this->Monitor.Between(done, done);
+        // About the row's range: a point rounded into the row from beyond is only sorted more
+        // slowly.
         const double low = bins.OriginY + (this->Filled.FirstRow + row) * bins.BinHeight;
         sorter.Sort(slots, low, low + bins.BinHeight, this->Order + slots.first);
         lowest = this->Local.Y[this->Order[slots.first]];
@@ -112,12 +119,16 @@ private:
     }
   }
 
-  /** In the order of rows, equal points are adjacent. */
+  /**
+   * In the order of rows, equal points are adjacent. The slot that stays is the first one; the id
+   * that the policy prefers moves there.
+   */
   void SetDuplicatesAside(const PointView& points, DuplicatePolicy policy)
   {
     const BoxTree::Rows& local = this->Local;
     Index kept = 0;
     this->ForEach(this->Filled.Count, 0.9, 0.95, [&](Index i) {
+      // Compared with the last one that is kept, so any number of equal points become one.
       const Index first = this->Order[kept], slot = this->Order[i];
       if (local.Y[first] != local.Y[slot] || local.X[first] != local.X[slot])
       {
@@ -129,6 +140,7 @@ private:
         {
           std::swap(local.Ids[slot], local.Ids[first]);
         }
+        // Allocated with the first duplicate: most clouds have none.
         this->IsAside.resize(this->Filled.Count, false);
         this->IsAside[slot] = true;
         this->Filled.Duplicates.Append(local.Ids[slot]);
@@ -136,8 +148,13 @@ private:
     });
   }
 
+  /**
+   * Moves slots together where duplicates have been set aside, and changes all that names slots.
+   */
   void CloseGaps()
   {
+    // Slots move down by the number of gaps before them; so do starts, order and leaves, which name
+    // slots.
     Buffer<Index> moved; // the number of slots kept before each
     moved.Resize(static_cast<std::size_t>(this->Filled.Count) + 1);
     Index kept = 0;
@@ -164,6 +181,7 @@ private:
     const auto move = [&](Index& first, Index& count) {
       if (count > 0)
       {
+        // Not 0, which would make a node of it: equal points share a leaf, and one of them stays.
         count = moved[first + count] - moved[first];
         first = moved[first];
       }

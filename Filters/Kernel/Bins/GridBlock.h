@@ -17,6 +17,8 @@
 namespace elevation
 {
 
+// Small enough for the cache, since its points are moved several times: into bins, into the tree's
+// order, into rows.
 struct GridBlock
 {
   /** A block has about this many points, so that it fits into a core's cache. */
@@ -24,6 +26,7 @@ struct GridBlock
 
   Index FirstRow, EndRow;
   Index Begin, Count;      ///< slots
+  // A part of the builder's memory, with as much room as the block has slots.
   BoxTree::Placed* Points; ///< first its points, then room for as many
   BoxTree::Child Root;
   Buffer<BoxTree::Node> Nodes; ///< children and slots counted from the block's first
@@ -32,6 +35,7 @@ struct GridBlock
   /** The number of pieces for work on all bins or points, so that reports come soon enough. */
   Index Pieces(const BinGrid::Layout& layout) const
   {
+    // A block has more bins than points where some of its rows are sparse.
     const Index bins = (this->EndRow - this->FirstRow) * layout.Columns; // at most as all points
     return 1 + std::max(this->Count, bins) / (16 * UsualPoints);
   }

@@ -11,6 +11,8 @@ namespace elevation
 namespace
 {
 
+// Two steps, so that only few points are sorted and tested exactly: the hull of the outermost
+// points of each row of bins; then the points outside of it or near it, whose hull is that of all.
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
 /** The leftmost and the rightmost point of each row of bins, by increasing (y, x). */
@@ -27,7 +29,8 @@ Buffer<Index> RowExtremes(const BinGrid& grid, const Progress& progress)
     {
       continue;
     }
-    // In the outermost bins with points.
+    // In the outermost bins with points: up to the end of the first one, and from the begin of the
+    // last one on.
     const Index* bounds = &grid.Starts[static_cast<std::size_t>(row) * columns];
     const Index firstEnd = *std::upper_bound(bounds, bounds + columns + 1, slots.first);
     const Index lastBegin = std::lower_bound(bounds, bounds + columns + 1, slots.second)[-1];
@@ -66,6 +69,8 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Hull& ofExtremes, const 
   const double lowest = grid.Y[leftChain.front()], highest = grid.Y[leftChain.back()];
   const double margin =
     bins.HasPlainBins ? 1e-12 * (std::fabs(bins.OriginX) + bins.Columns * bins.BinWidth) : Infinity;
+  // Floating point may choose candidates, as the margin is far above its error; the exact predicate
+  // makes the hull of them.
   double left, right; // range of the points well within, in the current row
   Buffer<Index> candidates;
   StepCount steps;
@@ -84,6 +89,7 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Hull& ofExtremes, const 
     const double low = grid.RowLow[row], high = grid.RowHigh[row];
     left = Infinity;
     right = -Infinity;
+    // The rows of the hull's ends are taken whole: chains are not defined beyond them.
     if (slots.first < slots.second && low > lowest && high < highest)
     {
       // A chain is convex: within the row it is innermost at the lower or the upper end.
@@ -91,6 +97,8 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Hull& ofExtremes, const 
       right = std::min(ChainAt(grid, rightChain, low), ChainAt(grid, rightChain, high)) - margin;
     }
     const Index leftColumn = bins.Column(left), rightColumn = bins.Column(right);
+    // The whole row, in its sorted order; otherwise only the bins at both ends, which are then
+    // sorted.
     if (!(left < right) || leftColumn >= rightColumn)
     {
       std::for_each(grid.Order.begin() + slots.first, grid.Order.begin() + slots.second, add);

@@ -23,6 +23,7 @@ struct Hull
 {
   std::vector<Index> RightChain, LeftChain;
 
+  /** Whether all points are on one line: both chains then have all of them. */
   bool IsLine() const { return this->RightChain == this->LeftChain; }
   std::size_t NumberOfPoints() const
   {
@@ -38,6 +39,8 @@ struct Hull
 template <typename Turn>
 Hull FindHull(const Buffer<Index>& candidates, const Turn& turn, const Progress& progress)
 {
+  // The right chain turns left at each vertex, the left one, upwards too, right. A point that would
+  // turn the other way takes its predecessors off. Collinear points stay.
   Hull hull;
   for (const Sign outside : { Negative, Positive }) // the empty side of the right and left chain
   {
@@ -45,6 +48,7 @@ Hull FindHull(const Buffer<Index>& candidates, const Turn& turn, const Progress&
     for (const std::size_t i : Counted(candidates.size()))
     {
       ReportStep(progress, i, candidates.size());
+      // At most one point is pushed for each candidate, so the whole is linear.
       while (
         chain.size() > 1 && turn(chain[chain.size() - 2], chain.back(), candidates[i]) == outside)
       {

@@ -7,6 +7,8 @@
 #ifndef elevation_Bins_Instructions_h
 #define elevation_Bins_Instructions_h
 
+// One library runs on all processors: single functions are compiled for wider instructions, and
+// called where the processor has them. The result is the same on all (WideApexSearch.h).
 #if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
 /** Defined if single functions can be compiled for processors with AVX2. */
 #define ELEVATION_HAS_AVX2

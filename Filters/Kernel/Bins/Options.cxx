@@ -16,6 +16,7 @@ void SetUnusedPoints(std::vector<Index>&& duplicates, const std::vector<Index>& 
   triangulation.NumberOfNotFinite = static_cast<Index>(notFinite.size());
   std::vector<Index>& unused = triangulation.UnusedPoints;
   std::vector<UnusedReason>& reasons = triangulation.UnusedReasons;
+  // Mostly: the list becomes the result's.
   if (notFinite.empty())
   {
     unused = std::move(duplicates);
@@ -28,6 +29,7 @@ void SetUnusedPoints(std::vector<Index>&& duplicates, const std::vector<Index>& 
   auto duplicate = duplicates.begin();
   auto other = notFinite.begin();
   StepCount steps;
+  // Merges two increasing lists.
   while (unused.size() < count)
   {
     steps.Add();

@@ -48,10 +48,14 @@ enum class SearchStrategy
   Compactness
 };
 
+/**
+ * What a triangulation is asked for. Those that say "for tests" change how it is found, not what.
+ */
 struct DelaunayOptions
 {
   SearchStrategy Strategy = SearchStrategy::VoxelTraversal;
   /** Triangles with a longer edge (in x,y) are left out; 0: no limit. */
+  // Not together with MaximumElevationError: Adapt refuses both, as few points have long edges.
   double MaximumEdgeLength = 0.0;
   /**
    * As few points become vertices as are needed for the others to be within this vertical distance
@@ -68,6 +72,7 @@ struct DelaunayOptions
   /** With Automatic: the lattice that all points must fit; steps of 0: it is looked for. */
   Lattice GivenLattice;
   /** How far a point may lie from its node along each step, in steps; at most 0.25. */
+  // A larger tolerance counts as 0.25: from half a step on, a point would have two nodes.
   double LatticeTolerance = 0.01;
   /** Threads to use; 0: all there are. The result is the same, byte for byte. */
   int NumberOfThreads = 1;
@@ -79,8 +84,10 @@ struct DelaunayOptions
   bool DivideAtOnce = false;
 };
 
+/** The result, by ids of the input's points. */
 struct Triangulation
 {
+  // In the order of Triangulate.h, each beginning with its lowest vertex.
   Buffer<Index> Triangles;         ///< three point ids per triangle, counter-clockwise
   Index NumberOfHullPoints = 0;    ///< on the border of the convex hull, with collinear points
   std::vector<Index> UnusedPoints; ///< ids, increasing
@@ -91,6 +98,7 @@ struct Triangulation
   Index NumberOfRedundant = 0; ///< points within MaximumElevationError
   /** No vertical distance of such a point is larger; it is no larger than MaximumElevationError. */
   double LargestElevationError = 0.0;
+  // Others triangulate pieces of the same cloud by it, see SharedLattice.h.
   bool LatticeFound = false; ///< whether the triangles are those of a lattice (LatticeGrowth.h)
   Lattice Steps;             ///< if found; Origin is the lowest occupied node
 };

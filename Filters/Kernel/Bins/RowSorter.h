@@ -19,6 +19,8 @@
 namespace elevation
 {
 
+// By y only: x decides where y is equal, in the comparison. Most rows have many points spread
+// evenly over their height, so buckets take less time than comparisons.
 class RowSorter
 {
 public:
@@ -36,6 +38,8 @@ public:
    */
   void Sort(std::pair<Index, Index> slots, double low, double high, Index* order)
   {
+    // The memory of the block's points, which are in their slots by now: entries in its front part,
+    // slots for deeper levels behind.
     const double* const y = this->Grid.Y + slots.first;
     const Index count = slots.second - slots.first, first = slots.first;
     static_assert(
@@ -50,9 +54,11 @@ public:
   }
 
 private:
+  // So few entries are sorted by insertion.
   static constexpr Index Few = 16;
   static constexpr int MaximumDepth = 3;
 
+  // With its y, since slots of a row are not in that order in memory.
   struct Entry
   {
     double Y;
@@ -102,8 +108,10 @@ private:
   void Sort(
     const Get& get, Entry* sorted, Index* room, Index count, double low, double high, int depth)
   {
+    // As many buckets as entries: one in each, if y is even.
     const double last = count - 1;
     const double perHeight = last / (high - low);
+    // Also where all y are equal, or so near that buckets cannot divide them.
     if (count <= Few || depth > MaximumDepth || !(perHeight > 0.0 && perHeight <= DBL_MAX))
     {
       this->ForEach(0, count, [&](Index i) { sorted[i] = get(i); });
@@ -118,6 +126,7 @@ private:
     const auto bucketOf = [=](const Entry& p) {
       return static_cast<Index>(std::max(0.0, std::min(last, (p.Y - low) * perHeight)));
     };
+    // One list for each depth, used again by every bucket there.
     Buffer<Index>& ends = this->Ends[depth];
     ends.Resize(static_cast<std::size_t>(count) + 1);
     this->ForEach(0, count + 1, [&](Index i) { ends[i] = 0; });
@@ -131,6 +140,7 @@ private:
       const Entry entry = get(i);
       sorted[ends[bucketOf(entry)]++] = entry;
     });
+    // After the counting pass, ends[b] is the begin of bucket b; writing has moved it to the end.
     Index reported = 0;
     for (Index begin = 0, bucket = 0; fullest > Few && begin < count; begin = ends[bucket++])
     {
@@ -148,12 +158,14 @@ private:
           lowest = y < lowest ? y : lowest;
           highest = y > highest ? y : highest;
         });
+        // Only slots are copied, as get() must not read where the deeper level writes.
         Index* const from = room + begin;
         this->ForEach(0, size, [&](Index i) { from[i] = sorted[begin + i].Slot; });
         this->Sort(
           Listed{ from, this->Grid.Y }, sorted + begin, from, size, lowest, highest, depth + 1);
       }
     }
+    // Buckets are in order, and each has few entries or is sorted, so this is linear.
     this->Insert(sorted, count);
   }
 

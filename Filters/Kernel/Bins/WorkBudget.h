@@ -29,6 +29,7 @@ public:
    * @param perPause  work between two looks at whether the round is over
    */
   WorkBudget(std::int64_t most, Index vertices, std::int64_t perPause)
+    // The allowance lets a small strip have a few expensive vertices.
     : Most(most * (static_cast<std::int64_t>(vertices) + 1000))
     , PerPause(perPause)
   {
@@ -39,7 +40,11 @@ public:
   void Spend(std::int64_t work) { this->Spent += work; }
   std::int64_t Work() const { return this->Spent; }
 
-  /** @throws CannotGrow if more is spent than allowed */
+  /**
+   * Work is counted, not time: whether growth is given up depends on the input alone, and so do
+   * tests.
+   * @throws CannotGrow if more is spent than allowed
+   */
   void Check() const
   {
     if (this->Spent > this->Most)
@@ -65,6 +70,7 @@ private:
   }
 
   const std::int64_t Most, PerPause;
+  // What is spent since the last pause is not yet counted as work: see Account().
   std::int64_t Spent = 0, Pause = 0, Accounted = 0;
 };
 

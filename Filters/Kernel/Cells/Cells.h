@@ -3,6 +3,8 @@
 /**
  * @file
  * The triangulation of points cell by cell of the plane, and of the seams between the cells.
+ *
+ * Where to begin: Pieces.h, why pieces triangulated apart can be joined; then Cuts.h, which pieces.
  */
 #ifndef elevation_Cells_Cells_h
 #define elevation_Cells_Cells_h

@@ -33,6 +33,7 @@ std::vector<Point2>::iterator CutAt(std::vector<Point2>::iterator first,
 {
   std::nth_element(first, place, last, IsLess{ isY });
   const Point2 at = *place;
+  // Equal coordinates on both sides of the place: the cut goes before or after all of them.
   const auto low =
     std::partition(first, place, [at, isY](Point2 p) { return IsLess{ isY }(p, at); });
   const auto high =
@@ -55,16 +56,20 @@ void Cuts::Cut(Iterator first, Iterator last, int begin, int end)
   }
   const int middle = MiddleOf(begin, end);
   Line& line = this->Lines[middle];
+  // Without points in a node, its cut is at 0: any cut is right, none matters.
   Iterator cut = first;
   if (first != last)
   {
     Box box;
     std::for_each(first, last, [&box](Point2 p) { box.Add(p); });
     line.IsY = box.Height() > box.Width();
+    // Numbers of cells need not be powers of two: of three, one third of the points goes to the
+    // first.
     const double ratio = static_cast<double>(middle - begin) / (end - begin);
     cut += static_cast<std::ptrdiff_t>(ratio * static_cast<double>(last - first));
     cut = CutAt(first, cut, last, line.IsY);
     const bool isY = line.IsY;
+    // A coordinate of a point, as points on it belong to the upper half.
     line.Value = Coordinate(*std::min_element(cut, last, IsLess{ isY }), isY);
   }
   this->Cut(first, cut, begin, middle);
@@ -85,6 +90,7 @@ int Cuts::OwnerOf(Point2 p) const
 
 Cell Cuts::CellOf(int begin, int end) const
 {
+  // From the whole plane down to the node: each cut on the way is a side of it.
   Cell cell;
   int first = 0, last = this->Count();
   while (last - first > end - begin)

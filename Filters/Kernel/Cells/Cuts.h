@@ -9,6 +9,14 @@
  * in the middle of the range, where a sample of the points says that the points divide in the same
  * ratio.
  *
+ *   +-----+-----+      Four cells, 0 to 3. The first cut, x = a, is that of the range [0, 4), and
+ *   |  1  |     |      belongs to cell 2, the middle; [0, 2) and [2, 4) have their own. So Lines
+ *   |-----|  3  |      has one cut a cell, from the second cell on, and no pointers.
+ *   |  0  |-----|
+ *   |     |  2  |
+ *   +-----+-----+
+ *         a
+ *
  * A cell has the points on its low sides and not those on its high sides. So each point has one
  * owner, and points with the same x,y have the same one.
  *
@@ -25,6 +33,7 @@
 namespace elevation
 {
 
+/** The same on all ranks, which have the same sample. */
 class Cuts
 {
 public:

@@ -18,6 +18,7 @@ namespace elevation
 
 bool Cell::HoldsCircle(Point2 a, Point2 b, Point2 c) const
 {
+  // The last level: everything left is settled.
   if (this->IsWholePlane())
   {
     return true;
@@ -34,6 +35,7 @@ bool Cell::HoldsCircle(Point2 a, Point2 b, Point2 c) const
   const double bx = b.X - a.X, by = b.Y - a.Y, cx = c.X - a.X, cy = c.Y - a.Y;
   const double d = 2.0 * (bx * cy - by * cx);
   const double errorD = unit * (std::fabs(bx * cy) + std::fabs(by * cx));
+  // A triangle so thin has a circle that is not known: it is left to the larger cell.
   if (!(std::fabs(d) > 4.0 * errorD && std::fabs(d) > smallest))
   {
     return false;
@@ -44,6 +46,7 @@ bool Cell::HoldsCircle(Point2 a, Point2 b, Point2 c) const
   const double error = relative *
     (std::fabs(cy * b2) + std::fabs(by * c2) + std::fabs(bx * c2) + std::fabs(cx * b2)) /
     std::fabs(d);
+  // A bound that is rounded up; the box around the circle is then rounded outwards once more.
   const double radius = std::hypot(x, y) * (1.0 + unit) + 4.0 * error;
   const auto isInside = [radius](double corner, double centre, double low, double high) {
     const double rounding = unit * (std::fabs(corner) + std::fabs(centre) + radius);
@@ -91,6 +94,9 @@ void CheckAbort(const Progress& progress, std::size_t step)
   }
 }
 
+// The passes, in SettleCell() and SettleSeams(): Triangulated() with what is covered,
+// MarkSettled(), SeamOf(), KeepSettled().
+
 /** The mesh of points, with the state of its triangles. */
 struct SettledMesh
 {
@@ -109,6 +115,7 @@ struct SettledMesh
 
   const Index* CornersOf(std::size_t t) const { return this->Result.Triangles.data() + 3 * t; }
 
+  /** Whether a half-edge has a triangle on its left that a smaller cell has settled. */
   bool IsOnSeam(Index halfEdge) const
   {
     return std::binary_search(this->Seam.begin(), this->Seam.end(), this->EndsOf(halfEdge));
@@ -128,6 +135,8 @@ void MarkCovered(SettledMesh& mesh)
   {
     return;
   }
+  // Only for seams, which are few points: a cell's first triangulation has nothing covered, and no
+  // twins.
   Mesh surface;
   surface.Points.resize(static_cast<std::size_t>(mesh.Points.Count));
   surface.Triangles.assign(mesh.Result.Triangles.begin(), mesh.Result.Triangles.end());
@@ -143,11 +152,14 @@ void MarkCovered(SettledMesh& mesh)
       stack.push_back(h / 3);
     }
   }
+  // The theory of Pieces.h says that they are all edges of the triangulation: this is a test of the
+  // code.
   if (found != mesh.Seam.size())
   {
     throw std::logic_error(
       "An edge of a settled triangle is missing in the triangulation of seams.");
   }
+  // A flood: covered triangles are those within closed chains of such edges.
   while (!stack.empty())
   {
     const Index t = stack.back();
@@ -175,6 +187,8 @@ void MarkCovered(SettledMesh& mesh)
 std::vector<char> FindBorder(
   Index numberOfPoints, const Buffer<Index>& triangles, const Progress& progress)
 {
+  // Around a vertex of the border, the sum is the difference of the two ends of its fan: never 0.
+  // Unsigned, as sums may wrap around.
   std::vector<std::uint32_t> sums(static_cast<std::size_t>(numberOfPoints), 0);
   for (std::size_t i = 0; i < triangles.size(); i += 3)
   {
@@ -190,6 +204,10 @@ std::vector<char> FindBorder(
   return isOnBorder;
 }
 
+/**
+ * Triangulates, and finds what is covered and the border.
+ * @param[in] edges  of a Piece; empty: the points are all those of a cell
+ */
 SettledMesh Triangulated(const PointView& points, const std::vector<Index>& edges,
   DelaunayOptions options, const SharedLattice* lattice)
 {
@@ -197,6 +215,7 @@ SettledMesh Triangulated(const PointView& points, const std::vector<Index>& edge
   options.UseLattice = LatticeMode::Off;
   SettledMesh mesh;
   mesh.Points = points;
+  // Edges come with seams only.
   const bool areAll = edges.empty(); // points of a cell: mostly a lattice well filled
   mesh.Result =
     lattice ? TriangulateNodes(points, *lattice, options, areAll) : Triangulate(points, options);
@@ -211,13 +230,16 @@ SettledMesh Triangulated(const PointView& points, const std::vector<Index>& edge
   return mesh;
 }
 
+/** Whether a sorted list has an edge in this direction. */
 bool Has(const std::vector<Edge>& sorted, Index from, Index to)
 {
   return std::binary_search(sorted.begin(), sorted.end(), Edge{ from, to });
 }
 
 /**
- * The edges of settled or covered triangles that have none of these on their right.
+ * The edges of settled or covered triangles that have none of these on their right. An edge of a
+ * seam separates what is settled from an open triangle or from the outside. From open triangles,
+ * edges are known by their twins; those at the outside are found among edges between border points.
  * @param[in] open  the edges of open triangles, sorted
  */
 std::vector<Edge> FindSeamEdges(
@@ -244,6 +266,7 @@ std::vector<Edge> FindSeamEdges(
     }
   }
   std::sort(across.begin(), across.end());
+  // An edge of the border occurs in one direction only.
   const auto isBorder = [&across](const Edge& edge) {
     return Has(across, edge.first, edge.second) && !Has(across, edge.second, edge.first);
   };
@@ -271,6 +294,7 @@ Piece SeamOf(const SettledMesh& mesh, const Progress& progress)
   const auto place = [&](Index vertex) {
     if (placeOf[vertex] == None)
     {
+      // A vertex enters the seam when it is first asked for.
       placeOf[vertex] = seam.Count();
       const Point2 p = mesh.Points.At(vertex);
       seam.Coordinates.insert(seam.Coordinates.end(), { p.X, p.Y, mesh.Points.Elevation(vertex) });
@@ -278,6 +302,7 @@ Piece SeamOf(const SettledMesh& mesh, const Progress& progress)
     }
     return placeOf[vertex];
   };
+  // Sorted, so that places in the seam depend on the points, not on the order of triangles.
   std::vector<Edge> open;
   for (std::size_t t = 0; t < mesh.States.size(); ++t)
   {
@@ -342,6 +367,8 @@ void MarkSettled(
 
 /**
  * The points on the border of the mesh, or near that of its box: few, if they are spread evenly.
+ * The distance is half the fourth root of their number n, in spacings, so that some n^(3/4) points
+ * are near.
  */
 std::vector<char> FindNear(const SettledMesh& mesh)
 {
@@ -401,6 +428,8 @@ void MarkSettledInCell(const Cell& cell, const Progress& progress, SettledMesh& 
     {
       CheckAbort(progress, t);
       const Index* const c = corners + 3 * t;
+      // By bytes and bits, without branches: nearly all triangles of a large cell are passed over
+      // here.
       const char isAny = near[c[0]] | near[c[1]] | near[c[2]];
       if (!isAny || mesh.States[t] != SettledMesh::Inner)
       {

@@ -20,6 +20,12 @@
  * when other points of its circle go. For among fewer points its lowest corner still is the lowest,
  * and its other two are still neighbours on the circle.
  *
+ *   +-------------+-------------+    Two cells. Triangles whose circles lie in a cell, among the
+ *   |  .  .  .  x | x  .  .  .  |    points marked with dots, are settled. The corners of all
+ *   |  .  .  .  x | x  .  .  .  |    others, x, are the seams. Both seams are triangulated once
+ *   |  x  x  x  x | x  x  x  x  |    more together: now those along the line between are settled,
+ *   +-------------+-------------+    and the seam of the larger cell is what is left.
+ *
  * The seam of a cell with m evenly spread points has some multiple of sqrt(m) points.
  */
 #ifndef elevation_Cells_Pieces_h
@@ -81,6 +87,7 @@ using GlobalId = std::int64_t;
 /** Points and edges of a seam, or of several. */
 struct Piece
 {
+  // In plain arrays, which are sent to other ranks as they are.
   std::vector<double> Coordinates; ///< x, y, z of each point
   std::vector<GlobalId> Ids;       ///< of each point
   /** Pairs of places in Ids: edges that have a settled triangle on their left, and none on their

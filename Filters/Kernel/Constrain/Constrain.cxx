@@ -16,7 +16,10 @@ namespace elevation
 namespace
 {
 
-/** Input points and added ones in one array; empty if nothing is added. */
+/**
+ * Input points and added ones in one array; empty if nothing is added. Ids of input points stay, so
+ * triangles need no translation.
+ */
 Buffer<double> JoinPoints(
   const PointView& points, const std::vector<AddedPoint>& added, const Progress& progress)
 {
@@ -46,7 +49,9 @@ Buffer<double> JoinPoints(
   return joined;
 }
 
-/** A triangle, its lowest vertex first. */
+/**
+ * A triangle, its lowest vertex first. Also as a view of three ids in a list of triangles.
+ */
 using Corners = std::array<Index, 3>;
 
 /** The order of Triangulate.h: by lowest vertex, then counter-clockwise around it. */
@@ -56,7 +61,11 @@ bool ComesBefore(const std::vector<Point2>& points, const Corners& p, const Corn
                       : Orientation(points[p[0]], points[p[1]], points[q[1]]) == Positive;
 }
 
-/** Replaces triangles by those of the mesh, of which few are others, in the same order. */
+/**
+ * Replaces triangles by those of the mesh, of which few are others, in the same order: those that
+ * have not changed keep their order and close up, the changed ones are sorted behind them, and both
+ * are merged. So the cost is that of the changed ones, and a pass.
+ */
 void SortInChanged(const Mesh& mesh, Buffer<Index>& triangles, const Progress& progress)
 {
   Corners* const all = reinterpret_cast<Corners*>(triangles.data());
@@ -68,6 +77,8 @@ void SortInChanged(const Mesh& mesh, Buffer<Index>& triangles, const Progress& p
     {
       Corners corners{ mesh.Triangles[3 * t], mesh.Triangles[3 * t + 1],
         mesh.Triangles[3 * t + 2] };
+      // Recovery writes into the slots of triangles that it has taken out, so others are at their
+      // places.
       if (corners == all[t])
       {
         *kept++ = corners;
@@ -93,6 +104,7 @@ void SortInChanged(const Mesh& mesh, Buffer<Index>& triangles, const Progress& p
   });
 }
 
+// After recovery, which needs the triangles with long edges, too.
 void LeaveOutLong(const std::vector<Point2>& points, const EdgeLimit& limit,
   Buffer<Index>& triangles, const Progress& progress)
 {
@@ -114,6 +126,7 @@ ConstrainedTriangulation TriangulateConstrained(
   ConstrainedTriangulation constrained;
   Triangulation& result = constrained.Result;
   const Progress& progress = asked.Monitor;
+  // By the input points; the vertices that lines add get ids behind theirs.
   static_cast<LinePieces&>(constrained) =
     CutLines(points, lines, asked.Duplicates, progress.Between(0.0, 0.17));
   if (constrained.AreNone)
@@ -121,6 +134,7 @@ ConstrainedTriangulation TriangulateConstrained(
     result = Triangulate(points, asked);
     return constrained;
   }
+  // Doubles, also where the input is float: crossings are rounded to doubles.
   const Buffer<double> joined = JoinPoints(points, constrained.Added, progress.Between(0.17, 0.2));
   PointView all = points;
   if (!joined.empty())
@@ -132,11 +146,13 @@ ConstrainedTriangulation TriangulateConstrained(
 
   DelaunayOptions options = asked;
   options.Monitor = progress.Between(0.2, 0.6);
+  // The points of lines are on no nodes.
   options.UseLattice = LatticeMode::Off;
   options.MaximumEdgeLength = 0.0; // recovery needs all triangles
   if (options.MaximumElevationError > 0.0)
   {
     options.Monitor = progress.Between(0.2, 1.0);
+    // Which makes the edges itself, as it chooses the points. A limit on edges is not set then.
     result = TriangulateFew(all, options, constrained.Pieces);
     return constrained;
   }
@@ -156,6 +172,7 @@ ConstrainedTriangulation TriangulateConstrained(
   mesh.Triangles.assign(result.Triangles.begin(), result.Triangles.end());
   mesh.ConnectTwins(0, progress.Between(0.62, 0.8));
   std::vector<char> flags;
+  // Most pieces are edges already, where lines follow the points.
   const Index missing =
     RecoverSegments(mesh, constrained.Pieces, flags, progress.Between(0.8, 0.95));
   if (missing > 0)

@@ -16,6 +16,8 @@ namespace elevation
 namespace
 {
 
+// The passes: Collect() of SegmentNetwork; CutAtPoints(), then Settle() with its rounds; Match().
+// Result() gives final ids.
 class LineCutting : private SegmentNetwork
 {
 public:
@@ -40,6 +42,8 @@ public:
     result.AreNone = this->Vertices.empty();
     result.NumberOfCrossings = this->NumberOfCrossings;
     std::vector<AddedPoint>& added = result.Added;
+    // In the order of vertices, crossings come after the vertices that they lie between, so these
+    // have their ids and elevations by then.
     std::vector<Index> ids(this->Vertices.size());
     const auto elevationOf = [&](Index id) {
       return id < this->Points.Count ? this->Points.Elevation(id)
@@ -72,6 +76,7 @@ public:
         point.Fraction = this->FractionOf(vertex);
         const double from = elevationOf(point.From), to = elevationOf(point.To);
         point.Elevation = from + point.Fraction * (to - from);
+        // The difference of the elevations has overflowed.
         if (!std::isfinite(point.Elevation))
         {
           point.Elevation = (1.0 - point.Fraction) * from + point.Fraction * to;
@@ -95,12 +100,15 @@ private:
   /** Pass 2. */
   void Split(const Progress& progress)
   {
+    // Exact cuts first: they move no piece, and input points on lines must not be missed because of
+    // pieces that rounding has moved.
     this->CutAtPoints(progress.Between(0.0, 0.5));
     // Up to here, pieces follow the lines exactly; the next steps move them by rounding.
     const std::vector<SegmentPiece> pieces = this->Pieces;
     const std::size_t count = this->Vertices.size();
     // Two units cover the rounding of an end and of a crossing. A reach of 0 is for lines no longer
-    // than a few units: the doubles between them are finite in number, so that it ends.
+    // than a few units: the doubles between them are finite in number, so that it ends. This
+    // second try begins from the exact pieces again.
     if (this->Settle(2.0, true, progress.Between(0.5, 0.9)))
     {
       return;
@@ -127,6 +135,8 @@ private:
   {
     constexpr int mostRounds = 64; // two or three are usual
     bool haveCounted = !isToCount;
+    // First vertices on pieces; crossings only where there are none. A crossing at a vertex is then
+    // a common end.
     for (int round = 0; round < mostRounds; ++round)
     {
       // Each round gets half of the remaining progress.
@@ -148,6 +158,7 @@ private:
           haveCounted = true;
         }
         CutAtCrossings(*this, crossings, reach, cuts, ofRound.Between(0.7, 0.9));
+        // For the message, if this round does not help either.
         const auto [p, q] = crossings[0];
         this->Unsettled = { this->Pieces[p].Rank, this->Pieces[q].Rank };
       }
@@ -167,6 +178,7 @@ private:
     if (!this->CutAtVertices(cuts, many, progress.Between(0.2, 0.3)))
     {
       std::vector<Point2> places(this->Vertices.size());
+      // Long overlaps have many vertices on many pieces: joined first, each stretch is one piece.
       for (std::size_t v = 0; v < places.size(); ++v)
       {
         places[v] = this->Vertices[v].Position;
@@ -176,6 +188,8 @@ private:
       cuts.clear();
       this->CutAtVertices(cuts, Everything, progress.Between(0.4, 0.45));
     }
+    // A pass over all points, so it comes once; input points enter as vertices, and later rounds
+    // know them.
     this->CutAtInputPoints(cuts, progress.Between(0.45, 0.9));
     for (const PieceCut& cut : cuts)
     {
@@ -199,6 +213,7 @@ private:
         {
           const Point2 p = this->Points.At(id);
           std::size_t cell;
+          // Most points are in no cell with a piece.
           if (!this->Grid.FindCell(p, cell) || !std::isfinite(this->Points.Elevation(id)))
           {
             continue;
@@ -223,6 +238,7 @@ private:
           }
         }
       });
+    // By position, so that input points with the same x,y become one vertex.
     Sort(
       found.begin(), found.end(),
       [&](const PieceCut& p, const PieceCut& q) {
@@ -248,6 +264,7 @@ private:
     }
   }
 
+  /** Enters an input point at a vertex; of several, the one that the policy prefers. */
   void SetInput(Index vertex, Index id)
   {
     Index& input = this->Vertices[vertex].Input;
@@ -279,7 +296,11 @@ private:
     return work.Count() <= most;
   }
 
-  /** Counts the pairs of segments that cross at a vertex: both run through it, not on one line. */
+  /**
+   * Counts the pairs of segments that cross at a vertex: both run through it, not on one line.
+   * Around one vertex, each segment crosses all that are not on its line; sorted by direction,
+   * those on one line are adjacent.
+   */
   void CountCrossingsAtVertices(std::vector<Passage>& passages, const Progress& progress)
   {
     Sort(
@@ -307,6 +328,7 @@ private:
     }
   }
 
+  /** Crossings of pieces: each of the segments in one with each in the other. */
   void CountCrossings(const std::vector<Crossing>& crossings)
   {
     for (const auto& [p, q] : Counted(crossings))
@@ -328,6 +350,7 @@ private:
     for (std::size_t i = 0; i < this->Pieces.size(); ++i)
     {
       work.Step(i, this->Pieces.size());
+      // Each part keeps the rank, count and units of the whole.
       SegmentPiece piece = this->Pieces[i];
       Index from = piece.A;
       const Index end = piece.B;
@@ -346,6 +369,7 @@ private:
         work.Tick();
         append(cut->Vertex);
       }
+      // A point that no segment ends in: it has no parts.
       if (piece.Rank == None)
       {
         pieces.push_back(piece);
@@ -353,12 +377,14 @@ private:
       append(end);
     }
     this->Pieces = std::move(pieces);
+    // Bent pieces may have become equal.
     this->JoinEqualPieces(progress.Between(0.7, 1.0));
   }
 
   /** Pass 3: the input points at crossings. All others have been found when cutting. */
   void Match(const Progress& progress)
   {
+    // Few, compared with points: they are in the grid, and one pass looks up all points.
     std::vector<Index> crossings;
     for (std::size_t v = 0; v < this->Vertices.size(); ++v)
     {

@@ -16,6 +16,12 @@
  *      them, if there is one. Pairs are found in a grid of cells (CellGrid.h).
  *   3. Match: a vertex with the x,y of an input point is that point; the others are added.
  *
+ *      d      b     a-b and c-d cross, and no vertex is near the crossing: both are cut at a new
+ *       \  /'        one, x, which rounding puts a little beside both. The four pieces are bent
+ *        x'          by that. They may now cross others, or have a vertex on the wrong side:
+ *     ./' \          hence the rounds.
+ *    a     c
+ *
  * "Near" means: an end of one piece within two units in the last place of the other one, or a
  * vertex within four units of the crossing; units are those of the segment's largest coordinate.
  * For map coordinates (5e6 m) this is 2 and 4 nanometres. So lines that coincide but for the

@@ -10,7 +10,10 @@ namespace elevation
 namespace
 {
 
-/** Whether a point is at most so far from a segment, or little more. */
+/**
+ * Whether a point is at most so far from a segment, or little more. Rather too many points than too
+ * few: CutLines() looks at those that are sent exactly.
+ */
 bool IsWithin(const Ends& segment, const Point2& p, double distance)
 {
   const Point2 &a = segment[0], &b = segment[1];
@@ -32,6 +35,7 @@ std::vector<Index> ListNearLines(
   // Pieces and crossings stay within some hundred units in the last place of their lines.
   constexpr double reach = 1e-9;
   std::vector<Ends> segments;
+  // Also the points of lines of one point, as segments of no length.
   lines.VisitSegments([&](Index line, Index k, Index next) {
     segments.push_back({ lines.Points.At(LinePoint(lines, line, k)),
       lines.Points.At(LinePoint(lines, line, next)) });
@@ -44,6 +48,7 @@ std::vector<Index> ListNearLines(
       largest = std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
     }
   }
+  // Only the points are many: the lines are in the grid.
   const CellGrid grid = GridOf(segments, progress.Between(0.0, 0.2));
   const Progress looking = progress.Between(0.2, 1.0);
   std::vector<Index> near;

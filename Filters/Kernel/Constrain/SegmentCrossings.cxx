@@ -12,7 +12,10 @@ namespace elevation
 namespace
 {
 
-/** Finds the cuts of one round. */
+/**
+ * Finds the cuts of one round: for each crossing an end in reach, a vertex near it, or a new one.
+ * Crossings are taken by position, so that the result does not depend on the order of pieces.
+ */
 class CrossingCuts
 {
 public:
@@ -25,10 +28,13 @@ public:
 
   void Run(const std::vector<Crossing>& crossings, const Progress& progress)
   {
+    // First all crossings with an end in reach, which need no place; the others are sorted by their
+    // place.
     std::vector<Place> places;
     for (const std::size_t i : Counted(crossings.size()))
     {
       ReportStep(progress, i, 2 * crossings.size(), 1024);
+      // An end so near the other piece would leave a stub of some units: the other is bent to it.
       if (!this->CutAtEnds(crossings[i]))
       {
         const Ends &s = this->Network.PieceEnds[crossings[i].first],
@@ -43,6 +49,7 @@ public:
 
     const Progress naming = progress.Between(0.7, 1.0);
     StepCount steps;
+    // Crossings that round to one place are cut at one vertex.
     for (std::size_t i = 0, end = 0; i < places.size(); i = end)
     {
       steps.Add();
@@ -64,6 +71,7 @@ private:
     Index Vertex;
   };
 
+  // Between the ends along the longer axis: the bent piece then does not turn back.
   bool CanPassThrough(const SegmentPiece& piece, Index vertex) const
   {
     return piece.A == vertex || piece.B == vertex ||
@@ -76,6 +84,7 @@ private:
     const std::size_t before = this->Cuts.size();
     for (const auto& [piece, other] : { crossing, Crossing(crossing.second, crossing.first) })
     {
+      // The piece whose own units say how far rounding moves it is the one to be bent.
       const SegmentPiece& to = this->Network.Pieces[other];
       VisitEndsInReach(this->Network.PieceEnds[other], this->Network.PieceEnds[piece],
         this->Network.Pieces[piece].Unit, this->Reach, [this, &to, bent = piece](int end) {
@@ -102,6 +111,7 @@ private:
       for (const Index piece : { place->Pieces.first, place->Pieces.second })
       {
         this->Cuts.push_back({ piece, place->Vertex == None ? vertex : place->Vertex });
+        // The first segment in the order of lines: it gives the crossing its elevation.
         if (place->Vertex == None &&
           (first == None || this->Network.Pieces[piece].Rank < this->Network.Pieces[first].Rank))
         {
@@ -126,6 +136,7 @@ private:
     const double reach = 2.0 * this->Reach, reachX = reach * unitX, reachY = reach * unitY;
     Index nearest = None;
     double shortest = 0.0;
+    // Units are 0 for short segments: then only the very place is near.
     const auto inUnits = [](double difference, double unit) {
       return difference == 0.0 ? 0.0 : unit > 0.0 ? std::fabs(difference) / unit : HUGE_VAL;
     };
@@ -141,6 +152,8 @@ private:
         shortest = distance;
       }
     };
+    // The reach is far below the size of a cell, so the square around the crossing lies in the
+    // cells of its corners.
     std::size_t last = static_cast<std::size_t>(-1);
     for (const double y : { -reachY, reachY })
     {
@@ -157,6 +170,8 @@ private:
           look(this->Network.Pieces[*i].A);
           look(this->Network.Pieces[*i].B);
         }
+        // New vertices of this round are in no piece yet. They come by increasing y, so the last
+        // ones are the near ones.
         const auto found = this->NewVertices.find(cell);
         for (std::size_t k = found == this->NewVertices.end() ? 0 : found->second.size();
              k > 0 && this->Network.At(found->second[k - 1]).Y >= p.Y - reachY; --k)

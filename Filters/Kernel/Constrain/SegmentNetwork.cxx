@@ -14,7 +14,11 @@ namespace elevation
 namespace
 {
 
-/** Makes one vertex of each place of the lines' points. @return the vertex of each point */
+/**
+ * Makes one vertex of each place of the lines' points. A sort instead of a hash table: the lowest
+ * id of equal points is then known at once.
+ * @return the vertex of each point
+ */
 std::vector<Index> CollectPoints(
   const ConstraintLines& lines, const Progress& progress, std::vector<LineVertex>& vertices)
 {
@@ -67,6 +71,7 @@ Index LinePoint(const ConstraintLines& lines, Index line, Index k)
   if (!exists || !std::isfinite(points.At(id).X) || !std::isfinite(points.At(id).Y) ||
     !std::isfinite(points.Elevation(id)))
   {
+    // Messages name the line by the cell of the input, not by its place in the list.
     const Index cell = lines.Cells[line];
     throw exists ? MakeError<sentences::NonFinitePointOfLine>(id, "constraints'", cell)
                  : MakeError<sentences::NoSuchPointOfLine>(id, "constraints'", cell);
@@ -79,6 +84,7 @@ void SegmentNetwork::Collect(const ConstraintLines& lines, const Progress& progr
   const std::vector<Index> vertexOf =
     CollectPoints(lines, progress.Between(0.0, 0.5), this->Vertices);
   std::vector<char> hasSegment(this->Vertices.size(), 0);
+  // From the lower end up, so that segments in both directions are the same.
   lines.VisitSegments([&](Index line, Index k, Index next) {
     Index p = vertexOf[lines.Vertices[k]], q = vertexOf[lines.Vertices[next]];
     if (p != q)
@@ -87,6 +93,7 @@ void SegmentNetwork::Collect(const ConstraintLines& lines, const Progress& progr
       {
         std::swap(p, q);
       }
+      // Ranks are in the order of lines, for which elevations at crossings are taken.
       const Index rank = static_cast<Index>(this->Segments.size());
       this->Pieces.push_back({ p, q, rank, 1, UnitsOf(this->At(p), this->At(q)) });
       this->SegmentLines.push_back(line);
@@ -103,11 +110,14 @@ void SegmentNetwork::Collect(const ConstraintLines& lines, const Progress& progr
   {
     if (!hasSegment[v])
     {
+      // A line of one point: a piece of no length keeps its vertex in the grid, so that an input
+      // point at the same place is found.
       this->Pieces.push_back({ static_cast<Index>(v), static_cast<Index>(v), None, 0 });
     }
   }
 }
 
+// The one of the lowest rank stays, as it comes first.
 void SegmentNetwork::JoinEqualPieces(const Progress& progress)
 {
   Sort(

@@ -51,7 +51,10 @@ struct ConstraintLines
 /** The id of vertex k of the lines. @throws Error if it does not exist or is not finite */
 Index LinePoint(const ConstraintLines& lines, Index line, Index k);
 
-/** A vertex of the lines. */
+/**
+ * A vertex of the lines. Vertices of lines come first, in the order of their ids; then input points
+ * on lines; then crossings.
+ */
 struct LineVertex
 {
   Point2 Position;
@@ -61,11 +64,15 @@ struct LineVertex
   Index To;
 };
 
-/** Vertices, and the pieces of segments between them. */
+/**
+ * Vertices, and the pieces of segments between them. Plain data: CutLines.cxx and
+ * SegmentCrossings.cxx both work on it, in turn.
+ */
 struct SegmentNetwork
 {
   std::vector<LineVertex> Vertices;
   std::vector<SegmentPiece> Pieces; ///< each from its lower end to its upper one
+  // Only as current as the last EnterInGrid(): a round finds all cuts before it makes them.
   std::vector<Ends> PieceEnds;      ///< as entered in the grid
   CellGrid Grid{ GridOf({}) };
   std::vector<Segment> Segments;   ///< by rank, which is the order of the lines

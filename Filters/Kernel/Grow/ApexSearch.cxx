@@ -102,6 +102,7 @@ Index ApexSearch::Find(Index b, Index end)
     }
   }
   this->SetEdge(this->Origin, b);
+  // Both are on the left of the edge, so their discs already bound the search.
   for (Index known : { best, end })
   {
     if (known != None && known != this->Best && this->CompareOne(known))
@@ -129,6 +130,7 @@ Index ApexSearch::FindAnywhere(Index a, Index b)
 {
   this->Origin = a;
   this->SetEdge(a, b);
+  // In a walk, the third vertex may be below the edge.
   this->Floor = -Infinity;
   this->LookInto(this->Grid.Tree.Nodes[this->Grid.Tree.Nodes.size() - 1], ~0u);
   this->Floor = 0.0;
@@ -234,6 +236,7 @@ bool ApexSearch::LookIntoRows(const Region& region)
       left = this->CenterX - half;
       right = this->CenterX + half;
     }
+    // The left of a rising edge's line is x < slope y.
     right = std::min(right, std::max(slope * low, slope * high));
     const Index first = std::max(bins.Column(this->A.X + left - region.SlackX), region.FirstColumn);
     const Index last = std::min(bins.Column(this->A.X + right + region.SlackX), region.LastColumn);
@@ -490,6 +493,8 @@ __attribute__((target("avx2"))) bool ApexSearch::LookIntoRowsWide(const Region& 
   struct
   {
     Index First, End;
+  // A row has one part for each eight slots. Three are written without a branch, whatever number
+  // counts: hence the last three.
   } parts[MostNear / 8 + NearRows + 1 + 3];
   Index number = 0, count = 0;
   const __m256d zero = _mm256_setzero_pd();
@@ -561,6 +566,7 @@ __attribute__((target("avx2"), always_inline)) inline unsigned int ApexSearch::I
     _mm256_sub_pd(_mm256_loadu_pd(this->Grid.Y.data() + slot), _mm256_set1_pd(this->A.Y)),
     _mm256_set1_pd(this->CenterY));
   const __m256d squared = _mm256_add_pd(_mm256_mul_pd(x, x), _mm256_mul_pd(y, y));
+  // "Not greater" also holds for NaN: CompareOne() then decides, exactly where it must.
   return static_cast<unsigned int>(
     _mm256_movemask_pd(_mm256_cmp_pd(squared, _mm256_set1_pd(this->RadiusSquared), _CMP_NGT_UQ)));
 }
@@ -630,6 +636,7 @@ bool ApexSearch::CompareOne(Index slot)
     if (!(isClear && difference < -error))
     {
       this->CountExact();
+      // A point may be met again, as a guess and in its bin.
       if (slot == this->Best || !this->IsBetter(slot, this->Best))
       {
         return false;

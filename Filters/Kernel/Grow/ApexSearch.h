@@ -13,6 +13,11 @@
  * search, and shrinks with it. The search looks first among the points around the edge's origin
  * (WideApexSearch.h), then in the bins around it, then in the tree of boxes, nearest box first.
  *
+ *        ..p..         The discs through a and b, by their third point on the left of a-b. That of
+ *      .'  q  '.       q lies within that of p there, so q is better; to the right it is the other
+ *      : '   ' :       way round, but no apex is there. The position s of the centre along the
+ *       a-----b        edge's normal, in edge lengths, grows with the disc: s = dot / (2 cross).
+ *
  * Cost: constant for even density, logarithmic in the number of points otherwise; linear in the
  * number of points on the circle, which a budget limits.
  */
@@ -25,6 +30,10 @@
 namespace elevation
 {
 
+/**
+ * The search for one strip: it has state of the current vertex, and a budget, so that each thread
+ * needs its own.
+ */
 class ApexSearch
 {
 public:
@@ -39,7 +48,8 @@ public:
   }
 
   /**
-   * Sets the vertex whose fan is grown next.
+   * Sets the vertex whose fan is grown next. In a fan, calls come in this order: SetOrigin(), then
+   * Follow() and Find() in turn until the last neighbour is reached.
    * @param[in] next  the vertex of the call after this one, or None
    */
   void SetOrigin(Index slot, Index next);
@@ -64,6 +74,8 @@ public:
    */
   Index FindAnywhere(Index a, Index b);
 
+// The passes of Find(): candidates of the window, plain bins, tree. Each pass starts from the disc
+// that the one before has left.
 private:
   using Node = BoxTree::Node;
   struct Region;
@@ -82,6 +94,7 @@ private:
   bool CompareOne(Index slot);
   void CountExact();
   bool IsBetter(Index slot, Index other) const;
+// The same with AVX2.
 #ifdef ELEVATION_HAS_AVX2
   __attribute__((target("avx2"))) unsigned int ReachedWide(
     const Node& node, double* distances) const;
@@ -101,6 +114,9 @@ private:
   bool HasAround = false;
   WideApexSearch::Candidates Open; ///< over the edge to OpenEnd
   Index OpenEnd = None;
+
+  // Coordinates are relative to the origin A: differences of neighbours are small, so that products
+  // lose less to rounding, and error bounds shrink with them.
 
   // The edge.
   double Floor = 0.0; ///< relative to the origin; boxes below are skipped

@@ -16,11 +16,15 @@
 namespace elevation
 {
 
-/** A box, relative to a vertex. */
+/**
+ * A box, relative to a vertex. Used where a box is fixed beforehand: by the compactness strategy
+ * (ApexSearch.h). The other strategy has a disc that shrinks while it searches.
+ */
 struct BoxAround
 {
   double LowX, HighX, LowY, HighY;
 
+  /** Strictly, so that rounding of the differences cannot hide a point on the border. */
   bool Holds(const BoxAround& other) const
   {
     return this->LowX < other.LowX && other.HighX < this->HighX && this->LowY < other.LowY &&
@@ -59,6 +63,8 @@ void VisitLeaves(
   const BinGrid& grid, Index origin, const BoxAround& box, WorkBudget& budget, Visit&& visit)
 {
   const Point2 a = grid.PointAt(origin);
+  // From the leaf upwards, as the box is mostly small: a search from the root would cost the full
+  // depth.
   BoxTree::Step step = grid.Lowest(origin);
   while (!step.IsRoot() &&
     !BoxAround{ step.LowX - a.X, step.HighX - a.X, step.LowY - a.Y, step.HighY - a.Y }.Holds(box))

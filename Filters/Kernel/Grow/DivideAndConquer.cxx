@@ -15,6 +15,12 @@ namespace
 /**
  * A directed edge, in the ring of those that leave its origin. Spokes 2e and 2e + 1 are the two
  * directions of an edge.
+ *
+ *           Next            The published quad-edge without its dual: rings of spokes and the twin
+ *            |              are enough. NextLeft(s), the next side of the polygon on the left of
+ *   Origin --+--> s         s, is the spoke before the twin in the ring around the end of s.
+ *            |
+ *         Previous
  */
 struct Spoke
 {
@@ -30,9 +36,14 @@ struct HullEnds
   Index FromHighest; ///< from the highest point, clockwise
 };
 
+// The functions are called in their order: Divide(), RemoveTies(), CutIntoFans().
 class Division
 {
 public:
+  /**
+   * @param[in] points  by increasing (y, x); indices are ranks, so "higher" and "greater index" are
+   *        the same
+   */
   Division(const Buffer<Point2>& points, const Progress& progress, const LatticeMetric* metric)
     : Points(points)
     , Metric(metric)
@@ -62,6 +73,8 @@ public:
     const Index middle = begin + (end - begin) / 2;
     const HullEnds lower = this->Divide(begin, middle);
     const HullEnds upper = this->Divide(middle, end);
+    // A merge takes at most a few steps per point, mostly far fewer. Only as many as there are
+    // points count as progress, so that the fraction never runs backwards.
     this->Steps = 0;
     this->StepsAtMost = end - begin;
     const HullEnds ends = this->Merge(lower, upper);
@@ -72,11 +85,15 @@ public:
   /** Removes the edges between triangles with the same circumcircle. */
   void RemoveTies(Index hullSpoke, const Progress& progress)
   {
+    // A hull edge has a triangle on one side only. It stays, whatever the predicate says of the
+    // outside.
     std::vector<bool> isOnHull(this->Spokes.size() / 2, false);
     Index spoke = hullSpoke;
     do
     {
       isOnHull[spoke / 2] = true;
+      // The next edge along the hull: at the end, the first one counter-clockwise after the way
+      // back.
       spoke = this->Spokes[Twin(spoke)].Next;
     } while (spoke != hullSpoke);
 
@@ -117,6 +134,10 @@ public:
       }
     }
 
+    // For each vertex from the lowest up, between each two consecutive spokes to higher vertices:
+    // the polygon on the left of the first. Its other vertices are all higher, because the polygon
+    // is convex and both its neighbours of this vertex are higher; so it is cut into the fan of
+    // this vertex, and by no other one.
     Buffer<Index> triangles;
     triangles.Reserve(6 * static_cast<std::size_t>(this->Count));
     for (const Index lowest : Counted(this->Count - 1))
@@ -157,6 +178,8 @@ private:
   /** Adds an edge that is joined to no other. */
   Index AddEdge(Index from, Index to)
   {
+    // Removed edges are used again: without that, merges would need more than three edges per
+    // point, although no more exist at a time.
     Index spoke = this->Removed;
     if (spoke != None)
     {
@@ -194,6 +217,10 @@ private:
     return spoke;
   }
 
+  /**
+   * Takes both spokes out of their rings, in constant time; the first of them heads the list of
+   * those to be used again.
+   */
   void RemoveEdge(Index spoke)
   {
     const Index even = spoke & ~1;
@@ -208,8 +235,13 @@ private:
     this->Removed = even;
   }
 
+  /**
+   * The triangulation of three points: a triangle of either orientation, or two edges on one line.
+   */
   HullEnds ConnectThree(Index begin)
   {
+    // Two edges in line, and the third one if the points are not collinear: the turn decides on
+    // which side the hull runs.
     const Index first = this->AddEdge(begin, begin + 1);
     const Index second = this->AddEdge(begin + 1, begin + 2);
     this->PutAfter(second, Twin(first));
@@ -223,12 +255,18 @@ private:
     return turn == Positive ? HullEnds{ first, Twin(second) } : HullEnds{ Twin(third), third };
   }
 
+  /** On which side of a spoke's line a vertex lies: Positive is left. */
   Sign SideOf(Index vertex, Index spoke) const
   {
     return Orientation(this->OriginOf(spoke), this->EndOf(spoke), this->Points[vertex]);
   }
 
-  /** Turns two spokes at the hulls of two triangulations to the ends of their common tangent. */
+  /**
+   * Turns two spokes at the hulls of two triangulations to the ends of their common tangent. With
+   * left on the hull of the lower points and right on that of the upper ones: as long as one end
+   * lies on the wrong side of the other's hull edge, the other one moves along its hull. Each moves
+   * in one direction only, so this is linear.
+   */
   void FindTangent(Index& left, Index& right)
   {
     for (;;)
@@ -255,6 +293,8 @@ private:
    */
   Index FindApex(Index spoke, Index Spoke::*turn, Index last, const Point2& p, const Point2& q)
   {
+    // The circle through the base and a neighbour must not contain the following neighbour. If it
+    // does, the edge to the first crosses a Delaunay edge, and goes.
     for (Index next = this->Spokes[spoke].*turn;
          next != last && this->IsInCircle(q, p, this->EndOf(spoke), this->EndOf(next)) == Positive;
          next = this->Spokes[spoke].*turn)
@@ -270,12 +310,20 @@ private:
    * Merges two triangulations along the line that separates them, from the right common tangent of
    * their hulls to the left one. Each new edge is the base of the next triangle, whose apex is the
    * neighbour of either end with an empty circle; edges that it would cross are removed.
+   *
+   *   ...--u--p    The base p-q is the tangent on the right at first, and moves to the left.
+   *         \ |    u and l are the neighbours of its ends that FindApex() stops at; the one with
+   *          \|    the empty circle is the apex. Its edge to the other end is the next base: here
+   *   ...--l--q    u-q, and then l or a further neighbour of u may be next.
    */
   HullEnds Merge(HullEnds lower, HullEnds upper)
   {
+    // From the highest of the lower points and the lowest of the upper ones: each is on the hull of
+    // its half.
     Index left = lower.FromHighest, right = upper.FromLowest;
     this->FindTangent(left, right);
     Index base = this->Connect(right, left); // from the upper points to the lower
+    // If the tangent ends at an extreme point of all, it is the new hull edge there.
     if (this->Spokes[left].Origin == this->Spokes[lower.FromLowest].Origin)
     {
       lower.FromLowest = Twin(base);
@@ -289,6 +337,7 @@ private:
     {
       this->Step();
       const Point2 &p = this->OriginOf(base), &q = this->EndOf(base);
+      // Whether a neighbour lies beyond the base, on the side where the next triangle will be.
       const auto isAbove = [&](Index spoke) {
         return Orientation(q, p, this->EndOf(spoke)) == Positive;
       };
@@ -304,10 +353,13 @@ private:
       {
         inUpper = this->FindApex(inUpper, &Spoke::Previous, base, p, q);
       }
+      // Nothing is beyond the base: it is the left common tangent.
       if (!hasLower && !hasUpper)
       {
         return { lower.FromLowest, upper.FromHighest };
       }
+      // Both candidates have empty circles in their own half. The one in the other's circle is the
+      // apex.
       const bool isUpper = !hasLower ||
         (hasUpper &&
           this->IsInCircle(this->EndOf(inLower), q, p, this->EndOf(inUpper)) == Positive);
@@ -363,6 +415,7 @@ Buffer<Index> DivideAndConquer(
   }
   const Progress dividing = progress.Between(0.0, 0.9);
   Division division(points, dividing, metric);
+  // RemoveTies() keeps the hull's edges, so this spoke serves all three passes.
   const Index hullSpoke = division.Divide(0, static_cast<Index>(points.size())).FromLowest;
   division.RemoveTies(hullSpoke, progress.Between(0.9, 0.95));
   Buffer<Index> triangles = division.CutIntoFans(hullSpoke, progress.Between(0.95, 1.0));

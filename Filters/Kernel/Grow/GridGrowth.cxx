@@ -17,8 +17,13 @@ namespace
  * which looks at more, ten times as many.
  */
 constexpr std::int64_t WorkPerVertex = 340;
-/** The rest of the work for a fan. */
+/**
+ * The rest of the work for a fan, in the same unit: pauses come regularly also where searches find
+ * the apex among few points.
+ */
 constexpr std::int64_t WorkPerFan = 40;
+// A pause comes between two searches only; one search ends by MostLooks at the latest
+// (ApexSearch.cxx).
 constexpr std::int64_t WorkPerPause = 10000;
 
 /** Growth over the points of a grid, numbered by their slots. */
@@ -32,12 +37,14 @@ public:
   {
   }
 
+  // The interface that GrowAll() needs: strips, and for divide and conquer places and ids.
   class GridStrip;
   std::vector<std::unique_ptr<GridStrip>> MakeStrips(const Hull& hull, int threads);
 
   /** The points by increasing (y, x), once growth is given up. */
   Buffer<Point2> Places(const Progress& progress)
   {
+    // Growth is over, so its memory goes before divide and conquer allocates.
     this->Pool = Buffer<Ends>();
     const Buffer<Index>& order = this->Grid.Order;
     Buffer<Point2> places;
@@ -73,6 +80,10 @@ private:
   Buffer<Ends> Pool; ///< the edge pool: for the fan of each vertex, counter-clockwise
 };
 
+/**
+ * A strip of points; vertices are slots, in the order of BinGrid::Order. The pool is shared, but
+ * each strip writes only the entries of its own vertices.
+ */
 class Growth::GridStrip : public Strip<GridStrip>
 {
 public:
@@ -93,16 +104,22 @@ public:
   bool IsDone() const { return this->Next == this->End; }
   double Done() const { return this->Next - this->Begin; }
 
+  /** See Strip. By position: slots of one row are not in the order of y. */
   bool IsBelow(Index slot) const
   {
     return IsLower(this->Grid.PointAt(slot), this->Grid.PointAt(this->Order[this->Begin]));
   }
 
+  // With q the lower end, the edge falls: it is the first edge of q's fan, as the triangle is to
+  // the right of that fan. With p the lower end, it is the last one of p's fan. The two cases are
+  // one line by indices, as their branch could not be predicted.
   bool RecordEdge(Index p, Index q)
   {
     const Point2 pPoint = this->Grid.PointAt(p), qPoint = this->Grid.PointAt(q);
     const bool isRising = IsLower(pPoint, qPoint);
     const Index ends[2] = { q, p };
+    // Only whether it is above the strip is tested. Below there is none: a triangle's lower end is
+    // never below the vertex, or border, that it was found from.
     const bool isInStrip = this->End == this->Grid.NumberOfPoints() ||
       IsLower(isRising ? pPoint : qPoint, this->Grid.PointAt(this->Order[this->End]));
     if (isInStrip)
@@ -112,13 +129,16 @@ public:
     return isInStrip;
   }
 
+  // For lattices, where a walk needs no search between full cells.
   bool PassCells() { return false; }
 
   Index FindAcross()
   {
+    // From High down to Low, with the unknown side on the left.
     const Index apex = this->Search.FindAnywhere(this->High, this->Low);
     if (apex == None)
     {
+      // The walk ends at the hull's right side, so there is always a point on that side.
       ThrowOpenFan(this->Grid.Ids[this->Low]);
     }
     return apex;
@@ -162,15 +182,20 @@ private:
    */
   bool GrowFan(Index lowest)
   {
+    // The highest point has no fan, and no edges recorded.
     if (lowest == this->Order[this->Grid.NumberOfPoints() - 1])
     {
       return true;
     }
+    // Both ends of the fan are known: every triangle below this vertex has been written, in this
+    // strip or by a walk.
     const Index first = this->Pool[lowest][0], end = this->Pool[lowest][1];
+    // The triangles below meet above this vertex: it has no triangle of its own.
     if (first == end && first != None)
     {
       return true;
     }
+    // Not empty where a pause has interrupted the fan: then it goes on from its last neighbour.
     if (this->Fan.empty())
     {
       this->Fan.Append(first);
@@ -184,6 +209,7 @@ private:
       if (current != None)
       {
         this->Search.Follow(this->Fan, end);
+        // The wide search has stopped at an edge that needs exact predicates or a wider look.
         if (this->Fan.size() == count)
         {
           this->Fan.Append(this->Search.Find(current, end));
@@ -191,10 +217,12 @@ private:
         }
         current = this->Fan[this->Fan.size() - 1];
       }
+      // None or too many neighbours: the fan runs past its last edge, which must not happen.
       if (current == None || this->Fan.size() > static_cast<std::size_t>(this->Order.size()))
       {
         ThrowOpenFan(this->Grid.Ids[lowest]);
       }
+      // Also within a fan: one vertex may have most points of the cloud as neighbours.
       if (current != end && this->Budget.IsPaused())
       {
         return false;
@@ -210,6 +238,7 @@ private:
   {
     const std::size_t triangles = this->Fan.size() - 1;
     const Index lowestId = this->Grid.Ids[lowest];
+    // Once per fan, so that Write() needs no check.
     this->NeedRoom(triangles, lowestId);
     const auto pointOf = [this](Index slot) { return this->Grid.PointAt(slot); };
     Index current = this->Fan[0];
@@ -235,6 +264,8 @@ private:
 /** One strip per thread. */
 std::vector<std::unique_ptr<Growth::GridStrip>> Growth::MakeStrips(const Hull& hull, int threads)
 {
+  // A walk passes about as many triangles as a row of the strip has points, and more; with fewer
+  // points per strip, walks would cost a noticeable share of the growth.
   constexpr Index fewestPerStrip = 5000;
   const Index count = this->Grid.NumberOfPoints(), perStrip = this->Options.PointsPerStrip;
   const Index number = perStrip > 0 ? (count - 1) / perStrip + 1

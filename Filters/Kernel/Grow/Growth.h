@@ -12,6 +12,12 @@
  * each strip writes its own in their place. The triangles are the same, byte for byte, for any
  * number of strips.
  *
+ *        d-------c       The fan of v runs counter-clockwise from its first edge, v-b, to its
+ *       / \     / \      last, v-e. Both are upper edges of triangles below v, or of the hull,
+ *      e   \   /   b     which entered b and e at v: two entries a vertex replace the pool of
+ *       `-. \ / .-'      edges of the published method. Triangle v b c enters its upper edge,
+ *          `-v-'         b-c, at the lower of b and c: at b as the last edge, at c as the first.
+ *
  * If searches look at too many points, growth is given up for divide and conquer
  * (DivideAndConquer.h). The triangles are the same, byte for byte.
  *
@@ -28,11 +34,16 @@
 namespace elevation
 {
 
+/**
+ * Reports a state that only a fault of the kernel can cause, such as a wrong predicate. It is not
+ * an Error, as no input is to blame.
+ */
 [[noreturn]] inline void ThrowFault(const std::string& what)
 {
   throw std::logic_error(what + "; this is a fault of the triangulation, please report it");
 }
 
+/** Growth without this check would write beyond its memory, or never end. */
 [[noreturn]] inline void ThrowOpenFan(Index id)
 {
   ThrowFault("the fan of point " + std::to_string(id) + " does not close");
@@ -72,9 +83,13 @@ public:
     this->OutputEnd = triangles.end();
   }
 
-  /** Grows until the strip is done, the round is over, or for some ten thousand fans. */
+  /**
+   * Grows until the strip is done, the round is over, or for some ten thousand fans. Reached from
+   * GrowStrips() in each round; what it leaves is continued by the next call.
+   */
   void GoOn(const Round& round)
   {
+    // Each after WorkPerPause (GridGrowth.cxx, LatticeGrowth.cxx).
     constexpr int mostPauses = 128;
     Derived& self = static_cast<Derived&>(*this);
     int pauses = 0;
@@ -107,6 +122,8 @@ protected:
   /** Writes a triangle if it is left in. There must be room in any case. */
   void Write(Index a, Index b, Index c, bool isLeftIn)
   {
+    // Written in any case: whether the edge limit admits a triangle cannot be predicted, so a
+    // branch would cost more than the three stores.
     this->Out[0] = a;
     this->Out[1] = b;
     this->Out[2] = c;
@@ -116,6 +133,10 @@ protected:
 private:
   using Vertex = std::vector<Index>::const_iterator;
 
+  /**
+   * The end of an edge of a hull's chain that crosses the strip's lower border; the other end is
+   * the element before.
+   */
   Vertex FirstAbove(const std::vector<Index>& chain) const
   {
     const Derived& self = static_cast<const Derived&>(*this);
@@ -126,6 +147,12 @@ private:
   /**
    * Continues the walk through the triangles across the lower border, from the left side of the
    * hull to the right, from edge to edge across it.
+   *
+   *    High---High'         The current edge is Low-High. The apex on its right replaces Low if it
+   *    / \    / \           is below the border. If it is above, it replaces High, and the triangle
+   *  -/---\--/---\- border  has an upper edge, High'-High here, which is recorded as if the
+   *   Low  Low'             triangle had been grown.
+   *
    * @return false if it pauses
    */
   bool Walk()
@@ -133,9 +160,12 @@ private:
     Derived& self = static_cast<Derived&>(*this);
     const std::vector<Index>&rightChain = this->WholeHull.RightChain,
           &leftChain = this->WholeHull.LeftChain;
+    // Derived::IsBelow() depends on the strip only, so a continued walk finds the same ends again.
     const Vertex right = this->FirstAbove(rightChain), left = this->FirstAbove(leftChain);
     if (this->Begin > 0)
     {
+      // Both chains cross the border once: the walk begins at the left one's edge and ends at the
+      // right one's.
       if (this->Low == None)
       {
         this->Low = left[-1];
@@ -154,6 +184,7 @@ private:
           continue;
         }
         const Index apex = self.FindAcross();
+        // Searches of a walk count as those of fans do.
         this->Budget.Check();
         if (self.IsBelow(apex))
         {
@@ -162,6 +193,8 @@ private:
         else
         {
           ++this->Pairs;
+          // Counter-clockwise in the triangle High, Low, apex. If its lower end is above this
+          // strip, a later strip's walk records it.
           self.RecordEdge(apex, this->High);
           this->High = apex;
         }
@@ -178,6 +211,7 @@ private:
     // border of those above consists of hull edges and, along the walk, one edge for each of Pairs.
     const std::size_t below = 2 * static_cast<std::size_t>(this->Begin) + this->Pairs -
       static_cast<std::size_t>((left - leftChain.begin()) + (right - rightChain.begin()));
+    // As if all triangles were written; MoveTo() closes the gaps that the edge limit leaves.
     this->OutBegin = this->Out = this->Output + 3 * below;
     return true;
   }
@@ -201,8 +235,10 @@ void GrowStrips(const std::vector<std::unique_ptr<AnyStrip>>& strips, int thread
   const Progress& progress)
 {
   const Index number = static_cast<Index>(strips.size());
+  // A strip stays with its thread until it is done, whose caches hold its points and windows.
   std::vector<Index> atWork(std::max(threads, 1), None); // the current strip of each thread
   std::atomic<Index> next{ 0 };
+  // Read between rounds, when no strip is at work.
   const auto fraction = [&]() {
     double done = 0.0;
     for (const auto& strip : strips)
@@ -213,6 +249,7 @@ void GrowStrips(const std::vector<std::unique_ptr<AnyStrip>>& strips, int thread
   };
   InRounds(std::min<int>(threads, number), progress, fraction,
     [&](Index thread, const Round& round) {
+      // The thread's strip, or the next one that nobody has begun.
       for (Index& i = atWork[thread];; i = None)
       {
         i = i == None ? next++ : i;
@@ -242,9 +279,11 @@ Buffer<Index> GrowAll(Growth& growth, const Hull& hull, Index vertices,
   Buffer<Index> triangles = std::move(room);
   if (!options.DivideAtOnce)
   {
+    // First by growth; CannotGrow from any strip ends it, and its triangles are dropped.
     try
     {
       const auto strips = growth.MakeStrips(hull, threads);
+      // Euler's formula, for a triangulated disc with all points of the hull on its border.
       triangles.Resize(3 * (2 * static_cast<std::size_t>(vertices) - 2 - hull.NumberOfPoints()));
       for (const auto& strip : strips)
       {
@@ -269,10 +308,12 @@ Buffer<Index> GrowAll(Growth& growth, const Hull& hull, Index vertices,
     {
     }
   }
+  // Freed first: divide and conquer needs more memory than growth.
   triangles = Buffer<Index>();
   triangles = DivideAndConquer(
     growth.Places(progress.Between(0.0, 0.0)), progress.Between(0.0, 0.95), growth.Metric);
   const Progress naming = progress.Between(0.95, 1.0);
+  // In place: no triangle moves up, so none is overwritten before it is read.
   std::size_t kept = 0;
   for (const std::size_t t : Counted(triangles.size() / 3))
   {

@@ -11,7 +11,11 @@ namespace elevation
 namespace
 {
 
-/** The discs through both ends of an edge, in the metric, in coordinates relative to its origin. */
+/**
+ * The discs through both ends of an edge, in the metric, in coordinates relative to its origin. A
+ * circle of the metric is an ellipse in columns and rows. Floating point serves here to choose rows
+ * and columns to look at, always some too many; nodes are compared in integers.
+ */
 class EdgeDisc
 {
 public:
@@ -26,6 +30,8 @@ public:
     , EdgeY(static_cast<double>(e.Y))
     , C(static_cast<double>(metric.C))
   {
+    // g is the edge in the metric's dual: turned by a quarter and divided by Root, it is the normal
+    // of the same length.
     const double gx = this->A * this->EdgeX + this->B * this->EdgeY;
     const double gy = this->B * this->EdgeX + this->C * this->EdgeY;
     this->LengthSquared = gx * this->EdgeX + gy * this->EdgeY;
@@ -34,12 +40,18 @@ public:
     this->NormalY = gx / this->Root;
   }
 
-  /** The position of a disc's centre, in edge lengths along the edge's left normal. */
+  /**
+   * The position of a disc's centre, in edge lengths along the edge's left normal. As in
+   * ApexSearch.h: s = dot / (2 cross); Root converts the cross product of nodes to an area.
+   */
   double PositionOf(const Apex& apex) const
   {
     return 0.5 * static_cast<double>(apex.Dot) / (this->Root * static_cast<double>(apex.Cross));
   }
-  /** The same for the disc of a height over the edge. */
+  /**
+   * The same for the disc of a height over the edge. A disc that reaches a height h over an edge of
+   * length 1 has radius h/2 + 1/(8h); its centre is at h/2 - 1/(8h).
+   */
   double HeightPosition(double height) const
   {
     const double h = height / std::sqrt(this->LengthSquared);
@@ -48,6 +60,10 @@ public:
 
   double Length() const { return std::sqrt(this->LengthSquared); }
 
+  /**
+   * Chooses the disc by the position of its centre; sets the bounds that rows and columns are
+   * clipped to.
+   */
   void Set(double position)
   {
     this->RadiusSquared = this->LengthSquared * (0.25 + position * position);
@@ -57,6 +73,7 @@ public:
     // disc of position 0. A disc so large that rounding might matter is taken as the half-plane.
     const double bound = std::max(position, 0.0);
     const double squared = this->LengthSquared * (0.25 + bound * bound);
+    // The extent of the ellipse in columns and rows.
     const double halfWidth = std::sqrt(squared * this->C) / this->Root;
     const double halfHeight = std::sqrt(squared * this->A) / this->Root;
     const double centerX = 0.5 * this->EdgeX + bound * this->NormalX;
@@ -133,11 +150,13 @@ LatticeApexes::LatticeApexes(const LatticeNodes& nodes, const LatticeMetric& met
   : Nodes(nodes)
   , Metric(metric)
 {
+  // Of a cell, squared; perPoint is the number of nodes for each point.
   const double area = double(metric.A) * double(metric.C) - double(metric.B) * double(metric.B);
   const double perPoint = double(nodes.Columns) * nodes.Rows / nodes.NumberOfPoints();
   this->FirstHeight = 1.3 * std::sqrt(std::sqrt(area) * perPoint); // about one spacing
   for (int level = 0; level <= MostBands; ++level)
   {
+    // The last band may have fewer rows; without nodes, ends are empty.
     this->Ends[level].resize((nodes.Rows >> BandBits * level) + 1);
   }
   for (Index row = 0; row < nodes.Rows; ++row)
@@ -147,6 +166,7 @@ LatticeApexes::LatticeApexes(const LatticeNodes& nodes, const LatticeMetric& met
     {
       continue;
     }
+    // The row has a point, so both searches for a bit end within it.
     const Index left = nodes.Following(begin - 1) - begin;
     const Index right = nodes.Previous(nodes.NodeAt(row, nodes.Columns)) - begin;
     for (int level = 0; level <= MostBands; ++level)
@@ -184,6 +204,8 @@ const LatticeApexes::Entries* LatticeApexes::MakeList(
 {
   constexpr std::size_t most = 64;
   std::vector<Apex> all;
+  // All nodes in range on the left of the edge, whether occupied or not: the list serves every edge
+  // with this vector.
   for (std::int64_t y = e.Y < 0 ? -Range : 0; y <= Range; ++y)
   {
     for (std::int64_t x = -Range; x <= Range; ++x)
@@ -202,6 +224,8 @@ const LatticeApexes::Entries* LatticeApexes::MakeList(
   EdgeDisc disc(this->Metric, e);
   for (const Apex& apex : all)
   {
+    // Apexes come by growing circles. If a circle leaves the range, nodes outside of the list may
+    // lie in it, so neither this apex nor a later one is certain.
     disc.Set(disc.PositionOf(apex));
     const double limit = Range + 1 - 1e-6;
     if (!(disc.Left > -limit && disc.Right < limit && disc.Top < limit) ||
@@ -213,6 +237,7 @@ const LatticeApexes::Entries* LatticeApexes::MakeList(
     made->push_back({ static_cast<Index>(p.Y * this->Nodes.WordsPerRow * 64 + p.X),
       static_cast<std::int16_t>(p.X), static_cast<std::int16_t>(p.Y) });
   }
+  // If another thread was faster, its list is used and this one freed.
   const Entries* list = nullptr;
   return slot.compare_exchange_strong(list, made.get()) ? made.release() : list;
 }
@@ -247,6 +272,8 @@ public:
     {
       this->CompareNeighborInRow({ 0, 0 });
     }
+    // From a small disc up: a known node may be far away, and its disc huge. Each disc has up to 16
+    // times the area of the one before, so the last one costs more than all the others.
     double height = std::max(this->Apexes.FirstHeight, this->Disc.Length() / 8.0);
     for (;; height *= 4.0)
     {
@@ -259,6 +286,7 @@ public:
       }
       if (this->Look(seen))
       {
+        // Rows are looked at with some slack, so a node just outside the disc may have been found.
         if (!(this->Disc.PositionOf(this->Best) <= seen)) // by rounding, it is outside the disc
         {
           this->Look(this->Disc.PositionOf(this->Best));
@@ -277,13 +305,17 @@ private:
     {
       return;
     }
+    // The left of an edge upwards is to the left of its ends in their rows; of an edge downwards,
+    // to the right.
     const bool isUpwards = this->E.Y > 0;
+    // Without an occupied node on that side, there is none to compare.
     const RowEnds& ends = this->Apexes.EndsOf(static_cast<Index>(this->Row + end.Y));
     const std::int64_t column = this->Column + end.X;
     if (isUpwards ? column <= ends.Left : column >= ends.Right)
     {
       return;
     }
+    // An end of the edge is occupied and lies between the row's ends, so there is a neighbour.
     const Index node =
       this->Nodes.NodeAt(static_cast<Index>(this->Row + end.Y), static_cast<Index>(column));
     const Index neighbor = isUpwards ? this->Nodes.Previous(node) : this->Nodes.Following(node);
@@ -316,6 +348,8 @@ private:
     {
       y = static_cast<Index>(std::max(std::ceil(this->Disc.Bottom - 1e-6), -double(this->Row)));
     }
+    // From the lowest row of the disc up. The disc shrinks as better nodes are found, and with it
+    // Top.
     for (; this->Row + y < this->Nodes.Rows && y <= this->Disc.Top + 1e-6; ++y)
     {
       if (y == 0 || y == this->E.Y)
@@ -349,6 +383,8 @@ private:
     int level = 0;
     while (level < MostBands && (row & ((1 << BandBits * (level + 1)) - 1)) == 0)
     {
+      // The largest band that begins at this row and that the disc misses, from 16 rows to 16^4:
+      // empty stretches cost a logarithm.
       // Skipped if no node on the left of the edge's line is within the columns of the disc.
       const RowEnds& ends = this->Apexes.Ends[level + 1][row >> BandBits * (level + 1)];
       const Index top = y + (1 << BandBits * (level + 1)) - 1;
@@ -383,10 +419,12 @@ private:
     const Index firstNode = origin + static_cast<Index>(std::ceil(left));
     const Index lastNode = origin + static_cast<Index>(std::floor(right));
     const Index firstWord = firstNode >> 6, lastWord = lastNode >> 6;
+    // Long empty stretches within a row cost a word for each 64 nodes.
     this->Budget.Spend(lastWord - firstWord);
     bool isBetter = false;
     for (Index w = firstWord; w <= lastWord; ++w)
     {
+      // Bits outside of the range of columns are shifted out at either end.
       std::uint64_t bits = this->Nodes.Word(w);
       if (w == firstWord)
       {

@@ -33,6 +33,10 @@ struct Offset
   std::int64_t X, Y;
 };
 
+/**
+ * In 64 bits, as Apex::Dot: offsets have at most 20 bits (NodeBox), the metric has 20 (Metric.h).
+ * Only comparisons, which multiply two of these, take 128 bits.
+ */
 inline std::int64_t Cross(const Offset& p, const Offset& q)
 {
   return p.X * q.Y - p.Y * q.X;
@@ -48,6 +52,7 @@ struct Apex
   std::int64_t Dot, Cross;
 };
 
+/** The node p as an apex over the edge from a node to e; its products are exact. */
 inline Apex ApexAt(const LatticeMetric& metric, const Offset& e, const Offset& p)
 {
   return { p, metric.Dot(p.X, p.Y, p.X - e.X, p.Y - e.Y), Cross(e, p) };
@@ -59,7 +64,10 @@ inline int CompareQuotients(const Apex& p, const Apex& q)
   return CompareProducts(p.Dot, q.Cross, q.Dot, p.Cross);
 }
 
-/** InCircle() in the metric, of nodes as points (column, row); a, b, c are counter-clockwise. */
+/**
+ * InCircle() in the metric, of nodes as points (column, row); a, b, c are counter-clockwise. For
+ * divide and conquer, whose points are nodes in doubles.
+ */
 inline Sign InNodeCircle(
   const LatticeMetric& metric, const Point2& a, const Point2& b, const Point2& c, const Point2& d)
 {
@@ -80,6 +88,7 @@ inline Sign InNodeCircle(
  */
 bool IsBetter(const Apex& p, const Apex& q, const Offset& e);
 
+/** Shared by all strips: rows' ends are fixed, and lists, once made, do not change. */
 class LatticeApexes
 {
 public:
@@ -105,7 +114,8 @@ public:
   std::int64_t NumberOfGaps() const;
 
   /**
-   * Looks for the apex in the list of an edge vector. Thread-safe.
+   * Looks for the apex in the list of an edge vector. Thread-safe. By far the most searches end
+   * here: a few bits of the bitmap are looked at.
    * @return false if there is no list, or the apex is beyond it
    */
   bool FindInList(Index node, const Offset& e, Offset& place)
@@ -145,7 +155,10 @@ private:
   };
   using Entries = std::vector<Entry>;
 
-  /** The list of an edge vector; null if it is long, or was asked for only a few times so far. */
+  /**
+   * The list of an edge vector; null if it is long, or was asked for only a few times so far. The
+   * first threads that want a list at the same time all make it; one of them is kept.
+   */
   const Entries* ListOf(const Offset& e)
   {
     if (std::abs(e.X) > Longest || std::abs(e.Y) > Longest)

@@ -34,9 +34,12 @@ public:
     , PointsPerStrip(options.PointsPerStrip)
     , Apexes(nodes, metric)
   {
+    // As large as is needed: an Index a point.
     this->First.Recycle(std::move(nodes.Scratch));
     const Point2 &u = nodes.Steps.StepU, &v = nodes.Steps.StepV;
-    // With a shorter limit, a diagonal of a cell may be too long.
+    // With a shorter limit, a diagonal of a cell may be too long. Points may lie off their nodes,
+    // so the triangles of cells must be proved, too. Both triangles of a cell have the same shape,
+    // turned by half a turn.
     this->UseCells = this->IsProved({ 1, 0 }, { 1, 1 }) &&
       (!this->Limit.IsSet() ||
         options.MaximumEdgeLength > 2.0 * (std::hypot(u.X, u.Y) + std::hypot(v.X, v.Y)));
@@ -52,6 +55,7 @@ public:
   const LatticeMetric* const Metric;
 
 private:
+  /** How many columns and rows lie between two nodes. */
   Offset Between(Index from, Index to) const
   {
     const Index fromRow = this->Nodes.RowOf(from), toRow = this->Nodes.RowOf(to);
@@ -60,7 +64,12 @@ private:
   }
   Index FirstWordOf(Index row) const { return this->Nodes.NodeAt(row, 0) / 64; }
 
-  /** Whether no triangle of this shape can be flat or inverted, as far as points are off nodes. */
+  /**
+   * Whether no triangle of this shape can be flat or inverted, as far as points are off nodes. Each
+   * corner is off by at most LargestOffset along each step, so each coordinate of p and q is by
+   * twice that. The cross product then changes by at most 2 off (|p.X| + |p.Y| + |q.X| + |q.Y|) + 8
+   * off^2; the factor covers the rounding.
+   */
   bool IsProved(const Offset& p, const Offset& q) const
   {
     const double off = this->Nodes.LargestOffset;
@@ -91,10 +100,15 @@ private:
   LatticeApexes Apexes;
 };
 
-/** From the ends of the rows, and all nodes of the lowest and the highest row. */
+/**
+ * From the ends of the rows, and all nodes of the lowest and the highest row: a node between two
+ * others of its row is inside the hull, or on an edge that lies in this row, which then is the
+ * lowest or the highest one.
+ */
 Hull Growth::FindHull() const
 {
   const LatticeNodes& nodes = this->Nodes;
+  // A lattice's box may have empty rows below and above its points.
   const Index lowest = nodes.RowOf(nodes.Following(nodes.NodeAt(0, -1)));
   const Index highest = nodes.RowOf(nodes.Previous(nodes.NodeAt(nodes.Rows - 1, nodes.Columns)));
   Buffer<Index> candidates;
@@ -128,9 +142,12 @@ Buffer<Point2> Growth::Places(const Progress&)
   places.Reserve(nodes.NumberOfPoints());
   for (Index row = 0; row < nodes.Rows; ++row)
   {
+    // The words of the row itself: the last of WordsPerRow is the word of zeros before the next
+    // row.
     const Index begin = this->FirstWordOf(row);
     for (Index w = begin; w < begin + nodes.WordsPerRow - 1; ++w)
     {
+      // Each turn takes the lowest bit off.
       for (std::uint64_t bits = nodes.Word(w); bits; bits &= bits - 1)
       {
         places.Append({ 64.0 * (w - begin) + LowestBit(bits), 1.0 * row });
@@ -145,9 +162,14 @@ bool Growth::ToIds(Index* triangle) const
 {
   std::transform(
     triangle, triangle + 3, triangle, [this](Index rank) { return this->Nodes.Ids[rank]; });
+  // With offsets of zero nothing is proved, so the exact predicate tests the triangle.
   return this->IsLeftIn({ 0, 0 }, { 0, 0 }, triangle[0], triangle[1], triangle[2]);
 }
 
+/**
+ * A strip of whole rows; vertices are node numbers. Begin and End count vertices, FirstWord and
+ * EndWord the words of the bitmap that hold them.
+ */
 class Growth::LatticeStrip : public Strip<LatticeStrip>
 {
 public:
@@ -165,6 +187,7 @@ public:
   bool IsDone() const { return this->Word == this->EndWord; }
   double Done() const
   {
+    // By words, which take about equal time where cells are full.
     return (this->End - this->Begin) * double(this->Word - this->FirstWord) /
       (this->EndWord - this->FirstWord);
   }
@@ -172,6 +195,7 @@ public:
   /** Node numbers increase with row and column; each row starts after a word of zeros. */
   bool IsBelow(Index node) const { return node < 64 * this->FirstWord - 64; }
 
+  // Node numbers have the order of IsLower(), so a rising edge is one to a larger number.
   bool RecordEdge(Index p, Index q)
   {
     return q > p ? this->Set(this->Shared.Last, this->Nodes.RankOf(p), q)
@@ -181,12 +205,15 @@ public:
   /** Edges of vertices of full cells need not be recorded. */
   bool PassCells()
   {
+    // Low and High are one above the other here, and so are their neighbours to the right: a full
+    // cell, whichever diagonal cuts it.
     const Index before = this->Low;
     while (this->High - this->Low == 64 * this->Nodes.WordsPerRow &&
       this->Nodes.IsOccupied(this->Low + 1) && this->Nodes.IsOccupied(this->High + 1))
     {
       ++this->Low;
       ++this->High;
+      // Of the two triangles of a cell, one has two nodes above the border.
       ++this->Pairs;
       this->Budget.Spend(3);
     }
@@ -198,6 +225,8 @@ public:
     const Index row = this->Nodes.RowOf(this->High);
     const Offset e = this->Shared.Between(this->High, this->Low);
     Offset place;
+    // Lists of edges downwards reach below their first node: near the lowest row, they would look
+    // at words before the bitmap.
     if (row < LatticeApexes::Range || !this->Shared.Apexes.FindInList(this->High, e, place))
     {
       // At least one end of the hull's edge is on the left, and can be an apex.
@@ -208,6 +237,7 @@ public:
       {
         apex = other;
       }
+      // Some node on the left must be known, to bound the search.
       place = this->Shared.Apexes.Search(
         row, this->Nodes.ColumnOf(this->High, row), e, apex, this->Budget);
     }
@@ -218,6 +248,10 @@ public:
   void GrowFans();
 
 private:
+  /**
+   * Records an end of a fan, unless its vertex is above the strip.
+   * @return whether it is in the strip
+   */
   bool Set(Buffer<Index>& ends, Index rank, Index end) const
   {
     const bool isInStrip = rank < this->End;
@@ -228,11 +262,13 @@ private:
     return isInStrip;
   }
 
+  /** The difference of node numbers that leads to an offset. */
   Index StepTo(const Offset& p) const
   {
     return static_cast<Index>(p.Y * this->Nodes.WordsPerRow * 64 + p.X);
   }
 
+  // Ids are contiguous in both rows of a run of full cells, so no bit is looked at for them.
   void WriteCells(const Index* here, const Index* up, int length, bool isAcute);
   void GrowFan(Index row, Index node, Index rank, Index first, Index last);
 
@@ -252,7 +288,8 @@ std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(const Hull
   const Index count = nodes.NumberOfPoints();
   this->First.Resize(count);
   this->Last.Resize(count);
-  // In units of about a nanosecond. With few gaps, most points are of full cells.
+  // In units of about a nanosecond. With few gaps, most points are of full cells. A wrong figure
+  // changes the balance of the threads, not the result.
   constexpr double perPoint = 6.0, perGap = 9.0, mostGaps = 10.0, perWalkPoint = 500.0,
                    least = 20000.0;
   const auto workOf = [&](double points, double gaps) {
@@ -260,10 +297,12 @@ std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(const Hull
   };
   const double gaps = static_cast<double>(this->Apexes.NumberOfGaps());
   const double all = workOf(count, gaps);
+  // A walk passes about as many triangles as points of the mean density lie along a row.
   const double walk = perWalkPoint * nodes.Columns / std::sqrt(1.0 + gaps / count);
   double perStrip = std::numeric_limits<double>::infinity();
   if (threads > 1)
   {
+    // As many strips per thread, up to eight, as keep all walks below an eighth of the work.
     const double perThread = std::min(std::max(std::floor(all / (8.0 * walk * threads)), 1.0), 8.0);
     const double strips = perThread * threads;
     perStrip = std::max((all + (strips - 1.0) * walk) / strips, std::max(2.0 * walk, least));
@@ -279,11 +318,14 @@ std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(const Hull
     work += ends.IsEmpty() ? 0.0 : workOf(points, ends.Right - ends.Left + 1.0 - points);
     const bool isFull =
       this->PointsPerStrip > 0 ? end - first >= this->PointsPerStrip : work >= perStrip;
+    // A strip ends with a row, so rows are never split: the bitmap's words, and the order of nodes,
+    // make that simple.
     if (end > first && (isFull || end == count))
     {
       strips.push_back(std::make_unique<LatticeStrip>(*this, hull, first, end, firstWord, endWord));
       first = end;
       firstWord = endWord;
+      // All strips but the first begin with a walk.
       work = walk;
     }
   }
@@ -297,6 +339,12 @@ std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(const Hull
  * triangulation, and so are the triangles of a full cell: their circles are empty even if all nodes
  * are occupied. So the fan of a vertex is known if the nodes to the left, right, above and next to
  * that are occupied; its first or last edge may be known if only some are.
+ *
+ *   obtuse, right        acute
+ *         u---+        +---u
+ *         |  /|        |\  |\         Where cells are full, v has two triangles above it: the cell
+ *         | / |        | \ | \        on its right, v r + and v + u; or half of the cell on either
+ *     l---v---r        l---v---r      side, v r u and v u +.
  */
 void Growth::LatticeStrip::GrowFans()
 {
@@ -307,6 +355,7 @@ void Growth::LatticeStrip::GrowFans()
   {
     const Index w = this->Word;
     std::uint64_t rest = nodes.Word(w);
+    // Empty words cost, too: a lattice may have few points in many words.
     this->Budget.Spend(1);
     if (rest == 0)
     {
@@ -314,6 +363,9 @@ void Growth::LatticeStrip::GrowFans()
     }
     const Index row = nodes.RowOf(64 * w);
     const Index above = w + nodes.WordsPerRow;
+    // Each word says for 64 vertices at once whether the neighbour in one direction is occupied.
+    // The bit that leaves a word comes from the next one; words of zeros around rows make this
+    // right at both ends.
     const std::uint64_t up = nodes.Word(above);
     const std::uint64_t right = (rest >> 1) | (nodes.Word(w + 1) << 63);
     const std::uint64_t left = (rest << 1) | (nodes.Word(w - 1) >> 63);
@@ -321,19 +373,24 @@ void Growth::LatticeStrip::GrowFans()
     const std::uint64_t upLeft = (up << 1) | (nodes.Word(above - 1) >> 63);
     const std::uint64_t cut = isAcute ? upLeft : upRight;
     const std::uint64_t full = this->Shared.UseCells ? rest & right & left & up & cut : 0;
+    // The last edge of the fan is that to the upper left neighbour, or straight up, if the triangle
+    // on its left, whose third corner is the left neighbour, is half of a cell.
     const std::uint64_t lastIsKnown = left & (isAcute ? upLeft : up);
     Index rank = nodes.Before[w];
     while (rest)
     {
       const int bit = LowestBit(rest);
+      // As many vertices as there are consecutive full cells from here on, within the word.
       const std::uint64_t run = full >> bit;
       if (run & 1)
       {
+        // ~run is 0 only for a run of all 64 bits.
         const int length = ~run ? LowestBit(~run) : 64;
         const std::uint64_t before = (std::uint64_t(1) << bit) - 1;
         const Index rankUp = nodes.Before[above] + CountBits(up & before);
         this->WriteCells(nodes.Ids.data() + rank, nodes.Ids.data() + rankUp, length, isAcute);
         rank += length;
+        // A shift by 64 would be undefined.
         rest = bit + length < 64 ? rest >> (bit + length) << (bit + length) : 0;
         continue;
       }
@@ -344,6 +401,7 @@ void Growth::LatticeStrip::GrowFans()
         const Index last = lastIsKnown >> bit & 1
           ? node + 64 * nodes.WordsPerRow - (isAcute ? 1 : 0)
           : this->Shared.Last[rank];
+        // Equal ends: the triangles below have closed above this vertex.
         if (first != last)
         {
           this->GrowFan(row, node, rank, first, last);
@@ -373,7 +431,10 @@ void Growth::LatticeStrip::WriteCells(const Index* here, const Index* up, int le
   this->Budget.Spend(10 * length);
 }
 
-/** Grows the fan of a vertex from its first edge to its last. */
+/**
+ * Grows the fan of a vertex from its first edge to its last. Offsets are carried along with node
+ * numbers and ranks: each would take a division or a count to compute again.
+ */
 void Growth::LatticeStrip::GrowFan(Index row, Index node, Index rank, Index first, Index last)
 {
   const LatticeNodes& nodes = this->Nodes;
@@ -399,6 +460,7 @@ void Growth::LatticeStrip::GrowFan(Index row, Index node, Index rank, Index firs
     this->NeedRoom(1, id);
     const Index b = nodes.Ids[currentRank], c = nodes.Ids[apexRank];
     this->Write(id, b, c, this->Shared.IsLeftIn(e, p, id, b, c));
+    // As RecordEdge(), with the ranks that are known here.
     apex > current ? this->Set(this->Shared.Last, currentRank, apex)
                    : this->Set(this->Shared.First, apexRank, current);
     current = apex;
@@ -440,6 +502,7 @@ bool TriangulateLattice(
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
   LatticeSearch search =
     FindLattice(points, tolerance, threads, options.Monitor.Between(0.0, 0.15));
+  // Any doubt ends here: the general path then triangulates by coordinates.
   if (search.Found && TriangulateOnLattice(points, search, options, result))
   {
     return true;
@@ -453,6 +516,8 @@ bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
 {
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
+  // The cheapest answers "no lattice" come first. Few points fit some lattice within the tolerance
+  // by chance.
   LatticeNodes nodes;
   LatticeMetric metric;
   if (!metric.Set(search.Steps) ||

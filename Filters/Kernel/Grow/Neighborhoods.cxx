@@ -18,6 +18,7 @@ namespace elevation
 #ifdef ELEVATION_HAS_AVX2
 namespace
 {
+// A compromise: with fewer, more apexes lie beyond; with more, each comparison takes more vectors.
 constexpr double PointsInBox = 18.0; // expected; halved if there are too many
 
 /** A box, in vectors of four. */
@@ -65,6 +66,7 @@ ELEVATION_WIDE_INLINE bool AddLeaf(
       x[half] = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(pointX, centerX), scale));
       y[half] = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(pointY, centerY), scale));
     }
+    // The last eight of a leaf may run into the next leaf, whose points come with that leaf.
     in &= 255 >> std::max(slot + 8 - end, 0);
     // Points in the box come first, the others are overwritten.
     const __m256i which = PlacesOf(in);
@@ -91,6 +93,8 @@ ELEVATION_WIDE bool GatherBox(
   const WideBox box{ _mm256_set1_pd(extent.Low.X), _mm256_set1_pd(extent.High.X),
     _mm256_set1_pd(extent.Low.Y), _mm256_set1_pd(extent.High.Y) };
   around.Count = 0;
+  // Nodes to look into, from the last found on. Boxes are small, so few nodes touch one; a deeper
+  // stack than this counts as too many points.
   const BoxTree::Node* stack[64];
   stack[0] = &top;
   int height = 1;
@@ -119,6 +123,7 @@ ELEVATION_WIDE bool GatherBox(
       }
     }
   }
+  // Readers take whole vectors: NaN is in no box.
   _mm256_storeu_ps(
     around.X + around.Count, _mm256_set1_ps(std::numeric_limits<float>::quiet_NaN()));
   return true;
@@ -139,10 +144,13 @@ const Neighborhood& Neighborhoods::Around(Index slot)
     {
       places *= 2;
     }
+    // 0 names the first neighborhood, which has no slots yet, so nothing is found by mistake.
     this->Places.assign(places, 0);
   }
   const std::size_t mask = this->Places.size() - 1;
   const std::size_t eight = static_cast<std::size_t>(slot) / 8;
+  // Eight slots may belong to several leaves, of which the one gathered last is entered. The others
+  // are found by the eight before or after, if they reach there; else they are gathered once more.
   for (const std::size_t at : { eight, eight - 1, eight + 1 })
   {
     const Neighborhood& known = this->Recent[this->Places[at & mask]];
@@ -151,10 +159,12 @@ const Neighborhood& Neighborhoods::Around(Index slot)
       return known;
     }
   }
+  // A ring of neighborhoods: the one that was made first goes, as the sweep has left it behind.
   const std::size_t oldest = this->Oldest;
   this->Oldest = (oldest + 1) % this->Recent.size();
   Neighborhood& made = this->Recent[oldest];
   this->Gather(slot, made);
+  // What is forgotten needs no removal: an entry counts only if its neighborhood has the slot.
   for (Index at = made.First / 8; at < (made.End + 7) / 8; ++at)
   {
     this->Places[static_cast<std::size_t>(at) & mask] = static_cast<Index>(oldest);
@@ -185,6 +195,9 @@ void Neighborhoods::Gather(Index slot, Neighborhood& around) const
     {
       side = points / size * std::max(width, height);
     }
+    // Of every vertex of the leaf: 0.55 sides to the left and right, 0.9 upwards, as GatherBox() of
+    // PointWindows.cxx cuts them out, plus the excess that it copies. Nothing below a vertex is
+    // needed.
     const Box box{ { leaf.Low.X - 0.551 * side, leaf.Low.Y },
       { leaf.High.X + 0.551 * side, leaf.High.Y + 0.901 * side } };
     const double greatest = std::max(std::max(std::fabs(box.Low.X), std::fabs(box.High.X)),
@@ -199,6 +212,7 @@ void Neighborhoods::Gather(Index slot, Neighborhood& around) const
     {
       break;
     }
+    // All points within a step's box are below its node, so none of the box is missed.
     BoxTree::Step top = last;
     while (
       !(top.LowX < box.Low.X && box.High.X < top.HighX && box.High.Y < top.HighY) && !top.IsRoot())

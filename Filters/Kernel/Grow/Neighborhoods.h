@@ -20,7 +20,8 @@ namespace elevation
 
 /**
  * The points around a leaf of the tree: those in the boxes of all its points, relative to its
- * middle. Vertices of a full bin come in the order of y, so several leaves alternate.
+ * middle. Vertices of a full bin come in the order of y, so several leaves alternate. A plain
+ * struct of fixed size: recent ones are reused in place, without memory to allocate.
  */
 struct Neighborhood
 {
@@ -34,7 +35,9 @@ struct Neighborhood
   Index Slots[Room];
 };
 
-/** The neighborhoods of recent slots. */
+/**
+ * The neighborhoods of recent slots. Each strip has its own, so nothing is shared between threads.
+ */
 class Neighborhoods
 {
 public:
@@ -50,6 +53,7 @@ public:
   const Neighborhood& Around(Index slot);
 
 private:
+  /** Fills a neighborhood for the leaf of a slot; its Count is 0 if there are too many points. */
   void Gather(Index slot, Neighborhood& around) const;
 
   const BinGrid& Grid;

@@ -19,6 +19,10 @@ namespace
 {
 constexpr float NotANumber = std::numeric_limits<float>::quiet_NaN();
 
+// The passes: EnterRow() rounds the points of four rows of bins; Gather...() copies those of a
+// window relative to its vertex; SetBounds() records how far the window reaches, for the proof.
+// Where bins are full, GatherBox() takes the place of all three.
+
 /** Columns and rows of the windows of bins, the larger first. */
 struct Shape
 {
@@ -26,6 +30,7 @@ struct Shape
 };
 constexpr Shape Shapes[] = { { 6, 4 }, { 3, 3 }, { 3, 2 } };
 
+/** Eight coordinates in whole units from the grid's corner, rounded to the nearest. */
 ELEVATION_WIDE inline __m256i EightUnits(const double* values, __m256d from, __m256d perUnit)
 {
   const __m128i low =
@@ -35,6 +40,7 @@ ELEVATION_WIDE inline __m256i EightUnits(const double* values, __m256d from, __m
   return _mm256_set_m128i(high, low);
 }
 
+/** The same for one coordinate. */
 ELEVATION_WIDE inline std::int32_t Units(double value, double from, double perUnit)
 {
   return _mm_cvtsd_si32(_mm_set_sd((value - from) * perUnit)); // to the nearest, as above
@@ -42,19 +48,26 @@ ELEVATION_WIDE inline std::int32_t Units(double value, double from, double perUn
 
 } // namespace
 
+/**
+ * Chooses the unit, as large as the ranges of float and of 32 bits allow; windows of bins are not
+ * used where bins are too unequal for one unit.
+ */
 PointWindows::PointWindows(const BinGrid& grid, bool isWidest)
   : Grid(grid)
   , IsWidest(isWidest)
   , Leaves(grid)
 {
   const BinGrid::Layout& bins = grid.Bins;
-  // Two coordinates are rounded, then their difference.
+  // Two coordinates are rounded, then their difference. A box reaches 0.9 sides upwards and 0.55 to
+  // each side: 1.1 is more than its diagonal.
   this->BoxBounds.Set(1.1, (2.0 * Neighborhoods::MostSides + 1.2) * Roundoff, 0.002);
   if (!bins.HasPlainBins)
   {
     return;
   }
-  // Products of four coordinates stay in the range of float, differences within 32 bits.
+  // Products of four coordinates stay in the range of float, differences within 32 bits. A bin has
+  // at most 2^22 units, so coordinates in a window have about as many bits as a float; and at least
+  // 2^12, so that rounding to units hides little. The whole grid has at most 2^30 units.
   const double width = bins.BinWidth, height = bins.BinHeight;
   const double extent = std::max(bins.Columns * width, bins.Rows * height);
   const double perUnit = std::min(0x1p30 / extent, 0x1p22 / std::max(width, height));
@@ -79,7 +92,8 @@ PointWindows::PointWindows(const BinGrid& grid, bool isWidest)
     row.X.resize(RowRoom);
     row.Y.resize(RowRoom);
   }
-  // There are no points beyond the grid's border.
+  // There are no points beyond the grid's border, so a disc may reach as far there as it likes.
+  // These bounds leave room for differences with any coordinate in 32 bits.
   constexpr std::int32_t far = (1 << 30) - 1;
   this->ColumnBounds.resize(static_cast<std::size_t>(bins.Columns) + 1);
   for (Index column = 1; column < bins.Columns; ++column)
@@ -91,6 +105,8 @@ PointWindows::PointWindows(const BinGrid& grid, bool isWidest)
   this->Nothing.assign(static_cast<std::size_t>(bins.Columns) + 1, 0);
 }
 
+// The errors of WideApexSearch.h, for products of the largest coordinates that a window can have:
+// one set serves all windows of a shape. slack rounds the constants up.
 void PointWindows::Bounds::Set(double reach, double error, double margin)
 {
   const double square = reach * reach;
@@ -106,6 +122,8 @@ void PointWindows::Bounds::Set(double reach, double error, double margin)
 
 bool PointWindows::Gather(Index origin, Index next)
 {
+  // Two windows alternate: the one gathered ahead by the last call is nearly always the one asked
+  // for now.
   Window* other = this->Windows + (this->InUse == this->Windows);
   if (other->Origin == origin)
   {
@@ -124,6 +142,8 @@ bool PointWindows::Gather(Index origin, Index next)
   return this->InUse->Vectors > 0;
 }
 
+// Tried from the largest window to the smallest; a window that is too small only costs more
+// fallbacks.
 void PointWindows::GatherInto(Window& window)
 {
   if (this->PerUnit > 0.0)
@@ -135,9 +155,12 @@ void PointWindows::GatherInto(Window& window)
     {
       this->EnterRow(row);
     }
+    // The column border that is nearest to the vertex is the middle of the six columns, so a window
+    // reaches at least 2.5 columns to each side.
     const Index first = static_cast<Index>((p.X - bins.OriginX) * bins.PerX + 0.5) - 3;
     const Index column = bins.Column(p.X);
     const Index* const own = this->Near[0]->Starts + column;
+    // A bin with more points than a window holds would fail in all three shapes.
     if (this->AreNearRead && own[1] - own[0] <= Capacity &&
       ((this->IsWidest ? this->GatherWidest(window, first) : this->GatherEven(window, first)) ||
         this->GatherBins(window, column, 1) || this->GatherBins(window, column, 2)))
@@ -157,9 +180,12 @@ ELEVATION_WIDE void PointWindows::EnterRow(Index number)
   const BinGrid::Layout& bins = this->Grid.Bins;
   this->CurrentRow = number;
   this->AreNearRead = true;
+  // Vertices come from the lowest up. So mostly three of the four rows are known, and the new one
+  // replaces the one that is left behind.
   for (Index r = number; r < number + MostRows; ++r)
   {
     Row& row = this->Rows[r % MostRows];
+    // A row beyond the last one looks like a row of empty bins.
     if (r >= bins.Rows)
     {
       row.Starts = this->Nothing.data();
@@ -183,6 +209,7 @@ ELEVATION_WIDE void PointWindows::EnterRow(Index number)
   }
 }
 
+/** Rounds the coordinates of a row's points to units, eight at a time. */
 ELEVATION_WIDE void PointWindows::ReadRow(Row& row)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
@@ -190,6 +217,7 @@ ELEVATION_WIDE void PointWindows::ReadRow(Row& row)
   const std::size_t count = slots.second - slots.first;
   row.FirstSlot = slots.first;
   row.Starts = this->Grid.Starts.data() + static_cast<std::size_t>(row.Number) * bins.Columns;
+  // In rows with more points, most bins are full, and boxes serve better than rounding all of them.
   row.IsRead = count <= MostPerBin * static_cast<std::size_t>(bins.Columns);
   if (!row.IsRead)
   {
@@ -222,14 +250,20 @@ ELEVATION_WIDE_INLINE void PointWindows::SetBounds(Window& window, int shape, In
   window.Errors = &this->ShapeBounds[shape];
 }
 
-/** Gathers at most 32 points, packed into two vectors. */
+/**
+ * Gathers at most 32 points, packed into two vectors. With wide registers, packing is cheap: an
+ * expanding load puts a row's points where the row before has ended.
+ */
 ELEVATION_WIDEST bool PointWindows::GatherWidest(Window& window, Index firstColumn)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
   const Index endColumn = std::min(firstColumn + Shapes[0].Columns, bins.Columns);
   firstColumn = std::max(firstColumn, 0);
 
-  // The points of each row overwrite the lanes beyond the previous row.
+  // The points of each row overwrite the lanes beyond the previous row. Masked loads put the points
+  // of a row behind those of the rows before: "places" has the lanes from count on, low for the
+  // first vector, high for the second. What a row writes beyond its points belongs to later rows,
+  // or becomes NaN at the end.
   const __m512i lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   __m512i lowX = lanes, highX = lanes, lowY = lanes, highY = lanes, lowSlot = lanes,
           highSlot = lanes;
@@ -244,8 +278,10 @@ ELEVATION_WIDEST bool PointWindows::GatherWidest(Window& window, Index firstColu
       return false;
     }
     const std::uint32_t places = static_cast<std::uint32_t>(~std::uint64_t(0) << count);
+    // Shifts of 64 bits, as count may be 32: then no lane is left.
     const __mmask16 low = static_cast<__mmask16>(places);
     const __mmask16 high = static_cast<__mmask16>(places >> 16);
+    // How many of the row's points go to the first vector; the second one continues there.
     const int inLow = count < 16 ? 16 - count : 0;
     const std::int32_t* const x = row.X.data() + (first - row.FirstSlot);
     const std::int32_t* const y = row.Y.data() + (first - row.FirstSlot);
@@ -253,6 +289,7 @@ ELEVATION_WIDEST bool PointWindows::GatherWidest(Window& window, Index firstColu
     highX = _mm512_mask_expandloadu_epi32(highX, high, x + inLow);
     lowY = _mm512_mask_expandloadu_epi32(lowY, low, y);
     highY = _mm512_mask_expandloadu_epi32(highY, high, y + inLow);
+    // Slots of a row are consecutive, so they follow from the lane.
     const __m512i offset = _mm512_set1_epi32(first - static_cast<Index>(count));
     lowSlot = _mm512_mask_add_epi32(lowSlot, low, lanes, offset);
     highSlot =
@@ -281,6 +318,7 @@ ELEVATION_WIDEST bool PointWindows::GatherWidest(Window& window, Index firstColu
   _mm512_store_si512(window.Slots, lowSlot);
   _mm512_store_si512(window.Slots + 16, highSlot);
 
+  // The vertex is in row 0, whose points come first.
   window.OriginLane = window.Origin - own.Starts[firstColumn];
   window.Vectors = WidestVectors;
   this->SetBounds(window, 0, firstColumn, endColumn, originX, originY);
@@ -289,7 +327,8 @@ ELEVATION_WIDEST bool PointWindows::GatherWidest(Window& window, Index firstColu
 
 /**
  * Gathers the first eight points of each row in a vector of their own; further points of all rows
- * share the fifth vector.
+ * share the fifth vector. Without packing: a row is loaded, shifted to the vertex and stored, with
+ * no dependence on the rows before.
  */
 ELEVATION_WIDE bool PointWindows::GatherEven(Window& window, Index firstColumn)
 {
@@ -329,6 +368,7 @@ ELEVATION_WIDE bool PointWindows::GatherEven(Window& window, Index firstColumn)
       window.OriginLane = window.Origin - first;
     }
   }
+  // X alone empties a lane: cross and dot of NaN fail every comparison.
   const __m256 nothing = _mm256_set1_ps(NotANumber);
   _mm256_store_ps(window.X + 32, nothing);
   if (over > 0)
@@ -344,7 +384,10 @@ ELEVATION_WIDE bool PointWindows::GatherEven(Window& window, Index firstColumn)
   return true;
 }
 
-/** Adds the points of rows beyond the eighth, as one vector. */
+/**
+ * Adds the points of rows beyond the eighth, as one vector. Few points, one by one: rows with more
+ * than eight are seldom where density is even.
+ */
 ELEVATION_WIDE void PointWindows::AddBeyondEight(
   Window& window, Index firstColumn, const Index* counts) const
 {
@@ -367,7 +410,10 @@ ELEVATION_WIDE void PointWindows::AddBeyondEight(
   _mm256_store_ps(window.Square + 32, _mm256_fmadd_ps(x, x, _mm256_mul_ps(y, y)));
 }
 
-/** Gathers a smaller window, packed. */
+/**
+ * Gathers a smaller window, packed. An odd number of columns with the vertex's in the middle, as
+ * points are dense here.
+ */
 ELEVATION_WIDE bool PointWindows::GatherBins(Window& window, Index column, int shape)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
@@ -390,6 +436,7 @@ ELEVATION_WIDE bool PointWindows::GatherBins(Window& window, Index column, int s
     for (Index slot = first; slot < end; slot += 8)
     {
       // Whole vectors: the excess is overwritten by the next row, or by NaN.
+      // Room has eight lanes to spare for this.
       const int at = count + (slot - first);
       const __m256i unitsX =
         _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.X.data() + (slot - row.FirstSlot)));
@@ -413,6 +460,7 @@ ELEVATION_WIDE bool PointWindows::GatherBins(Window& window, Index column, int s
 
 ELEVATION_WIDE void PointWindows::Window::Close(int count, bool isWidest)
 {
+  // Only numbers of vectors for which the search has an instance.
   this->Vectors = isWidest && count <= 8 * WidestVectors ? WidestVectors
     : count <= 8 * EvenVectors                           ? EvenVectors
                                                          : MostVectors;
@@ -443,6 +491,8 @@ ELEVATION_WIDE bool PointWindows::GatherBox(Window& window)
     _mm256_set1_ps(static_cast<float>((p.X - around.CenterX) * around.PerSide));
   const __m256 originY =
     _mm256_set1_ps(static_cast<float>((p.Y - around.CenterY) * around.PerSide));
+  // The box that is copied is larger than what Left, Right and Top promise by 0.0005 sides, more
+  // than the rounding of a coordinate; the vertex's own row needs the same below.
   const __m256 signBit = _mm256_set1_ps(-0.0f), down = _mm256_set1_ps(-0.0005f);
   for (float size : { 1.0f, 0.7f })
   {
@@ -456,6 +506,7 @@ ELEVATION_WIDE bool PointWindows::GatherBox(Window& window)
       const int in = _mm256_movemask_ps(
         _mm256_and_ps(_mm256_cmp_ps(_mm256_andnot_ps(signBit, x), across, _CMP_LE_OQ),
           _mm256_and_ps(_mm256_cmp_ps(y, down, _CMP_GE_OQ), _mm256_cmp_ps(y, up, _CMP_LE_OQ))));
+      // The lanes in the box move to the front; the next store overwrites the rest.
       const __m256i which = PlacesOf(in);
       _mm256_storeu_ps(window.X + count, _mm256_permutevar8x32_ps(x, which));
       _mm256_storeu_ps(window.Y + count, _mm256_permutevar8x32_ps(y, which));
@@ -478,6 +529,8 @@ ELEVATION_WIDE bool PointWindows::GatherBox(Window& window)
   return false;
 }
 
+// For ends of edges outside the window. Rounded as the window's points are, so that the same error
+// bounds hold.
 ELEVATION_WIDE void PointWindows::Place(Index slot, float& x, float& y) const
 {
   const Point2 a = this->Grid.PointAt(this->InUse->Origin), p = this->Grid.PointAt(slot);

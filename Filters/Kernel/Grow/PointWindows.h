@@ -12,6 +12,14 @@
  * the four rows are rounded to multiples of a unit that is small compared with the bins, so that
  * differences are exact. Boxes are taken from the points around a leaf (Neighborhoods.h).
  *
+ *   +--+--+--+--+--+--+ -- Top     The window of v: six columns, of which v lies in one of the two
+ *   |  |  |  |  |  |  |            in the middle; its row, and three rows above it. Nothing below
+ *   |  |  |  |  |  |  |            is needed, as v is the lowest vertex of its triangles. An apex
+ *   |  |  |  |  |  |  |            is proved if its disc, above v, keeps within Left, Right and
+ *   |  |  |v |  |  |  |            Top, less a margin.
+ *   +--+--+--+--+--+--+
+ *  Left             Right
+ *
  * Cost: constant per vertex; memory proportional to a row of bins and to the square root of the
  * number of points.
  */
@@ -23,9 +31,19 @@
 namespace elevation
 {
 
+/**
+ * The windows of one strip's vertices, one after another. A window takes WidestVectors, EvenVectors
+ * or MostVectors vectors of eight floats:
+ * - AVX-512: up to 32 points of 6 x 4 bins, packed into two vectors of sixteen;
+ * - AVX2, even density: one vector for each of the four rows, a fifth for what is beyond eight;
+ * - smaller windows of bins, or a box: packed into as many as are needed.
+ * For each of the numbers there is one instance of the search (WideApexSearch.cxx), whose loops
+ * over vectors the compiler unrolls.
+ */
 class PointWindows
 {
 public:
+  // Below 64: a lane is a bit of a 64-bit mask, and its number fits the six lowest bits of a float.
   static constexpr int Capacity = 56;       ///< points of a window
   static constexpr int Room = Capacity + 8; ///< as whole vectors are written
   static constexpr int WidestVectors = 4, EvenVectors = 5, MostVectors = Capacity / 8;
@@ -42,7 +60,11 @@ public:
     void Set(double reach, double error, double margin);
   };
 
-  /** The points around a vertex, relative to it; lanes with NaN are empty. */
+  /**
+   * The points around a vertex, relative to it; lanes with NaN are empty. Vector i holds lanes
+   * 8 i to 8 i + 7. A lane of a list's excess may have the slot of a point of another bin, so
+   * a slot counts only where the coordinate is not NaN.
+   */
   struct Window
   {
     alignas(64) float X[Room];
@@ -87,7 +109,10 @@ private:
   static constexpr int RowRoom = 40;            // as whole vectors are read
   static constexpr std::size_t MostPerBin = 32; // mean in rows for which windows are made
 
-  /** The points of a row of bins in units from the grid's corner. */
+  /**
+   * The points of a row of bins in units from the grid's corner. Rounded once per row, not once per
+   * window: each point is in the windows of some twenty vertices.
+   */
   struct Row
   {
     Index Number = None;
@@ -99,6 +124,7 @@ private:
 
   void EnterRow(Index number);
   void ReadRow(Row& row);
+  /** Fills the window of window.Origin by the first of the ways that succeeds. */
   void GatherInto(Window& window);
   void SetBounds(Window& window, int shape, Index firstColumn, Index endColumn,
     std::int32_t originX, std::int32_t originY) const;
@@ -116,6 +142,7 @@ private:
   // Windows of bins; none when PerUnit is 0.
   double PerUnit = 0.0; ///< units of windows per unit of the grid
   Bounds ShapeBounds[NumberOfShapes];
+  // One more than columns: the last one is the right border of the last column.
   std::vector<std::int32_t> ColumnBounds; ///< left bounds of the columns
   std::vector<Index> Nothing;             ///< the starts of a row beyond the last
   Row Rows[MostRows];                     ///< by their number modulo MostRows

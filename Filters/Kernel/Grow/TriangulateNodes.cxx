@@ -62,6 +62,7 @@ void KeepOneOnEach(const PointView& points, DuplicatePolicy policy, std::vector<
   std::size_t kept = 0;
   for (std::size_t i = 1; i < placed.size(); ++i)
   {
+    // Equal nodes are adjacent, with the one that the policy prefers first.
     if (!isSame(placed[kept], placed[i]))
     {
       placed[++kept] = placed[i];
@@ -93,7 +94,10 @@ Triangulation TriangulateSparse(
   {
     return result;
   }
+  // Relative to the lowest node, offsets are small: nodes of a shared lattice have 64 bits, and
+  // doubles hold them exactly only up to 2^53.
   const LatticeNode lowest = placed.front().Node;
+  // As of a lattice that growth has placed: its origin is the lowest occupied node.
   result.Steps.Origin =
     result.Steps.Node(static_cast<double>(lowest.I), static_cast<double>(lowest.J));
   Buffer<Point2> nodes;
@@ -107,6 +111,7 @@ Triangulation TriangulateSparse(
   const Index triangles = static_cast<Index>(result.Triangles.size() / 3);
   if (triangles > 0)
   {
+    // Euler's formula, solved for the border; without a triangle there is no border.
     result.NumberOfHullPoints = 2 * static_cast<Index>(placed.size()) - 2 - triangles;
   }
   for (Index& corner : result.Triangles)
@@ -116,7 +121,11 @@ Triangulation TriangulateSparse(
   return result;
 }
 
-/** @throws NotOnLattice if a triangle is flat or inverted in the coordinates of its points */
+/**
+ * A given lattice is an order of the user, so a flat triangle is an error here, whereas a lattice
+ * that was found is dropped.
+ * @throws NotOnLattice if a triangle is flat or inverted in the coordinates of its points
+ */
 void CheckTriangles(const PointView& points, const Buffer<Index>& triangles)
 {
   for (std::size_t i = 0; i < triangles.size(); i += 3)
@@ -130,6 +139,7 @@ void CheckTriangles(const PointView& points, const Buffer<Index>& triangles)
   }
 }
 
+/** By the limit on edges. Growth has applied it already; divide and conquer does not know it. */
 void LeaveOutLong(const PointView& points, double length, Buffer<Index>& triangles)
 {
   const EdgeLimit limit(length);
@@ -150,14 +160,17 @@ void LeaveOutLong(const PointView& points, double length, Buffer<Index>& triangl
 Triangulation TriangulateNodes(const PointView& points, const SharedLattice& lattice,
   const DelaunayOptions& options, bool isFilled)
 {
+  // If the bitmap would be too large or the points do not fit it, the sparse way decides.
   if (isFilled)
   {
     LatticeSearch search;
+    // Of these points alone: the bitmap need not hold the nodes of other pieces.
     static_cast<Extent&>(search) = FindExtent(
       points, ThreadsAtOnce(options.NumberOfThreads), Progress(), [](Index, const Point2&) {});
     search.Found = true;
     search.Steps = lattice.Steps();
     DelaunayOptions onLattice = options;
+    // That of the whole cloud, with which the lattice was found.
     onLattice.LatticeTolerance = lattice.Tolerance();
     Triangulation result;
     if (TriangulateOnLattice(points, search, onLattice, result))
@@ -173,6 +186,7 @@ Triangulation TriangulateOnGivenLattice(const PointView& points, const DelaunayO
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
   const LatticeSearch search = GivenLattice(points, options.GivenLattice, tolerance,
     ThreadsAtOnce(options.NumberOfThreads), options.Monitor.Between(0.0, 0.15));
+  // The nodes' range is needed first: a lattice with more columns and rows than 32 bits is refused.
   const NodeFinder nodeOf(search.Steps);
   const NodeBox nodes = FindNodeBox(nodeOf, search, search.Steps, [&]() {
     NodeBox box;

@@ -16,7 +16,8 @@ namespace elevation
 {
 
 /**
- * Triangulates the nodes of points, however far apart they are.
+ * Triangulates the nodes of points, however far apart they are. Cells/Pieces.cxx calls it for each
+ * piece of a cloud. All pieces have the same metric, so their triangles fit together.
  * @param[in] options  without a limit of edges
  * @param[in] isFilled  whether the lattice may be well filled
  * @throws NotOnLattice if a point is on no node, or two that are not equal on one. Whether

@@ -26,6 +26,10 @@ WideApexSearch::WideApexSearch(const BinGrid& grid, InstructionSet widest)
 #ifdef ELEVATION_HAS_AVX2
 namespace
 {
+// The passes for an edge: Search() guesses the apex and collects those that are not clearly worse;
+// IsInWindow() proves that no point outside the window is; Sift() removes candidates with sharper
+// bounds and exact predicates; IsDecided() says whether one is left.
+
 /** The least of eight values. */
 ELEVATION_WIDE inline float Least(__m256 values)
 {
@@ -55,6 +59,7 @@ ELEVATION_WIDE_INLINE bool WideApexSearch::PlaceEnd(
       return true;
     }
   }
+  // Beyond R, the error bounds would not hold.
   this->Windows.Place(b, x, y);
   return x * x + y * y <= window.Errors->ReachSquared;
 }
@@ -70,12 +75,14 @@ ELEVATION_WIDE_INLINE bool WideApexSearch::IsInWindow(
   const Window& window = this->Windows.Current();
   const PointWindows::Bounds& errors = *window.Errors;
   const float above = dot + errors.DotError;
+  // Rounded up: dot above its value, cross towards the side that makes the quotient larger.
   const float s = 0.5f * above / (cross - std::copysign(errors.CrossError, above));
   const float radiusSquared = (bx * bx + by * by) * (0.25f + s * s);
   const float centerX = 0.5f * bx - s * by, centerY = 0.5f * by + s * bx;
   const float keep = errors.Margin + 4.0f * errors.CoordinateError * (std::fabs(s) + 1.0f);
   const float room =
     std::min(std::min(window.Left + centerX, window.Right - centerX), window.Top - centerY) - keep;
+  // The disc's part below the vertex needs no room: the vertex is the lowest of its triangles.
   return room > 0.0f && radiusSquared * 1.0002f < room * room;
 }
 
@@ -85,6 +92,8 @@ ELEVATION_WIDE_INLINE WideApexSearch::Candidates WideApexSearch::Search(
   float bx, float by, int& guess) const
 {
   const __m256 endX = _mm256_set1_ps(bx), endY = _mm256_set1_ps(by);
+  // Only points that are certainly on the left may be the guess; the others can still be
+  // candidates.
   const __m256 clear = _mm256_set1_ps(4.0f * this->Windows.Current().Errors->CrossError);
   const __m256 most = _mm256_set1_ps(std::numeric_limits<float>::max());
   const __m256 laneBits = _mm256_castsi256_ps(_mm256_set1_epi32(63));
@@ -102,6 +111,7 @@ ELEVATION_WIDE_INLINE WideApexSearch::Candidates WideApexSearch::Search(
     crosses[i] = cross;
     dots[i] = dot;
     // The lowest bits of a quotient are replaced by its lane, so the least one contains its lane.
+    // The quotient needs few bits, as it only makes a guess: the reciprocal has twelve.
     const __m256 quotient =
       _mm256_or_ps(_mm256_andnot_ps(laneBits, _mm256_mul_ps(dot, _mm256_rcp_ps(cross))),
         _mm256_castsi256_ps(lanes));
@@ -113,10 +123,13 @@ ELEVATION_WIDE_INLINE WideApexSearch::Candidates WideApexSearch::Search(
   if (!(best < std::numeric_limits<float>::max()))
   {
     guess = 0;
+    // Lane 0 is a point, as the vertex's own row comes first: a harmless guess.
     return {};
   }
   std::uint32_t bits;
   std::memcpy(&bits, &best, sizeof bits);
+  // From here on the guess is the point to compare with; its products are computed once more, since
+  // a lane of a vector cannot be picked by a variable.
   guess = static_cast<int>(bits & 63u);
   const float x = this->Windows.Current().X[guess], y = this->Windows.Current().Y[guess];
   const float cross = bx * y - by * x;
@@ -124,6 +137,7 @@ ELEVATION_WIDE_INLINE WideApexSearch::Candidates WideApexSearch::Search(
 
   Candidates found;
   const __m256 bestCross = _mm256_set1_ps(cross), bestDot = _mm256_set1_ps(dot);
+  // NaN fails the comparison: empty lanes are no candidates.
   const __m256 error = _mm256_set1_ps(this->Windows.Current().Errors->ComparisonError);
   for (int i = 0; i < Vectors; ++i)
   {
@@ -132,6 +146,7 @@ ELEVATION_WIDE_INLINE WideApexSearch::Candidates WideApexSearch::Search(
     const __m256 isCandidate = _mm256_cmp_ps(difference, error, _CMP_LE_OQ);
     found.Bits |= static_cast<std::uint64_t>(_mm256_movemask_ps(isCandidate)) << (8 * i);
   }
+  // At the vertex itself all products are zero, so it would be a candidate always.
   found.Bits &= ~(std::uint64_t(1) << this->Windows.Current().OriginLane);
 
   found.IsProved = this->IsInWindow(bx, by, dot, cross);
@@ -149,6 +164,9 @@ ELEVATION_WIDE void WideApexSearch::Sift(
   const float bestX = window.X[guess], bestY = window.Y[guess];
   const float bestCross = bx * bestY - by * bestX;
   const float bestDot = bestX * (bestX - bx) + bestY * (bestY - by);
+  // The bounds of WideApexSearch.h with the sizes of these points in place of R, and factors of two
+  // and more over what the proof needs. They decide most cases that the window's bound leaves open:
+  // with points close to the vertex, R is far too large.
   const float e = 2.0f * window.Errors->CoordinateError;
   const float u = 8.0f * static_cast<float>(PointWindows::Roundoff);
   const float length = std::fabs(bx) + std::fabs(by);
@@ -186,6 +204,7 @@ ELEVATION_WIDE void WideApexSearch::Sift(
     isLeft |= static_cast<std::uint64_t>(left) << (8 * i);
   }
   candidates.Bits &= ~isWorse;
+  // Only a few lanes are left here. The lowest bit of left is the candidate.
   for (std::uint64_t left = candidates.Bits & ~isLeft; left; left &= left - 1)
   {
     const Index slot = window.Slots[__builtin_ctzll(left)];
@@ -233,6 +252,7 @@ ELEVATION_WIDE WideApexSearch::Candidates WideApexSearch::FindCandidates(Index b
   return found;
 }
 
+/** Follow() for windows of so many vectors of eight. */
 template <int Vectors>
 ELEVATION_WIDE_INLINE int WideApexSearch::FollowVectors(
   Index b, Index last, Index* neighbors, Candidates& open) const
@@ -249,6 +269,7 @@ ELEVATION_WIDE_INLINE int WideApexSearch::FollowVectors(
   {
     open = this->Search<Vectors>(x, y, guess);
     open.Bits &= ~end;
+    // The usual way takes one comparison: the guess is the only candidate, and proved.
     if (!open.IsProved || open.Bits != std::uint64_t(1) << guess)
     {
       if (!this->IsDecided(b, x, y, guess, open))
@@ -262,6 +283,7 @@ ELEVATION_WIDE_INLINE int WideApexSearch::FollowVectors(
       open = Candidates();
       return count;
     }
+    // The apex is the end of the next edge: no search for its lanes, no rounding once more.
     end = std::uint64_t(1) << guess;
     x = this->Windows.Current().X[guess];
     y = this->Windows.Current().Y[guess];
@@ -305,6 +327,8 @@ struct WidestWindow
       _mm512_ternarylogic_epi32(laneBits, lanes1, _mm512_castps_si512(quotient1), 0xca));
     __m512 least =
       _mm512_mask_mov_ps(most, _mm512_cmp_ps_mask(this->Cross0, clear, _CMP_GT_OQ), marked0);
+    // Four halvings, each with both halves exchanged, leave the minimum in all lanes: it serves as
+    // the index of the permutation that fetches its coordinates.
     least = _mm512_mask_min_ps(
       least, _mm512_cmp_ps_mask(this->Cross1, clear, _CMP_GT_OQ), least, marked1);
     least = _mm512_min_ps(least, _mm512_shuffle_f32x4(least, least, 0x4e));
@@ -352,6 +376,7 @@ ELEVATION_WIDEST int WideApexSearch::FollowWidest(
   {
     const __m512 least = points.LeastQuotient(endX, endY, clear, most);
     const __m512i which = _mm512_castps_si512(least);
+    // Fetched before it is known whether the guess stands: the processor overlaps both.
     __m512 nextX = _mm512_permutex2var_ps(points.X0, which, points.X1);
     __m512 nextY = _mm512_permutex2var_ps(points.Y0, which, points.Y1);
     const float best = _mm512_cvtss_f32(least);

@@ -36,6 +36,7 @@
 namespace elevation
 {
 
+/** The windows of one strip's vertices, and the search in them. */
 class WideApexSearch
 {
 public:
@@ -47,6 +48,7 @@ public:
   /** Gathers the window of a vertex, see PointWindows. */
   bool Gather(Index origin, Index next = None) { return this->Windows.Gather(origin, next); }
 
+  // More than one candidate means ties, or points too close for single precision.
   struct Candidates
   {
     std::uint64_t Bits = 0; ///< lanes, numbers that SlotOf() takes
@@ -78,7 +80,9 @@ private:
                        EvenVectors = PointWindows::EvenVectors,
                        MostVectors = PointWindows::MostVectors;
 
+  // The functions in the order of use: place the end, search, prove, sift, decide.
   bool PlaceEnd(Index b, std::uint64_t lanes, float& x, float& y) const;
+  // The edge's end is (bx, by), from the vertex, in the window's units.
   template <int Vectors>
   Candidates Search(float bx, float by, int& guess) const;
   template <int Vectors>

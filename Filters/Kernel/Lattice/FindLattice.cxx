@@ -14,12 +14,16 @@ namespace elevation
 namespace
 {
 
+// Enough of them that they generate the lattice also where most nodes have no point.
 constexpr std::size_t Vectors = 128; // the shortest differences of points
 // A remainder below so many steps counts as zero; tried in turn. A small value suits exact
 // coordinates at large multiples of the steps; rounded coordinates need a large one.
 constexpr std::array<double, 3> ZeroTolerances{ 0.02, 0.06, 0.15 };
 
-/** The shortest differences of the points, by increasing length. */
+/**
+ * The shortest differences of the points, by increasing length. Of at most 128 points
+ * (FullestPart), so of some 8,000 pairs.
+ */
 std::vector<Point2> ShortestDifferences(const std::vector<Point2>& points)
 {
   struct Difference
@@ -37,6 +41,7 @@ std::vector<Point2> ShortestDifferences(const std::vector<Point2>& points)
     }
   }
   const auto isShorter = [](const Difference& p, const Difference& q) {
+    // Ties by vector, so that the choice does not depend on the order of points.
     return p.Squared != q.Squared ? p.Squared < q.Squared : IsLower(p.Vector, q.Vector);
   };
   if (all.size() > Vectors)
@@ -58,6 +63,7 @@ std::vector<Point2> SortedOutwards(
   const LatticeSample& sample, const std::vector<Point2>& around, const Point2& middle)
 {
   std::vector<Point2> points = sample.Some();
+  // The sample reaches far, the points around are dense: the fit needs both.
   points.insert(points.end(), around.begin(), around.end());
   SortUnique(points);
   for (Point2& p : points)
@@ -73,9 +79,12 @@ std::vector<Point2> SortedOutwards(
 
 } // namespace
 
+// Tried with each tolerance in turn, from the strictest on: the first lattice that fits is taken.
 bool FitLattice(const LatticeSample& sample, std::vector<Point2>&& inFullestPlace, double tolerance,
   const Progress& progress, Lattice& lattice)
 {
+  // Coordinates relative to a point in the middle lose fewer digits; the origin is moved back at
+  // the end.
   const std::vector<Point2> around = FullestPart(std::move(inFullestPlace), progress);
   const Point2 middle = around[around.size() / 2];
   const std::vector<Point2> points = SortedOutwards(sample, around, middle);
@@ -84,7 +93,11 @@ bool FitLattice(const LatticeSample& sample, std::vector<Point2>&& inFullestPlac
   const Box part = BoxOf(around);
   const double area =
     std::max(part.Width() * part.Height() / around.size(), 1e-3 * (width * height / sample.Count));
+  // A finer lattice has more nodes than the bitmap would hold: steps that rounding errors have
+  // made.
   const double leastArea = 0.5 * area / MaximumNodesPerPoint;
+  // A lattice of the whole cloud is one of its fullest part, where differences are shortest and
+  // rounding errors smallest.
   const std::vector<Point2> differences = ShortestDifferences(around);
   const auto isLattice = [&](double zeroTolerance) {
     Generators generators(leastArea, 1e-9 * extent / sample.Count, zeroTolerance);
@@ -94,6 +107,7 @@ bool FitLattice(const LatticeSample& sample, std::vector<Point2>&& inFullestPlac
         points, generators, tolerance, extent, MaximumNodesPerPoint * sample.Count, lattice);
   };
   const bool isFound = std::any_of(ZeroTolerances.begin(), ZeroTolerances.end(), isLattice);
+  // Of no meaning where none is found.
   lattice.Origin.X += middle.X;
   lattice.Origin.Y += middle.Y;
   return isFound;
@@ -106,6 +120,7 @@ LatticeSearch FindLattice(
   const LatticeSample sample =
     SampleForLattice(points, points.Count, threads, progress.Between(0.0, 0.55), search.NotFinite);
   static_cast<Box&>(search) = sample;
+  // The second pass over all points, only where there is a prospect.
   if (sample.MayFitLattice())
   {
     std::vector<Point2> around = DistinctPointsIn(

@@ -17,6 +17,11 @@
  *      the fewest decimals that move no node noticeably, so that round steps stay round.
  * Each pass depends on the set of points alone, not on their order. Nodes.h checks every point.
  *
+ *   origin                       Any two short vectors between nodes generate a lattice of their
+ *     o-----o-----o  StepV ^     own, of which the true one may be a refinement. More differences,
+ *    /     /     /        /      reduced by each other, refine it, until only the true steps are
+ *   o-----o-----o        o-> U   left: so a grid with most nodes missing is found, too.
+ *
  * Cost: two linear passes over the coordinates, on several threads, and sorting a sample of one
  * point in 16 (1,024 at least, 4,096 at most).
  */

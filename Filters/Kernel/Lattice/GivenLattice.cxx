@@ -16,7 +16,11 @@ namespace elevation
 namespace
 {
 
-/** A lattice with the same nodes and reduced steps; the given one if it has them. */
+/**
+ * A lattice with the same nodes and reduced steps; the given one if it has them. Growth relies on
+ * reduced steps: full cells are Delaunay in their metric (LatticeGrowth.h). Steps that are reduced
+ * already stay as the user gave them, to the last digit.
+ */
 Lattice Reduced(const Lattice& given)
 {
   const Point2 &u = given.StepU, &v = given.StepV;
@@ -40,6 +44,7 @@ double StepsBeside(const NodeFinder& nodeOf, const Point2& p)
 Lattice CheckedSteps(const Lattice& given)
 {
   const Point2 &u = given.StepU, &v = given.StepV;
+  // NaN for steps of no length or not finite, which the comparison then refuses.
   const double sine = std::fabs(given.Area()) / std::sqrt(Dot(u, u) * Dot(v, v));
   if (!std::isfinite(given.Origin.X + given.Origin.Y) || !(sine > 1e-6))
   {
@@ -53,6 +58,7 @@ Lattice CheckedSteps(const Lattice& given)
   return Reduced(given);
 }
 
+// On one thread: the first such point is wanted, whatever the number of threads.
 Index FirstOffLattice(const PointView& points, const std::vector<Index>& notFinite,
   const Lattice& steps, double tolerance, const Progress& progress)
 {

@@ -27,7 +27,11 @@ LatticeSearch GivenLattice(const PointView& points, const Lattice& given, double
   int threads, const Progress& progress);
 
 /** @name The same for a cloud in parts, which share the steps, and the errors. @{ */
-/** @throws Error if the steps are parallel or not finite */
+/**
+ * GivenLattice() is these in turn. Parts call them one by one, as each has its own points and the
+ * error must be the same for all.
+ * @throws Error if the steps are parallel or not finite
+ */
 Lattice CheckedSteps(const Lattice& given);
 /** The first point that is too far from its node, or None. */
 Index FirstOffLattice(const PointView& points, const std::vector<Index>& notFinite,

@@ -29,6 +29,7 @@ inline double Cross(const Point2& p, const Point2& q)
   return p.X * q.Y - p.Y * q.X;
 }
 
+/** p minus a multiple of q. */
 inline Point2 Minus(const Point2& p, const Point2& q, double times = 1.0)
 {
   return { p.X - times * q.X, p.Y - times * q.Y };
@@ -43,10 +44,14 @@ void Reduce(Point2& u, Point2& v);
  */
 void Direct(Point2& u, Point2& v);
 
-/** A basis of the lattice that the vectors inserted so far generate. */
+/**
+ * A basis of the lattice that the vectors inserted so far generate. Of rank 0 at first, 1 while all
+ * vectors are parallel, then 2.
+ */
 class Generators
 {
 public:
+  /** @param leastArea    a cell of less area is too fine to be a lattice */
   Generators(double leastArea, double leastLength, double zeroTolerance)
     : ZeroTolerance(zeroTolerance)
     , LeastArea(leastArea)
@@ -62,7 +67,9 @@ public:
   Point2 U{ 0.0, 0.0 }, V{ 0.0, 0.0 };
 
 private:
+  // Whether p is a remainder that counts as zero, measured by the vector that it was divided by.
   bool IsNegligible(const Point2& p, const Point2& than) const;
+  /** The basis is found: its vectors come first in the set. */
   bool Take(const std::array<Point2, 3>& set, int rank)
   {
     this->U = set[0];

@@ -15,13 +15,25 @@ namespace elevation
 namespace
 {
 
+// The search looks at samples only, so that it costs two passes over the coordinates:
+// 1. SampleForLattice(): the extent, and a wide sample by hash;
+// 2. FullestPlace(): where that sample is densest, cell by cell;
+// 3. DistinctPointsIn(): all points there; FullestPart() cuts them down to the 128 that are closest
+//    together.
+// Some() is a smaller sample of the sample, by a lower limit of the same hash: the lattice is
+// fitted to it.
 constexpr Index FewestPoints = 6;      // fewer fit some lattice by chance
 constexpr std::size_t Neighbors = 128; // points whose differences begin the search
 constexpr std::size_t Crowd = 32;      // of the sample, in a place that is cut no further
 constexpr double SampleSize = 1024.0;
 constexpr int MostCells = 64; // along each side of the first histogram
 
-/** A hash of 32 evenly distributed bits, the same for equal points. */
+/**
+ * A hash of 32 evenly distributed bits, the same for equal points. A sample by hash is the same for
+ * any order of points and any division into parts: a point is in it, or not, by its own
+ * coordinates. Multiplication and shifts spread regular coordinates evenly; a grid sampled by rows
+ * or columns would look like a line.
+ */
 std::uint64_t HashOf(const Point2& p)
 {
   const double x = p.X + 0.0, y = p.Y + 0.0; // -0 becomes 0
@@ -52,6 +64,7 @@ std::uint64_t HashLimit(double size, double count)
 class alignas(64) PlaceSet // against false sharing
 {
 public:
+  // Half full at most, so a search ends after few slots.
   void Add(const Point2& p)
   {
     if (2 * this->Count >= this->Slots.size())
@@ -90,10 +103,12 @@ private:
     return true;
   }
 
+  /** Doubles the slots, which are a power of two so that a mask chooses one. */
   void Grow()
   {
     const std::vector<Point2> places = this->Places();
     const double nan = std::numeric_limits<double>::quiet_NaN();
+    // Twice as many; 64 at first.
     this->Slots.assign(std::max<std::size_t>(64, 4 * this->Count), { nan, nan });
     for (const Point2& p : places)
     {
@@ -127,7 +142,10 @@ std::vector<Point2> JoinPicked(Picked sets, const Progress& progress)
   return places;
 }
 
-/** Cells over a box, to find where most points are. */
+/**
+ * Cells over a box, to find where most points are. Of several fullest cells the first is taken, so
+ * the choice depends on the points alone.
+ */
 struct Histogram
 {
   Histogram(const Box& box, int cells)
@@ -176,9 +194,13 @@ struct Histogram
   std::vector<Index> Counts;
 };
 
-/** Keeps only the points in the fullest cell of their box, repeatedly, until few are left. */
+/**
+ * Keeps only the points in the fullest cell of their box, repeatedly, until few are left. Before
+ * KeepFullest(), whose halving would need many passes over so many points.
+ */
 void KeepFullestCells(std::vector<Point2>& points, const Progress& progress)
 {
+  // Between two reports.
   constexpr std::size_t few = 1 << 16;
   while (points.size() > few)
   {
@@ -192,7 +214,10 @@ void KeepFullestCells(std::vector<Point2>& points, const Progress& progress)
   }
 }
 
-/** Keeps the fullest part of a set of distinct points until few are left. */
+/**
+ * Keeps the fullest part of a set of distinct points until few are left: the half with more points
+ * of the longer side, again and again.
+ */
 void KeepFullest(std::vector<Point2>& points)
 {
   while (points.size() > Neighbors)
@@ -201,6 +226,7 @@ void KeepFullest(std::vector<Point2>& points)
     const Point2 &low = box.Low, &high = box.High;
     // Halve the longer side.
     const bool isWide = box.Width() > box.Height();
+    // The middle of the box, not the median: the half with more points is the denser one.
     const double middle = isWide ? 0.5 * (low.X + high.X) : 0.5 * (low.Y + high.Y);
     const auto isLow = [&](const Point2& p) { return (isWide ? p.X : p.Y) < middle; };
     const std::size_t lower =
@@ -249,6 +275,7 @@ void LatticeSample::Add(LatticeSample&& part)
   SortUnique(this->Points);
 }
 
+// Each range of points has its own set; they are joined, and sorted, at the end.
 LatticeSample SampleForLattice(const PointView& points, double totalCount, int threads,
   const Progress& progress, std::vector<Index>& notFinite)
 {
@@ -273,10 +300,14 @@ LatticeSample SampleForLattice(const PointView& points, double totalCount, int t
   return sample;
 }
 
+// From the sample alone, with the counts of the cloud estimated from it: no further look at the
+// points.
 Box FullestPlace(const LatticeSample& sample)
 {
   Box place = sample;
   std::vector<Point2> crowd = sample.Points;
+  // A histogram of the crowd, then of its fullest cell, and so on. Each has so many cells that a
+  // mean one holds as many points of the cloud as the search wants.
   for (int depth = 0; depth < 64 && crowd.size() > Crowd; ++depth)
   {
     const double here = sample.Count * (crowd.size() / static_cast<double>(sample.Points.size()));
@@ -284,6 +315,7 @@ Box FullestPlace(const LatticeSample& sample)
     Histogram histogram(place, static_cast<int>(std::min(std::max(cells, 1.0), 1.0 * MostCells)));
     if (histogram.Side < 2 || !histogram.HasCells())
     {
+      // A cell holds few enough points, or the place cannot be divided in doubles.
       break;
     }
     const int fullest = histogram.KeepFullest(crowd);

@@ -27,13 +27,17 @@ struct NodeBox : Box
   /** The most columns or rows: products of four coordinates and steps then fit into 128 bits. */
   static constexpr Index MaximumSide = 1 << 20;
 
+  // Points lie at most a quarter of a step from their nodes, the largest tolerance, so the first
+  // node is at most that far above the lowest point, and the last one that far below the highest.
   double FirstI() const { return std::floor(this->Low.X + 0.25); }
   double FirstJ() const { return std::floor(this->Low.Y + 0.25); }
   double Columns() const { return std::ceil(this->High.X - 0.25) - this->FirstI() + 1.0; }
   double Rows() const { return std::ceil(this->High.Y - 0.25) - this->FirstJ() + 1.0; }
+  // And one word of zeros behind each row; one more before the first row and one at the end.
   double WordsPerRow() const { return std::floor((this->Columns() + 63.0) / 64.0) + 1.0; }
   double Words() const { return this->WordsPerRow() * (this->Rows() + RowsBeyond) + 2.0; }
 
+  /** In floating point, as a box may have more columns than any integer holds. */
   bool IsSmallEnough() const
   {
     return this->Columns() <= MaximumSide && this->Rows() <= MaximumSide;
@@ -48,7 +52,10 @@ struct NodeBox : Box
   }
 };
 
-/** The node of a point, relative to the lower left one. */
+/**
+ * The node of a point, relative to the lower left one: the inverse of Lattice::Node() by four
+ * factors, so that a point costs four multiplications.
+ */
 class NodeFinder
 {
 public:
@@ -63,12 +70,14 @@ public:
 
   void Extend(NodeBox& box, const Point2& p) const { box.Add({ this->I(p), this->J(p) }); }
 
+  /** From here on, columns and rows are counted from the box's first. */
   void Start(const NodeBox& box)
   {
     this->FirstI = box.FirstI();
     this->FirstJ = box.FirstJ();
   }
 
+  // Positions along both steps, in steps from the origin; whole numbers at nodes.
   double I(const Point2& p) const
   {
     return (p.X - this->Origin.X) * this->IX + (p.Y - this->Origin.Y) * this->IY;
@@ -85,6 +94,7 @@ public:
   double operator()(const Point2& p, Index& column, Index& row) const
   {
     const double i = this->I(p), j = this->J(p);
+    // Rounds to the nearest: what is cast is never below 0 for a point of the box.
     column = static_cast<Index>(i - this->FirstI + 0.5);
     row = static_cast<Index>(j - this->FirstJ + 0.5);
     return std::max(std::fabs(i - (this->FirstI + column)), std::fabs(j - (this->FirstJ + row)));
@@ -122,12 +132,15 @@ NodeBox FindNodeBox(
   const NodeFinder& nodeOf, const Box& cloud, const Lattice& steps, OfPoints&& ofPoints)
 {
   NodeBox box;
+  // The corners' positions bound those of all points, as these are linear.
   for (const Point2& p : { cloud.Low, Point2{ cloud.High.X, cloud.Low.Y },
          Point2{ cloud.Low.X, cloud.High.Y }, cloud.High })
   {
     nodeOf.Extend(box, p);
   }
   const double nodesInCloud = cloud.Width() * cloud.Height() / steps.Area();
+  // Along the axes, both boxes have about as many nodes as the bounding box has cells. If there are
+  // more, the lattice is askew, and a pass over the points pays.
   return box.Columns() * box.Rows() <= 1.05 * nodesInCloud + 64.0 ? box : ofPoints();
 }
 

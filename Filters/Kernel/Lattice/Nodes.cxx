@@ -22,17 +22,20 @@ constexpr Index Few = 32;
 bool AreScattered(
   const PointView& points, const std::vector<Index>& notFinite, const NodeFinder& nodeOf)
 {
+  // Smaller clouds are in the cache in any order. A thousand places are enough of a sample.
   constexpr Index fewest = 1 << 20, samples = 1024, shortStep = 256;
   Index scattered = 0;
   for (Index sample = 0; points.Count >= fewest && sample < samples; ++sample)
   {
     std::array<Index, 3> column{}, row{};
     Index count = 0;
+    // Three points in a row of the input, at places spread over it.
     const Index first = sample * (points.Count / samples);
     ForEachPoint(points, first, first + 3, notFinite, [&](Index, const Point2& p) {
       nodeOf(p, column[count], row[count]);
       ++count;
     });
+    // Neither a short step nor the same one as before: no pattern that a processor prefetches.
     const auto isNew = [](const std::array<Index, 3>& at) {
       const Index step = at[2] - at[1], before = at[1] - at[0];
       return std::abs(step) > shortStep && std::abs(step - before) > shortStep;
@@ -43,7 +46,15 @@ bool AreScattered(
 }
 } // namespace
 
-/** One run of Place(); the members carry data between its passes. */
+/**
+ * One run of Place(); the members carry data between its passes:
+ * 1. FindBox() and MakeBitmap() lay out the bitmap.
+ * 2. FindNodes() writes each point's node and checks its distance; Occupy() sets the bits.
+ * 3. Scattered points are sorted into buckets first, and each bucket is one thread's.
+ * 4. CountBefore() adds up the bits before each word.
+ * 5. PlaceIds(), or PlaceBucket(), writes each id to its rank.
+ * 6. ResolveDuplicate() decides which of several points on a node is kept.
+ */
 class LatticeNodes::Placement
 {
 public:
@@ -94,6 +105,7 @@ private:
     Index Count() const { return static_cast<Index>(this->Begins.size()) - 1; }
   };
 
+  /** The box of all nodes, in steps from the search's origin. */
   NodeBox FindBox(const Progress& progress) const
   {
     return FindNodeBox(this->NodeOf, this->Search, this->Search.Steps, [&]() {
@@ -116,6 +128,7 @@ private:
   /** Allocates the bitmap for a box of nodes. @return false when it takes too much memory */
   bool MakeBitmap(const NodeBox& box, const Progress& progress)
   {
+    // In doubles, as the numbers of a lattice that does not fit may be beyond 64 bits.
     const double count = this->Points.Count - static_cast<double>(this->Search.NotFinite.size());
     if (!box.IsFilledEnough(count) || box.Words() * 64.0 > std::numeric_limits<Index>::max())
     {
@@ -130,6 +143,7 @@ private:
     this->Nodes.Words = reinterpret_cast<AtomicWord*>(this->Nodes.Memory.data());
     elevation::ForEachRange(
       static_cast<Index>(words), this->Threads, progress, [&](Index, Index begin, Index end) {
+        // Made in place by the threads that will use it; see the assertion in Nodes.h.
         for (Index word = begin; word < end; ++word)
         {
           new (this->Nodes.Words + word) AtomicWord(0);
@@ -161,6 +175,7 @@ private:
         const Index last = std::min(begin + Few, end);
         if (!this->Search.NotFinite.empty())
         {
+          // ForEachPoint() passes only finite points, so the others get None before.
           std::fill(nodes + begin, nodes + last, None);
         }
         ForEachPoint(
@@ -175,6 +190,7 @@ private:
           this->Occupy(begin, last, second);
         }
       }
+      // Also for NaN.
       if (!(largest <= tolerance + NodeRoundoff))
       {
         fits = false;
@@ -182,6 +198,7 @@ private:
       offsets[piece] = largest;
       this->Second[piece] = std::move(second);
     });
+    // With rounding: growth proves with it that triangles are not flat.
     this->Nodes.LargestOffset = *std::max_element(offsets.begin(), offsets.end()) +
       std::max(NodeRoundoff, this->NodeOf.Roundoff(this->Search.Low, this->Search.High));
     return fits;
@@ -194,6 +211,7 @@ private:
     elevation::ForEachRange(this->Points.Count, this->Threads, progress, work);
   }
 
+  /** The way for scattered points: bucket by bucket, so that bitmap and ids are in the cache. */
   bool PlaceSorted(Buckets& sorted, IdSet& duplicates, const Progress& progress)
   {
     ForEachPiece(sorted.Count(), this->Threads, progress.Between(0.0, 0.35),
@@ -203,6 +221,7 @@ private:
       [&](Index bucket) { this->PlaceBucket(sorted, bucket); });
     const Progress settling = progress.Between(0.85, 1.0);
     const Index placed = sorted.Begins.back();
+    // All points placed: there are no duplicates to look for.
     for (const Index i : Counted(this->Nodes.NumberOfPoints() < placed ? placed : 0))
     {
       ReportStep(settling, static_cast<std::size_t>(i), static_cast<std::size_t>(placed));
@@ -215,6 +234,7 @@ private:
     return true;
   }
 
+  /** The way for points in some order: range by range, prefetching. */
   bool PlaceInOrder(IdSet& duplicates, const Progress& progress)
   {
     if (this->IsScattered)
@@ -229,6 +249,7 @@ private:
     this->ForEachRange(progress.Between(0.35, 0.85),
       [&](Index, Index begin, Index end) { this->PlaceIds(begin, end); });
     const Progress settling = progress.Between(0.85, 1.0);
+    // One after another, by id: which of several is kept does not depend on threads.
     std::size_t steps = 0;
     for (const std::vector<Index>& second : this->Second)
     {
@@ -249,6 +270,7 @@ private:
   {
     Index column, row;
     this->NodeOf(this->Points.At(id), column, row);
+    // Some point of the node, whichever thread came first; the policy decides between the two.
     Index& kept = this->Nodes.Ids[this->Nodes.RankOf(this->Nodes.NodeAt(row, column))];
     const bool isSamePlace = this->Points.At(kept) == this->Points.At(id);
     if (isSamePlace && IsPreferred(this->Points, this->Policy, id, kept))
@@ -262,6 +284,7 @@ private:
   /** Moves the origin to the lowest occupied node. */
   void FindOrigin()
   {
+    // There is a point, so there is a bit.
     Index word = 0;
     while (this->Nodes.Word(word) == 0)
     {
@@ -306,6 +329,7 @@ bool LatticeNodes::Placement::SortIntoBuckets(Buckets& sorted, const Progress& p
 {
   // A bucket should fit into a core's cache, and so should the ends of all buckets.
   constexpr Index pointsPerBucket = 1 << 14, mostBuckets = 512;
+  // Shift so many bits of the node number that buckets are few, and about as large as wanted.
   const Index count = static_cast<Index>(this->Nodes.Scratch.size());
   const Index last = static_cast<Index>(this->Nodes.Memory.size() * 64 - 1); // node
   int shift = 6;                                                             // words stay whole
@@ -315,6 +339,8 @@ bool LatticeNodes::Placement::SortIntoBuckets(Buckets& sorted, const Progress& p
   }
   const Index buckets = (last >> shift) + 1;
   const Index ranges = NumberOfRanges(count);
+  // Counts for each range of points and bucket, then places: each range writes its own without a
+  // lock, and a bucket's points stay in the order of ids.
   std::vector<Index> numbers(static_cast<std::size_t>(ranges) * buckets, 0);
   const auto forEachNode = [&](Index range, Index begin, Index end, auto&& visit) {
     Index* const here = numbers.data() + static_cast<std::size_t>(range) * buckets;
@@ -329,6 +355,7 @@ bool LatticeNodes::Placement::SortIntoBuckets(Buckets& sorted, const Progress& p
   sorted.Nodes.Resize(static_cast<std::size_t>(count));
   sorted.Ids.Resize(static_cast<std::size_t>(count));
   this->ForEachRange(progress.Between(0.0, 0.5), [&](Index range, Index begin, Index end) {
+    // The writes below come in no order; see TouchPages().
     TouchPages(sorted.Nodes, begin, end);
     TouchPages(sorted.Ids, begin, end);
     forEachNode(range, begin, end, [](Index, Index) {});
@@ -339,6 +366,7 @@ bool LatticeNodes::Placement::SortIntoBuckets(Buckets& sorted, const Progress& p
     sorted.Begins.push_back(sum);
     for (Index range = 0; range < ranges; ++range)
     {
+      // The count is replaced by the sum of all before it.
       sum += std::exchange(numbers[static_cast<std::size_t>(range) * buckets + bucket], sum);
     }
     largest = std::max(largest, sum - sorted.Begins.back());
@@ -368,6 +396,7 @@ void LatticeNodes::Placement::OccupyBucket(Buckets& buckets, Index bucket)
   {
     Index& node = buckets.Nodes[i];
     const std::uint64_t bit = std::uint64_t(1) << (node & 63);
+    // Not shared: words of a bucket belong to one thread.
     if (this->SetBits(node >> 6, bit, false) & bit)
     {
       node = None;
@@ -394,8 +423,10 @@ std::uint64_t LatticeNodes::Placement::SetBits(Index word, std::uint64_t bits, b
   AtomicWord& there = this->Nodes.Words[word];
   if (isShared)
   {
+    // Relaxed: threads meet before anyone reads.
     return there.fetch_or(bits, std::memory_order_relaxed);
   }
+  // An atomic exchange would lock the word, which only several threads need.
   const std::uint64_t before = there.load(std::memory_order_relaxed);
   there.store(before | bits, std::memory_order_relaxed);
   return before;
@@ -423,6 +454,7 @@ void LatticeNodes::Placement::Occupy(Index begin, Index end, std::vector<Index>&
       ++next;
     } while (next < end && nodes[next] >> 6 == word);
     std::uint64_t taken = this->SetBits(word, bits, isShared);
+    // Seldom: a node taken before, or twice within this word.
     if ((taken & bits) || (next - begin > 1 && CountBits(bits) != next - begin))
     {
       for (Index id = begin; id < next; ++id)
@@ -440,10 +472,12 @@ void LatticeNodes::Placement::Occupy(Index begin, Index end, std::vector<Index>&
   }
 }
 
+/** Sets Before, and makes room for as many ids as there are occupied nodes. */
 void LatticeNodes::Placement::CountBefore()
 {
   const Index words = static_cast<Index>(this->Nodes.Memory.size());
   this->Nodes.Before.Resize(this->Nodes.Memory.size());
+  // Two passes, as the sums of all earlier pieces are needed before ranks can be written.
   const Index pieces = std::min(this->Threads, words);
   const auto beginOf = [&](Index piece) {
     return static_cast<Index>(std::int64_t(words) * piece / pieces);
@@ -480,6 +514,7 @@ void LatticeNodes::Placement::PlaceIds(Index begin, Index end)
   std::array<Index, Few> ranks;
   for (; begin < end; begin += Few)
   {
+    // Three loops, so that each asks for the memory that the next one needs.
     const Index size = std::min(Few, end - begin);
     const Index* const here = nodes + begin;
     for (Index i = 0; i < size; ++i)
@@ -489,6 +524,7 @@ void LatticeNodes::Placement::PlaceIds(Index begin, Index end)
     }
     for (Index i = 0; i < size; ++i)
     {
+      // Points in the order of nodes: the next rank, without counting bits.
       const bool isNext = i > 0 && ranks[i - 1] != None && here[i] == here[i - 1] + 1;
       ranks[i] = isNext ? ranks[i - 1] + 1 : here[i] != None ? this->Nodes.RankOf(here[i]) : None;
       Prefetch(ids + ranks[i]);

@@ -12,6 +12,9 @@
  * points in random order are first sorted into buckets of nodes, each of one thread and near in
  * memory.
  *
+ *   word  0 | 1 .. W-1 | W | W+1 .. 2W-1 | 2W | ...    W is WordsPerRow. The word of zeros
+ *         0 |  row 0   | 0 |    row 1    | 0  | ...    before a row ends the row before it.
+ *
  * A node's number is 64 times its word plus its bit. Around each row are words of zeros, and above
  * the last row are rows of zeros, so that neighbours need no bounds check.
  *
@@ -28,6 +31,10 @@
 namespace elevation
 {
 
+/**
+ * See above. Once made it does not change, so all threads read it; functions of a node take
+ * constant time, but for Following() and Previous() across empty words.
+ */
 class LatticeNodes
 {
 public:
@@ -40,6 +47,7 @@ public:
     DuplicatePolicy policy, int threads, const Progress& progress);
 
   Index NumberOfPoints() const { return static_cast<Index>(this->Ids.size()); }
+  // Between row and column, node number, and rank: three ways to name a node.
   Index NodeAt(Index row, Index column) const
   {
     return (row * this->WordsPerRow + 1) * 64 + column;
@@ -77,6 +85,8 @@ public:
   }
 
   Index Columns = 0, Rows = 0, WordsPerRow = 0;
+  // A bit of Words says whether a node is occupied, Before and the bits below it say which rank it
+  // has, and Ids which point that is.
   Buffer<Index> Before;          ///< occupied nodes before each word
   Buffer<Index> Ids;             ///< point ids by rank
   Buffer<Index> Scratch;         ///< an Index a point; free for other use after Place()

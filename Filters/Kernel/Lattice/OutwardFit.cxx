@@ -11,10 +11,15 @@ namespace elevation
 namespace
 {
 
-/** Least-squares fit of an origin and two steps to points whose nodes are known. */
+/**
+ * Least-squares fit of an origin and two steps to points whose nodes are known: of o, u and v so
+ * that the sum of |p - o - i u - j v|^2 is least. Sums are kept, so a fit to more points costs no
+ * second look at the earlier ones.
+ */
 class Fit
 {
 public:
+  /** Adds a point p at node (i, j). */
   void Add(double i, double j, const Point2& p)
   {
     this->N += 1.0;
@@ -38,10 +43,12 @@ public:
     {
       return false;
     }
+    // Relative to the means, so that the origin drops out of the equations.
     const double i = this->I / this->N, j = this->J / this->N;
     const double ii = this->II - i * this->I, ij = this->IJ - i * this->J;
     const double jj = this->JJ - j * this->J;
     const double determinant = ii * jj - ij * ij;
+    // Nodes nearly on one line would give steps across it that rounding errors have made.
     if (!(determinant > 0.05 * ii * jj) || !(determinant > 0.5))
     {
       return false;
@@ -67,6 +74,7 @@ double Rounded(double value, double allowed)
 {
   for (int decimals = -9; decimals <= 15; ++decimals)
   {
+    // Multiplied or divided by a power that is exact, so that 0.1 becomes the double 0.1.
     const double power = std::pow(10.0, std::abs(decimals));
     const double candidate =
       decimals < 0 ? std::round(value / power) * power : std::round(value * power) / power;
@@ -78,6 +86,7 @@ double Rounded(double value, double allowed)
   return value;
 }
 
+/** One run of FitOutwards(): the basis grows finer, the steps follow the points. */
 class OutwardFit
 {
 public:
@@ -91,6 +100,7 @@ public:
   /** @return false when no lattice fits, or it has more nodes in the sample's box than allowed */
   bool Run(double tolerance, double extent, double mostNodes, Lattice& lattice)
   {
+    // Far more than there can be: each refinement halves the cell at least, until it is too fine.
     constexpr int mostRounds = 64;
     Outcome outcome = Outcome::Refined;
     for (int round = 0; round < mostRounds && outcome == Outcome::Refined; ++round)
@@ -101,7 +111,8 @@ public:
     {
       return false;
     }
-    // Fit the whole sample twice: from the directed steps, then from the fitted ones.
+    // Fit the whole sample twice: from the directed steps, then from the fitted ones, by which far
+    // points may be on other nodes.
     Direct(this->Steps.StepU, this->Steps.StepV);
     if (!this->FitAll() || !this->FitAll())
     {
@@ -117,6 +128,10 @@ public:
   }
 
 private:
+  /**
+   * Of one attempt to go outwards. Run() repeats while it is Refined; Fitted means that all points
+   * of the sample are on nodes of the final steps, but for the tolerance of zero.
+   */
   enum class Outcome
   {
     Fitted,  ///< all points are on nodes
@@ -133,6 +148,8 @@ private:
     }
     this->Steps = { { 0.0, 0.0 }, this->Basis.U, this->Basis.V };
     Fit fit;
+    // Fitted anew whenever there are a quarter more points: the steps are then good enough for
+    // those that follow, which are little farther away.
     std::size_t next = 8;
     Point2 beside{ 0.0, 0.0 }; // farthest from the line while there is only one step
     for (std::size_t k = 0; k < this->Sample.size(); ++k)
@@ -140,6 +157,7 @@ private:
       Point2 rest;
       if (!this->IsNode(this->Sample[k], fit, rest))
       {
+        // The fitted steps are better than those of the generators.
         this->Basis.U = this->Steps.StepU;
         this->Basis.V = this->Steps.StepV;
         return this->Refine(rest);
@@ -147,6 +165,7 @@ private:
       beside = Dot(rest, rest) > Dot(beside, beside) ? rest : beside;
       if (k + 1 == next && this->Basis.Rank == 2)
       {
+        // Where it cannot, the steps stay.
         fit.Solve(this->Steps.Origin, this->Steps.StepU, this->Steps.StepV);
         next += next / 4;
       }
@@ -155,6 +174,7 @@ private:
     return this->Basis.Rank == 1 ? this->Refine(beside) : Outcome::Fitted;
   }
 
+  /** Inserts the remainder of a point between nodes into the basis. */
   Outcome Refine(const Point2& vector)
   {
     return this->Basis.Insert(vector) ? Outcome::Refined : Outcome::TooFine;
@@ -167,6 +187,7 @@ private:
     rest = Minus(p, this->Steps.Origin);
     if (this->Basis.Rank == 2)
     {
+      // For rank 1: the distance from the line through the nodes; for rank 0, from the first point.
       const Point2 steps = this->Steps.InSteps(p);
       const double i = std::round(steps.X), j = std::round(steps.Y);
       rest = Minus(Minus(rest, u, i), v, j);
@@ -182,6 +203,7 @@ private:
     return Dot(rest, rest) == 0.0;
   }
 
+  /** Fits the steps to all points, each at the node nearest by the steps so far. */
   bool FitAll()
   {
     Fit fit;
@@ -198,6 +220,8 @@ private:
   {
     Point2 &u = this->Steps.StepU, &v = this->Steps.StepV, &origin = this->Steps.Origin;
     const double length = std::sqrt(std::min(Dot(u, u), Dot(v, v)));
+    // A step's error is multiplied by the number of steps across the cloud: there, it is a
+    // millionth.
     const double allowed = 1e-6 * length * std::min(1.0, length / extent);
     u = { Rounded(u.X, allowed), Rounded(u.Y, allowed) };
     v = { Rounded(v.X, allowed), Rounded(v.Y, allowed) };
@@ -208,6 +232,7 @@ private:
   /** Whether all points are near nodes, and the nodes are not too many. */
   bool IsWithin(double tolerance, double mostNodes) const
   {
+    // A little more than the tolerance: Nodes.h checks all points exactly.
     const double far = 1.01 * tolerance + 1e-8;
     Box box; // in steps
     for (const Point2& p : this->Sample)

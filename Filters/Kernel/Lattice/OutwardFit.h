@@ -8,6 +8,10 @@
  * The steps are fitted by least squares to more and more points, so that rounding errors never add
  * up to a notable part of a step. A point between nodes refines the lattice, and the fit begins
  * again. Cost: linear in the sample for each refinement.
+ *
+ *   o . o . o      Points at o fit steps of two dots, until a point at . comes: it lies between
+ *   . . . . .      nodes. Its remainder is one more generator, and the lattice that all of them
+ *   o . o . x      generate is tried from the start. Each refinement halves the cell, at least.
  */
 #ifndef elevation_Lattice_OutwardFit_h
 #define elevation_Lattice_OutwardFit_h

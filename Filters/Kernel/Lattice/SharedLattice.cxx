@@ -12,7 +12,10 @@ namespace
 /** Of sums of a few products: a bound on their rounding errors, relative to the sum of sizes. */
 constexpr double Unit = 32.0 * std::numeric_limits<double>::epsilon();
 
-/** A number, and a bound on its error. */
+/**
+ * A number, and a bound on its error. A running error analysis: values are computed together with
+ * bounds on their errors.
+ */
 struct Bounded
 {
   double Value, Error;
@@ -28,6 +31,7 @@ Bounded Sum(double p, const Bounded& a, double q, const Bounded& b)
     std::fabs(p) * a.Error + std::fabs(q) * b.Error + Unit * size };
 }
 
+/** a times b. */
 Bounded Product(const Bounded& a, const Bounded& b)
 {
   const double value = a.Value * b.Value;
@@ -38,7 +42,8 @@ Bounded Product(const Bounded& a, const Bounded& b)
 bool IsLatticeByChance(double count, double tolerance)
 {
   // Three points make a lattice; every other one fits with the probability of its node's area; the
-  // number of lattices to choose from grows with the nodes allowed.
+  // number of lattices to choose from grows with the nodes allowed. In logarithms: the probability
+  // itself would underflow.
   const double fits = std::log(1.0 / std::min(4.0 * tolerance * tolerance + 1e-12, 0.99));
   return (count - 3.0) * fits < std::log(MaximumNodesPerPoint * count) + std::log(1e6);
 }
@@ -53,7 +58,8 @@ bool SharedLattice::Set(
   this->ToNode = NodeFinder(steps);
   const Point2 &u = steps.StepU, &v = steps.StepV;
   const double off = tolerance + NodeRoundoff + this->ToNode.Roundoff(cloud.Low, cloud.High);
-  // Besides, nodes are rounded when they are computed from steps.
+  // Besides, nodes are rounded when they are computed from steps, in proportion to the largest
+  // indices of the cloud.
   const double across = nodes.Columns() + std::fabs(nodes.FirstI());
   const double up = nodes.Rows() + std::fabs(nodes.FirstJ());
   const auto reach = [&](double origin, double alongU, double alongV) {
@@ -81,6 +87,7 @@ Box SharedLattice::CircleBox(const LatticeNode& a, const LatticeNode& b, const L
   // In the metric M, with nodes relative to a: the centre m has b M m = b M b / 2, and likewise for
   // c. So w = M m is known from a linear system; then m = inverse(M) w, and the radius squared is
   // w m. Along a direction g the circle, an ellipse in nodes, reaches sqrt(g inverse(M) g) radii.
+  // All integers below are exact; only divisions and what follows are rounded.
   const LatticeMetric& metric = this->StepMetric;
   const std::int64_t bi = b.I - a.I, bj = b.J - a.J, ci = c.I - a.I, cj = c.J - a.J;
   const double twice = 2.0 * static_cast<double>(bi * cj - bj * ci);
@@ -101,6 +108,8 @@ Box SharedLattice::CircleBox(const LatticeNode& a, const LatticeNode& b, const L
 
   const Lattice& steps = this->Search.Steps;
   const Point2 at = steps.Node(static_cast<double>(a.I), static_cast<double>(a.J));
+  // Along x and along y: the centre, and the ellipse's reach, and how far points are off their
+  // nodes.
   const auto rangeOf = [&](double corner, double alongU, double alongV, double reach) {
     const Bounded centre = Sum(alongU, mi, alongV, mj);
     const double form =

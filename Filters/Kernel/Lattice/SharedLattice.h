@@ -36,6 +36,8 @@ struct LatticeNode
  */
 bool IsLatticeByChance(double count, double tolerance);
 
+// Cells/Pieces.cxx and the surfaces in parts give it to every piece, so that all pieces have the
+// same nodes and circles; each could find another lattice by itself.
 class SharedLattice
 {
 public:

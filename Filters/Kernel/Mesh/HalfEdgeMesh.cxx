@@ -14,6 +14,7 @@ namespace elevation
 std::string NameOf(const Point2& p)
 {
   char text[64];
+  // Ten digits: enough to find a point in map coordinates, and readable.
   std::snprintf(text, sizeof(text), "(%.10g, %.10g)", p.X, p.Y);
   return text;
 }
@@ -36,7 +37,12 @@ std::string NameOf(const Mesh& mesh, Index vertex)
 
 namespace
 {
-/** Names the first edge that is not manifold, in the order of its lower and higher vertex id. */
+/**
+ * Names the first edge that is not manifold, in the order of its lower and higher vertex id.
+ * TwinFinder has only found out that there is one: which one it met depends on the order of
+ * triangles, and a message should not. So all edges are sorted here, once it is clear that the mesh
+ * is refused.
+ */
 [[noreturn]] void ThrowNotManifold(const Mesh& mesh, Index firstCell, const Progress& progress)
 {
   struct Edge
@@ -83,9 +89,21 @@ namespace
 }
 
 /**
- * Pairs the half-edges of a mesh. Vertices are numbered in the order in which triangles name them,
- * so that neighbours are near in memory. Rising half-edges, which lead to a vertex of a higher
- * number, are sorted by origin; each falling one looks for its twin among those of its destination.
+ * Pairs the half-edges of a mesh: a counting sort over vertices, and no hash table. Vertices are
+ * numbered in the order in which triangles name them, so that neighbours are near in memory. Rising
+ * half-edges, which lead to a vertex of a higher number, are sorted by origin; each falling one
+ * looks for its twin among those of its destination.
+ *
+ *     b    b->a falls (a < b); its twin a->b rises and is listed at a, with the others that leave
+ *    / \   a for a higher number. About three rise at each vertex, so the list is compared whole.
+ *   a---c
+ *
+ * The passes:
+ * 1. NumberVertices() gives the numbers.
+ * 2. CountRising() counts for each vertex, and adds up where its list begins.
+ * 3. ListRising() writes the lists; each begin moves to its end.
+ * 4. SortWhereMany() sorts the long lists by destination, for binary search.
+ * 5. ConnectFalling() finds the twins, and notes an edge with two half-edges of one direction.
  */
 class TwinFinder
 {
@@ -110,6 +128,7 @@ private:
   static constexpr Index AtOnce = 4; // edges compared without a branch
   static constexpr Index Few = 128;  // triangles at a time
 
+  // A rising half-edge in the list of its origin, and a falling one that looks for its twin.
   struct RisingEdge
   {
     Index Destination;
@@ -122,6 +141,7 @@ private:
     Index HalfEdge;
   };
 
+  /** Numbers vertices as triangles name them; Corners then has numbers instead of ids. */
   void NumberVertices(const Progress& progress)
   {
     const std::vector<Index>& triangles = this->Surface.Triangles;
@@ -161,7 +181,10 @@ private:
     }
   }
 
-  /** Sets Ends[v + 1] to the number of rising half-edges that leave vertices up to v. */
+  /**
+   * Sets Ends[v + 1] to the number of rising half-edges that leave vertices up to v, which is where
+   * the list of v + 1 begins.
+   */
   void CountRising(const Progress& progress)
   {
     this->Ends.Resize(static_cast<std::size_t>(this->Used) + 1);
@@ -170,12 +193,14 @@ private:
     ForEachStretch(this->Surface.NumberOfTriangles(), progress, [&](Index begin, Index end) {
       this->ForEachHalfEdge(begin, end, [&](Index, Index a, Index b) { ends[a + 1] += a < b; });
     });
+    // A running sum: from numbers to places.
     for (std::size_t v = 1; v < this->Ends.size(); ++v)
     {
       ends[v] += ends[v - 1];
     }
   }
 
+  /** Writes each rising half-edge into the list of its origin. */
   void ListRising(const Progress& progress)
   {
     const Index total = this->Ends[this->Used];
@@ -196,6 +221,7 @@ private:
 
   void SortWhereMany(const Progress& progress)
   {
+    // Ends now are ends: the list of v begins where that of the vertex before ends.
     for (Index v = 0, first = 0; v < this->Used; first = this->Ends[v++])
     {
       if (this->Ends[v] - first > Many)
@@ -213,6 +239,8 @@ private:
 
   bool ConnectFalling(const Progress& progress)
   {
+    // Two half-edges of one direction without a twin are not noticed here: both stay borders, and
+    // HasDistinctBorders() finds them.
     const Index last = this->Surface.NumberOfHalfEdges() - 1, total = this->Ends[this->Used];
     bool isManifold = true;
     FallingEdge falling[3 * Few];
@@ -227,6 +255,8 @@ private:
           Prefetch(&this->Surface.Twins[place]);
           Prefetch(&this->Rising[std::min(place / 2, total)]);
         }
+        // The falling half-edges of some triangles are listed first, without branches, then
+        // connected.
         std::size_t size = 0;
         this->ForEachHalfEdge(begin, std::min(begin + Few, end), [&](Index h, Index a, Index b) {
           falling[size] = { a, b, h }; // without branches, again
@@ -252,6 +282,7 @@ private:
       const auto isBefore = [](const RisingEdge& p, Index end) { return p.Destination < end; };
       first = static_cast<Index>(
         std::lower_bound(rising + first, rising + last, edge.Origin, isBefore) - rising);
+      // More than one match would be adjacent.
       last = std::min(last, first + AtOnce);
     }
     Index twin = 0;
@@ -272,9 +303,12 @@ private:
     }
     if (matches != 1)
     {
+      // None: a border. Several rising ones: the edge is not manifold.
       return matches == 0;
     }
     std::vector<Index>& twins = this->Surface.Twins;
+    // A rising half-edge that has a twin already would get a second one: another falling one ran
+    // here.
     const bool isFree = twins[twin] == Mesh::Border;
     twins[edge.HalfEdge] = twin;
     twins[twin] = edge.HalfEdge;
@@ -321,7 +355,8 @@ namespace
 /**
  * Class of the angle from b->r counter-clockwise to b->u: 0 less than half a turn, 1 half a turn, 2
  * more; -1 for equal directions, where two borders lie back to back with an empty wedge of no width
- * between them.
+ * between them. Angles are compared by class first, then by one Orientation() within a class:
+ * exact, without computing an angle.
  */
 int TurnClass(const Point2& b, const Point2& r, const Point2& u)
 {
@@ -342,7 +377,11 @@ bool TurnsToFirst(const Point2& b, const Point2& r, const Point2& u, const Point
   return uClass != vClass ? uClass < vClass : Orientation(b, u, v) == Positive;
 }
 
-/** Walks along the border of a mesh; the members carry data between its passes. */
+/**
+ * Walks along the border of a mesh; the members carry data between its passes. Mostly one border
+ * leaves each vertex, and the walk is a chain of look-ups. Where several do, their directions
+ * decide.
+ */
 class BorderWalker
 {
 public:
@@ -366,9 +405,13 @@ private:
   using Leave = std::pair<Index, Index>;
   using Place = std::vector<Leave>::const_iterator;
 
-  /** Where more meet, they are sorted by angle from the one in Leaving, for binary search. */
+  /**
+   * Where more meet, they are sorted by angle from the one in Leaving, for binary search. Below,
+   * comparing all is faster. Without the search, a star of many pinches would be quadratic.
+   */
   static constexpr std::ptrdiff_t Many = 16;
 
+  /** Lists the half-edges with nothing, or no flagged triangle, on their right. */
   void FindBorders(const Progress& progress)
   {
     const Mesh& mesh = this->Surface;
@@ -378,6 +421,7 @@ private:
       for (Index h = 3 * begin; h < 3 * end; ++h)
       {
         const bool isKept = isWhole || keep[Mesh::Triangle(h)];
+        // The border of flagged triangles also runs along edges to triangles that are not flagged.
         if (isKept && (mesh.IsBorder(h) || (!isWhole && !keep[Mesh::Triangle(mesh.Twin(h))])))
         {
           this->Borders.push_back(h);
@@ -386,6 +430,10 @@ private:
     });
   }
 
+  /**
+   * Enters each border at its origin: the first in Leaving, which is all that most vertices need,
+   * others in Further.
+   */
   void ListLeaving(const Progress& progress)
   {
     this->Leaving.assign(this->Surface.NumberOfPoints(), None);
@@ -417,6 +465,8 @@ private:
         Sort(
           first, last,
           [&](const Leave& u, const Leave& v) {
+            // Equal directions, of overlapping borders, are ordered by place: the order must be
+            // strict.
             return TurnsToFirst(p, from, this->EndOf(u.second), this->EndOf(v.second)) ||
               (u.second < v.second &&
                 !TurnsToFirst(p, from, this->EndOf(v.second), this->EndOf(u.second)));
@@ -430,6 +480,11 @@ private:
   /**
    * The border after h = a->b in its walk: the empty wedge at b opens counter-clockwise from b->a,
    * and the next border closes it.
+   *
+   *    surface           surface      h runs to the right, with the surface above it. Turning
+   *   a-------->b------->             counter-clockwise from b->a, one meets empty space, then the
+   *    empty   / \ surface            first border that leaves b: the walk goes on with it, and
+   *           v   \                   leaves the others at b to walks around their own wedges.
    */
   Index Following(Index h) const
   {
@@ -438,6 +493,8 @@ private:
     const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
     Index best = this->Leaving[b];
     Place other = this->FirstAt(b);
+    // Sorted from the direction of the first border that leaves b: the answer is the first one
+    // after that of b->a, or, past the last, the first border itself.
     if (this->Further.end() - other > Many && other[Many].first == b)
     {
       const Place last = this->FirstAt(b + 1);
@@ -456,6 +513,7 @@ private:
     return best;
   }
 
+  /** From each border not seen yet, until the walk is back there. */
   Rings Walk(const Progress& progress) const
   {
     Rings walks;
@@ -479,14 +537,18 @@ private:
       } while (!seen[i]);
       walks.Offsets.push_back(static_cast<Index>(walks.Vertices.size()));
     }
+    // A walk ends at its own start: following borders is one to one, as each wedge has one opening
+    // and one closing border.
     return walks;
   }
 
   Index Count() const { return static_cast<Index>(this->Borders.size()); }
+  /** Where the further borders of a vertex begin in Further. */
   Place FirstAt(Index vertex) const
   {
     return std::lower_bound(this->Further.begin(), this->Further.end(), Leave(vertex, 0));
   }
+  /** The point that the border of a place leads to. */
   const Point2& EndOf(Index place) const
   {
     return this->Surface.PointOf(this->Surface.Destination(this->Borders[place]));
@@ -507,6 +569,7 @@ Rings TraceBorder(const Mesh& mesh, const Progress& progress, const std::vector<
 
 void KeepTriangles(const std::vector<char>& keep, Mesh& mesh)
 {
+  // In place, as no triangle moves up. A twin whose triangle goes becomes a border.
   std::vector<Index> placeOf(keep.size(), None);
   Index count = 0;
   for (std::size_t t = 0; t < keep.size(); ++t)

@@ -27,7 +27,10 @@
 namespace elevation
 {
 
-/** Points, and the ids by which messages name them; without ids, by their indices. */
+/**
+ * Points, and the ids by which messages name them; without ids, by their indices. For code that has
+ * points but no mesh, such as rings and lines.
+ */
 struct NamedPoints
 {
   NamedPoints(std::vector<Point2> places = {}, std::vector<Index> ids = {})
@@ -51,6 +54,11 @@ std::string NameOf(std::int64_t number, const Point2& p);
 std::string NameOf(const NamedPoints& points, Index i);
 std::string NameOf(const Mesh& mesh, Index vertex);
 
+/**
+ * A mesh of triangles. All arrays are public: passes over the whole mesh read and write them
+ * directly. A function that changes Triangles must keep Twins right, or leave them to
+ * ConnectTwins().
+ */
 class Mesh
 {
 public:
@@ -69,6 +77,7 @@ public:
   /** How messages number the point of an id, if not by the id. */
   std::function<std::int64_t(Index id)> NumberOf;
 
+  // Queries in constant time. h is a half-edge; those that follow its triangle need no Twins.
   Index NumberOfPoints() const { return static_cast<Index>(this->Points.size()); }
   Index NumberOfTriangles() const { return static_cast<Index>(this->Triangles.size() / 3); }
   Index NumberOfHalfEdges() const { return static_cast<Index>(this->Triangles.size()); }
@@ -137,6 +146,7 @@ struct Rings
   /** For the place of a vertex in Vertices, that of the next one on its ring. */
   Index After(Index place) const
   {
+    // The ring's end is the first offset beyond the place, its begin the one before.
     const auto end = std::upper_bound(this->Offsets.begin(), this->Offsets.end(), place);
     return place + 1 == *end ? end[-1] : place + 1;
   }
@@ -159,6 +169,7 @@ struct Components
 class LabelSets
 {
 public:
+  /** A new component. @return its label on side 0 */
   Index Add()
   {
     this->JoinedTo.push_back(static_cast<Index>(2 * this->JoinedTo.size()));
@@ -171,10 +182,14 @@ public:
     const Index root = this->Find(other);
     const Index low = std::min(label, root);
     const Index high = std::max(label, root);
+    // The same component already. If the sides differ, the relation contradicts itself, as around
+    // the end of a line within the mesh: the label then stays as it is.
     if (low / 2 == high / 2)
     {
       return label;
     }
+    // The higher component becomes part of the lower one; if its root's side 1 is what is joined,
+    // its sides are exchanged.
     this->JoinedTo[high / 2] = low ^ (high & 1);
     return low;
   }
@@ -201,6 +216,10 @@ public:
   Index operator()(Index label) const { return this->JoinedTo[label / 2] ^ (label & 1); }
 
 private:
+  /**
+   * The label that a label stands for now. Halves the paths that it follows, so that later calls
+   * are short.
+   */
   Index Find(Index label)
   {
     while (this->JoinedTo[label / 2] != (label & ~1))
@@ -244,6 +263,7 @@ Components FindComponents(const Mesh& mesh, const Progress& progress, Relation&&
         if (step >= 0)
         {
           const Index other = components.Labels[Mesh::Triangle(twin)] ^ step;
+          // All earlier neighbours of a triangle are of one component from now on.
           label = label == None || label == other ? other : joined.Join(label, other);
         }
       }

@@ -14,6 +14,9 @@ namespace elevation
 
 namespace
 {
+// The passes of Holes.h: TraceBorder(), StartAtLowest(), then BorderSweep, which classifies walks
+// (FindRims), sweeps (ProcessEvents at each point) and lists the walks of each hole (MakeHoles).
+
 /** Orders half-edges by origin, then, at pinched vertices, by destination. */
 struct IsLowerEdge
 {
@@ -56,12 +59,17 @@ Sign SideOf(const Segment& segment, const Point2& p)
   return Orientation(segment.Low, segment.High, p);
 }
 
+// Ends on the other segment do not count: a contact is no overlap, see Holes.h.
 bool CrossInside(const Segment& s, const Segment& t)
 {
   return SideOf(s, t.Low) * SideOf(s, t.High) < 0 && SideOf(t, s.Low) * SideOf(t, s.High) < 0;
 }
 
-/** Orders segments on the same sweep line that do not cross from left to right. */
+/**
+ * Orders segments on the same sweep line that do not cross from left to right. The order of two
+ * does not depend on where the line is between their ends, so a set can keep it. Where segments do
+ * cross, the order breaks; by then the sweep has tested them as neighbours and ended.
+ */
 struct IsLeftOf
 {
   using is_transparent = void;
@@ -91,6 +99,7 @@ struct IsLeftOf
     // On one line, back to back: the surface ends, then begins again.
     return s.IsUp != t.IsUp ? s.IsUp : i < j;
   }
+  // For lower_bound() by a point on the sweep line: segments through the point are equal to it.
   bool operator()(Index i, const Point2& p) const
   {
     return SideOf((*this->Segments)[i], p) == Negative;
@@ -109,7 +118,12 @@ struct Event
   bool IsStart;
 };
 
-/** One run of the sweep; the members carry data between its passes. */
+/**
+ * One run of the sweep [Shamos & Hoey 1976]; the members carry data between its passes. At each
+ * point, edges that end leave the status and edges that start enter it; the neighbours that are new
+ * to each other are then tested. If the border is right up to a point and its new neighbours are,
+ * it is right beyond, up to the next point.
+ */
 class BorderSweep
 {
 public:
@@ -129,6 +143,7 @@ public:
     Sort(
       this->Events.begin(), this->Events.end(),
       [](const Event& a, const Event& b) {
+        // At one point, ends come before starts: then no two edges in the status only touch there.
         return a.At != b.At ? IsLower(a.At, b.At)
                             : (a.IsStart != b.IsStart ? b.IsStart : a.Segment < b.Segment);
       },
@@ -163,9 +178,12 @@ public:
 private:
   using Place = std::set<Index, IsLeftOf>::iterator;
 
+  // Regions of walks: a rim has its own from the start, the outside of a component gets one when
+  // the sweep meets its lowest vertex.
   static constexpr Index NotLocated = -2;
   static constexpr Index Outside = None; ///< the empty region around everything
 
+  /** Each border edge as a segment from its lower to its higher end, with an event at either. */
   void MakeSegments(const Progress& progress)
   {
     const Rings& walks = this->Result.Walks;
@@ -210,7 +228,10 @@ private:
       }
 
       // Every edge goes up from here; the wedge that opens downwards is the one with a left turn.
+      // The outside of a component is below its lowest vertex; of a hole, the surface is there.
       bool isOutside = false;
+      // A pinched walk passes its lowest point several times: all of its wedges there are looked
+      // at.
       for (Index i = 0; i < size && !isOutside; ++i)
       {
         const Point2& p = this->Surface.PointOf(this->Surface.Origin(h[i]));
@@ -238,10 +259,13 @@ private:
     bool haveEnded = false;
     for (; first < last && !this->Events[first].IsStart; ++first)
     {
+      // Edges that end at one point are neighbours, so what follows the last one erased is the
+      // first edge to the right of the point.
       behind = this->Status.erase(this->Places[this->Events[first].Segment]);
       haveEnded = true;
     }
-    // Edges that pass through this point stay; without a contact there are none.
+    // Edges that pass through this point stay; without a contact there are none. behind is the
+    // first edge to the right of the point, through the first one that passes through it.
     if (!haveEnded)
     {
       behind = this->Status.lower_bound(p);
@@ -265,8 +289,12 @@ private:
     for (std::size_t i = first; i < last; ++i)
     {
       const Index segment = this->Events[i].Segment;
+      // With its neighbour as a hint, in constant time; the order among those that start here is
+      // found by IsLeftOf.
       this->Places[segment] = this->Status.insert(behind, segment);
     }
+    // From the neighbour on the left to the one on the right, also where nothing has started: two
+    // that were apart until an edge between them ended are neighbours now.
     if (!this->IsInOrder(hasLeft ? left : this->Status.begin(), behind, p))
     {
       return false;
@@ -276,6 +304,8 @@ private:
     for (Place place = hasLeft ? std::next(left) : this->Status.begin(); place != behind; ++place)
     {
       Index& region = this->Regions[this->Segments[*place].Walk];
+      // The edge on the left has been placed before, and what is on its right is empty: otherwise
+      // IsInOrder() had failed.
       if (region == NotLocated)
       {
         region = place == this->Status.begin() ? Outside : this->RegionOf(*std::prev(place));
@@ -295,6 +325,7 @@ private:
   /** Whether edges from @a begin to @a end, both included, enter and leave the surface in turn. */
   bool IsInOrder(Place begin, Place end, const Point2& p)
   {
+    // Nothing is on the left of the first edge, so it must lead in, running down.
     if (begin == this->Status.begin() && begin != this->Status.end() && this->Segments[*begin].IsUp)
     {
       return this->RefuseOverlap(*begin, p);
@@ -304,10 +335,12 @@ private:
       const Place next = std::next(place);
       if (next == this->Status.end())
       {
+        // And the last one must lead out.
         return this->Segments[*place].IsUp || this->RefuseOverlap(*place, p);
       }
       const Segment& s = this->Segments[*place];
       const Segment& t = this->Segments[*next];
+      // Crossing is tested first, as its message names both cells.
       if (CrossInside(s, t))
       {
         return this->RefuseCrossing(s, t);
@@ -321,6 +354,7 @@ private:
     return true;
   }
 
+  /** The cell of a segment, as messages number it. */
   std::string CellOf(const Segment& segment) const
   {
     return std::to_string(
@@ -332,6 +366,7 @@ private:
       std::to_string(this->Surface.Destination(segment.HalfEdge));
   }
 
+  // Both make the message, and return false for the caller to return.
   bool RefuseCrossing(const Segment& s, const Segment& t)
   {
     this->Message = "Cell " + this->CellOf(s) + " overlaps cell " + this->CellOf(t) +
@@ -359,6 +394,7 @@ private:
       return this->Surface.PointOf(origin) == p ? origin
                                                 : this->Surface.Destination(segment.HalfEdge);
     };
+    // All events at the point, ends as well as starts.
     std::size_t begin = last;
     while (begin > 0 && this->Events[begin - 1].At == p)
     {
@@ -369,9 +405,11 @@ private:
     for (std::size_t i = begin; i < last; ++i)
     {
       const Index other = vertexAt(this->Segments[this->Events[i].Segment]);
+      // Two vertices at one place, as where cells do not share their points.
       coincide = coincide || (vertex != None && other != vertex);
       vertex = other;
     }
+    // Nearly always.
     if (!coincide && this->Passing.empty())
     {
       return;
@@ -383,6 +421,7 @@ private:
     this->Passing.clear();
     if (coincide)
     {
+      // Quadratic, but in the edges at one point, where vertices coincide.
       for (std::size_t i = begin; i < last; ++i)
       {
         for (std::size_t j = begin; j < i; ++j)
@@ -405,6 +444,7 @@ private:
     }
   }
 
+  /** Marks the hole that a region is; the outside needs no mark, as it is never filled. */
   void Touch(Index region)
   {
     if (region != Outside)
@@ -418,6 +458,7 @@ private:
   {
     const Index count = static_cast<Index>(this->Rims.size());
     std::vector<Index>& offsets = this->Result.Offsets;
+    // Count, add up, fill: the rim of each hole first, its islands behind.
     offsets.assign(count + 1, 0);
     for (Index region : this->Regions)
     {
@@ -444,6 +485,7 @@ private:
         this->Result.Loops[next[region]++] = walk;
       }
     }
+    // Islands from the lowest on, so that nothing depends on the order of triangles.
     const IsLowerEdge isLower{ this->Surface };
     for (Index hole = 0; hole < count; ++hole)
     {
@@ -468,6 +510,9 @@ private:
 };
 } // namespace
 
+// The border as a mesh of needles: triangle i has the edge as its first half-edge, and goes back.
+// Only that half-edge has no twin, so the border functions see the border alone. Vertices are
+// numbered anew: only those on the border become points.
 Mesh MakeBorderMesh(const std::vector<BorderEdge>& border, const PointView& points,
   const Progress& progress, std::vector<Index>& ids)
 {
@@ -494,6 +539,7 @@ Mesh MakeBorderMesh(const std::vector<BorderEdge>& border, const PointView& poin
     const Index origin = used.RankOf(border[i].Origin);
     mesh.Triangles.insert(
       mesh.Triangles.end(), { origin, used.RankOf(border[i].Destination), origin });
+    // Any number but Border will do for the other two.
     mesh.Twins.insert(mesh.Twins.end(), { Mesh::Border, 0, 0 });
   }
   return mesh;

@@ -15,6 +15,12 @@
  *      component's lowest vertex bounds the empty region around the component: the outside, or a
  *      hole, in which the component is an island.
  *
+ *     ..............           A line through a surface with one hole. From the left, its border
+ *    :   ........   :          edges lead in (a), out (b), in (c), out (d). Edges that lead in run
+ *   -a--b--------c--d-  line   down, those that lead out run up, as the surface is on their left.
+ *    :   ''''''''   :          Two of one kind in turn: some place is covered twice.
+ *     ''''''''''''''
+ *
  * This proves that no place is covered twice, in the interior either: triangles are
  * counter-clockwise, so the number of triangles over a point is the winding number of the border
  * around it, which pass 3 shows to be 0 or 1.
@@ -36,6 +42,7 @@
 namespace elevation
 {
 
+// Lists with offsets instead of a list of lists: there may be very many holes.
 struct Holes
 {
   /**

@@ -22,7 +22,14 @@ namespace
  */
 constexpr double GapDecay = 2.0;
 
-/** One run; the members carry data between its passes. */
+/**
+ * One run; the members carry data between its passes, which are in the order of Run():
+ * 1. FindRegions() numbers the groups of long triangles.
+ * 2. TraceBorders() walks around each, inside.
+ * 3. FindRims() lists the walks of each region, the rim first.
+ * 4. CollectInnerEdges() keeps points and short edges inside, as those of survey lines.
+ * 5. MeasureGaps() estimates for each point how far the next line is.
+ */
 class RegionFinder
 {
 public:
@@ -49,7 +56,10 @@ public:
     return true;
   }
 
-  /** Of a mesh of borders (MakeBorderMesh), with the regions on the right of their edges. */
+  /**
+   * Of a mesh of borders (MakeBorderMesh), with the regions on the right of their edges. In parts,
+   * a region may lie in several of them; only its border has been brought together.
+   */
   void RunOnBorder(const std::vector<Index>& regionOf, const Progress& progress)
   {
     std::vector<Index>& vertices = this->Result.Walks.Vertices;
@@ -61,6 +71,7 @@ public:
       const std::size_t first = vertices.size();
       std::transform(walks.Begin(walk), walks.End(walk), std::back_inserter(vertices),
         [this](Index h) { return this->Surface.Origin(h); });
+      // All edges of a walk are of one region, so its first edge says which.
       this->EndWalk(first, regionOf[Mesh::Triangle(*walks.Begin(walk))]);
     }
     this->NumberOfRegions = 1 + *std::max_element(regionOf.begin(), regionOf.end());
@@ -91,15 +102,24 @@ private:
     return this->NumberOfRegions > 0;
   }
 
+  /**
+   * The region of a half-edge's triangle, as a hole; None if the triangle is not long, or none is
+   * there.
+   */
   Index RegionAt(Index h) const
   {
     return h == Mesh::Border ? None : this->Result.RegionOf[Mesh::Triangle(h)];
   }
+  /** Whether a half-edge has its region on the left, and something else on the right. */
   bool IsBorder(Index h) const
   {
     return this->RegionAt(h) != None && this->RegionAt(this->Surface.Twin(h)) == None;
   }
-  /** The border that follows a border around the same region. */
+  /**
+   * The border that follows a border around the same region: turning around the destination through
+   * triangles of the region, from edge to edge. Where the region touches itself at a vertex, this
+   * stays in the fan that it came from.
+   */
   Index After(Index h) const
   {
     h = Mesh::Next(h);
@@ -132,6 +152,7 @@ private:
         vertices.push_back(mesh.Origin(h));
         this->OnBorder[mesh.Origin(h)] = 1;
       }
+      // As walks around holes run: the empty place, here the region, on their right.
       std::reverse(vertices.begin() + static_cast<std::ptrdiff_t>(first), vertices.end());
       this->EndWalk(first, this->RegionAt(start) - this->FirstRegion);
     }
@@ -158,6 +179,7 @@ private:
   void StartAtLowest(std::size_t first)
   {
     std::vector<Index>& v = this->Result.Walks.Vertices;
+    // The vertex after a place, around the walk.
     const auto next = [&](std::size_t i) { return v[i + 1 == v.size() ? first : i + 1]; };
     std::size_t lowest = first;
     for (std::size_t i = first + 1; i < v.size(); ++i)
@@ -184,6 +206,7 @@ private:
         ? this->WalkRegions[a] < this->WalkRegions[b]
         : this->IsLowerEdge(u[0], u[1], v[0], v[1]);
     });
+    // Sorted by region, so that one pass over the walks serves all regions.
     std::size_t i = 0;
     for (Index region = 0; region < this->NumberOfRegions; ++region)
     {
@@ -196,6 +219,7 @@ private:
     }
   }
 
+  // From the lower vertex to the higher one; the region counts from 0.
   struct InnerEdge
   {
     Index Region;
@@ -203,6 +227,8 @@ private:
     Index High;
   };
 
+  // Half-edges from the lower to the higher end: one of each edge. An edge with an end inside has
+  // the same region on both sides.
   void CollectInnerEdges(const Progress& progress)
   {
     const Mesh& mesh = this->Surface;
@@ -222,6 +248,7 @@ private:
         isJoined[a] = isJoined[b] = 1;
       }
     }
+    // Points inside without such an edge: entered as an edge to themselves, so that they are kept.
     for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
     {
       const Index a = mesh.Origin(h);
@@ -250,7 +277,10 @@ private:
     }
   }
 
-  /** Only if there are lines. The largest of values does not depend on the order of triangles. */
+  /**
+   * Only if there are lines: other regions do not need gaps, and the stars cost memory. The largest
+   * of values does not depend on the order of triangles.
+   */
   void MeasureGaps(const Progress& progress)
   {
     bool areLines = false;
@@ -278,7 +308,11 @@ private:
     this->SpreadGaps(progress);
   }
 
-  /** Of a line that wavers, many points have flat triangles only: they take the gap from others. */
+  /**
+   * Of a line that wavers, many points have flat triangles only: they take the gap from others,
+   * less GapDecay times the way. From the largest gap on, as in Dijkstra's search for shortest
+   * ways: each point is final when it is taken from the queue.
+   */
   void SpreadGaps(const Progress& progress)
   {
     const Mesh& mesh = this->Surface;
@@ -299,6 +333,7 @@ private:
       ReportStep(progress, steps.Count(), 8 * gaps.size());
       const auto [gap, v] = queue.top();
       queue.pop();
+      // To the neighbours, what is left of the gap after the way there.
       const auto spread = [&, from = gap, p = mesh.PointOf(v)](Index w) {
         const Point2& q = mesh.PointOf(w);
         const double left = from - GapDecay * std::hypot(q.X - p.X, q.Y - p.Y);
@@ -308,9 +343,11 @@ private:
           queue.emplace(left, w);
         }
       };
+      // Otherwise a larger one has arrived since this entry was made.
       if (gap == gaps[v])
       {
         stars.Visit(mesh, v, [&](Index h) {
+          // The apex, too: it is the last neighbour of a fan that ends at the border.
           spread(mesh.Destination(h));
           spread(mesh.Apex(h));
           return true;
@@ -374,6 +411,7 @@ double LargestHeight(const Mesh& mesh, Index triangle)
     const Point2& b = mesh.PointOf(mesh.Destination(h));
     const Point2& c = mesh.PointOf(mesh.Apex(h));
     const double length = std::hypot(b.X - a.X, b.Y - a.Y);
+    // Divided by the length first, so that large coordinates do not overflow.
     height =
       std::max(height, (b.X - a.X) / length * (c.Y - a.Y) - (b.Y - a.Y) / length * (c.X - a.X));
   }
@@ -383,6 +421,7 @@ double LargestHeight(const Mesh& mesh, Index triangle)
 void AddBorderRegions(const std::vector<BorderEdge>& border, const std::vector<Index>& regionOf,
   const PointView& points, Holes& holes, const Progress& progress)
 {
+  // The functions for borders expect the surface on the left, and so the region on the right.
   std::vector<BorderEdge> reversed;
   for (const BorderEdge& edge : border)
   {
@@ -412,7 +451,10 @@ bool OpenLongTriangles(
 
 namespace
 {
-/** Of groups, entries offsets[i] to offsets[i+1] - 1 of some values each, keeps those flagged. */
+/**
+ * Of groups, entries offsets[i] to offsets[i+1] - 1 of some values each, keeps those flagged. For
+ * both kinds of lists in Holes: walks of a hole, inner edges of a region (two values each).
+ */
 void KeepGroups(const std::vector<char>& keep, std::ptrdiff_t valuesPerEntry,
   std::vector<Index>& offsets, std::vector<Index>& values)
 {

@@ -20,6 +20,11 @@
  * the point to itself where there are none. They are sorted by position. The gaps are the
  * distances to the next line.
  *
+ *   o--o--o--o--o    Two survey lines far apart. All triangles between them are long: a region.
+ *   |\ | /|\ | /|    A point of a line with another such line on its other side is inside. The
+ *   | \|/ | \|/ |    short edges along the line are then inner edges, and the way to the next line
+ *   o--o--o--o--o    is the gap.
+ *
  * Regions are in the order of their first triangles. Nothing else depends on the order of points
  * and triangles. Lengths are compared as in EdgeLimit.h.
  *

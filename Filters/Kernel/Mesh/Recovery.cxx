@@ -19,7 +19,11 @@ std::string SegmentName(const Mesh& mesh, const Segment& segment)
   return "The segment from " + NameOf(mesh, segment.A) + " to " + NameOf(mesh, segment.B);
 }
 
-/** One side of a segment: an empty polygon, and the triangles that fill it. */
+/**
+ * One side of a segment: an empty polygon, and the triangles that fill it. They are made and
+ * flipped apart from the mesh, as only they can change: the polygon's edges are constrained while
+ * it is filled, so flips need no look at the mesh's twins.
+ */
 class Cavity
 {
 public:
@@ -39,6 +43,7 @@ public:
     this->Edges.clear();
   }
 
+  /** Makes the triangles, in two steps: some that fill the polygon, then those that are right. */
   void Fill(const Mesh& mesh)
   {
     this->Scan(mesh);
@@ -48,7 +53,9 @@ public:
 private:
   /**
    * Cuts off ears along the polygon. Every corner sees the segment, so the stack and the segment
-   * bound an empty polygon in which every left turn is an ear.
+   * bound an empty polygon in which every left turn is an ear. Linear: each corner is pushed once,
+   * and popped by the triangle that cuts it off. The last corner sees the whole stack on its left,
+   * so the stack ends as the two ends of the segment.
    */
   void Scan(const Mesh& mesh)
   {
@@ -59,6 +66,7 @@ private:
     for (std::size_t i = 1; i < this->Corners.size(); ++i)
     {
       const Index r = this->Corners[i];
+      // Of the half-edge q-r: first the polygon's edge, after an ear the ear's third side.
       Index twin = ~static_cast<Index>(i - 1);
       while (this->Stack.size() > 1)
       {
@@ -78,9 +86,11 @@ private:
       }
       this->Stack.push_back({ r, twin });
     }
+    // The remaining half-edge is the segment itself.
     this->Twins[this->Stack.back().Twin] = ~static_cast<Index>(this->Corners.size() - 1);
   }
 
+  /** Makes two half-edges twins; a polygon's edge has no half-edge of its own. */
   void Connect(Index h, Index twin)
   {
     this->Twins[h] = twin;
@@ -90,7 +100,13 @@ private:
     }
   }
 
-  /** Flips until every edge inside the polygon is locally Delaunay, with ties by the tie rule. */
+  /**
+   * Flips until every edge inside the polygon is locally Delaunay, with ties by the tie rule
+   * [Lawson 1977]. Each flip lowers the surface that the triangles form on a paraboloid, or, for
+   * cocircular points, makes an edge from a lower one; so no edge comes back, and the flips end. An
+   * edge that a flip may have made wrong is a side of the two new triangles: these four are looked
+   * at again.
+   */
   void MakeDelaunay(const Mesh& mesh)
   {
     this->Queue.clear();
@@ -101,6 +117,7 @@ private:
         this->Queue.push_back(static_cast<Index>(h));
       }
     }
+    // No report: most segments cross few edges. The work is counted, so tests see a long one.
     StepCount steps;
     while (!this->Queue.empty())
     {
@@ -128,6 +145,10 @@ private:
     }
   }
 
+  /**
+   * Whether the edge of the twins a and b is to be flipped. Both triangles lie in the polygon, but
+   * their quadrilateral need not be convex: then neither apex is in the other's circle.
+   */
   bool IsToFlip(const Mesh& mesh, Index a, Index b) const
   {
     return ShouldFlip(mesh.PointOf(this->Triangles[a]), mesh.PointOf(this->Triangles[b]),
@@ -144,7 +165,18 @@ private:
   std::vector<Index> Queue;
 };
 
-/** The passes for one segment, and the memory they reuse. */
+/**
+ * The passes for one segment, and the memory they reuse: between two vertices on it, FindCrossed()
+ * collects what it crosses, Cavity::Fill() makes the triangles of each side, and WriteBack() puts
+ * them into the slots of those taken out.
+ *
+ *          l-------m           The segment a-b crosses r-l and r-m, each from its right to its
+ *         / \      |\          left. The three triangles leave a polygon on either side, with the
+ *        a---\-----|-b         segment as its last edge: a l m b on the left, a r b on the right.
+ *         `.  \    |/          Their edges keep the twins that they have outside.
+ *           `. \  ,'
+ *             `-r'
+ */
 class Recovery
 {
 public:
@@ -170,8 +202,10 @@ public:
     }
     bool missing = false;
     Index vertex = segment.A;
+    // In stretches between vertices that lie exactly on the segment.
     while (vertex != segment.B)
     {
+      // Either there is an edge on the way already, or the next stretch is dug out and filled.
       const SegmentStep step = StepAlong(this->Surface, this->Stars, vertex, segment.B);
       if (step.HalfEdge != None)
       {
@@ -182,6 +216,7 @@ public:
       missing = true;
       vertex = this->FindCrossed(vertex, segment);
       this->Left.Fill(this->Surface);
+      // Both sides are separate: the segment stays between them.
       this->Right.Fill(this->Surface);
       this->WriteBack();
       if (replaced)
@@ -193,6 +228,7 @@ public:
   }
 
 private:
+  /** Flags both half-edges of an edge. */
   void Constrain(Index h)
   {
     this->Constrained[h] = 1;
@@ -202,6 +238,7 @@ private:
     }
   }
 
+  /** @throws Error if a segment crosses an edge that must stay */
   void CheckIsFree(Index crossed, const Segment& segment) const
   {
     if (this->Constrained[crossed])
@@ -228,11 +265,14 @@ private:
       this->ThrowLeaves(from, segment);
     }
 
+    // With k crossed edges, k + 1 triangles are taken out. The polygons have k + 1 corners between
+    // the ends of the segment, and so as many triangles.
     this->Slots.assign(1, Mesh::Triangle(crossed));
     this->Left.Clear();
     this->Right.Clear();
     this->Left.Corners.push_back(from);
     this->Right.Corners.push_back(from);
+    // The sides of the first triangle, from the segment's start to the ends of the crossed edge.
     this->Left.Edges.push_back(Mesh::Next(crossed));
     this->Right.Edges.push_back(Mesh::Previous(crossed));
     // The crossed edge always runs from the right of the segment to its left.
@@ -245,6 +285,8 @@ private:
         this->ThrowLeaves(from, segment);
       }
       this->Slots.push_back(Mesh::Triangle(beyond));
+      // Both ends of the crossed edge are entered. The next crossed edge shares one of them, which
+      // comes again and is taken back.
       this->Left.Corners.push_back(mesh.Destination(crossed));
       this->Right.Corners.push_back(mesh.Origin(crossed));
       const Index apex = mesh.Apex(beyond);
@@ -253,12 +295,15 @@ private:
       {
         this->Right.Corners.pop_back();
         this->Left.Edges.push_back(Mesh::Previous(beyond));
+        // beyond runs from the left end to the right one; the segment leaves its triangle between
+        // the right end and the apex.
         crossed = Mesh::Next(beyond);
       }
       else if (side == Negative)
       {
         this->Left.Corners.pop_back();
         this->Right.Edges.push_back(Mesh::Next(beyond));
+        // Between the apex and the left end.
         crossed = Mesh::Previous(beyond);
       }
       else
@@ -279,6 +324,8 @@ private:
     }
   }
 
+  // Half-edges change their ids, so everything that names one is renewed: twins on both sides of
+  // the polygons, constraints, and stars.
   void WriteBack()
   {
     Mesh& mesh = this->Surface;
@@ -289,6 +336,7 @@ private:
     {
       for (const Index h : side->Edges)
       {
+        // A border has no twin, but an id that its vertex's star knows.
         this->Old.push_back({ h, mesh.Twin(h), this->Constrained[h], None });
       }
     }
@@ -304,6 +352,7 @@ private:
       const Index size = static_cast<Index>(side->Triangles.size());
       for (Index h = 0; h < size; ++h)
       {
+        // The triangles of a side have consecutive slots of the sorted ones.
         const Index here = 3 * first[h / 3] + h % 3;
         mesh.Triangles[here] = side->Triangles[h];
         this->Constrained[here] = 0;
@@ -312,10 +361,12 @@ private:
         {
           mesh.Twins[here] = 3 * first[twin / 3] + twin % 3;
         }
+        // An edge of the polygon: connected below, when the new ids of all are known.
         else if (static_cast<std::size_t>(~twin) < side->Edges.size())
         {
           this->Old[firstOld + static_cast<std::size_t>(~twin)].After = here;
         }
+        // The last edge of each polygon is the segment: the two become twins.
         else if (alongSegment == None)
         {
           alongSegment = here;
@@ -340,6 +391,10 @@ private:
     }
   }
 
+  /**
+   * Gives the polygons' edges their new ids: in their twins, in Constrained, and in the stars of
+   * vertices where they are borders.
+   */
   void ReconnectEdges()
   {
     Mesh& mesh = this->Surface;
@@ -353,6 +408,7 @@ private:
       {
         const auto other = std::lower_bound(this->Old.begin(), this->Old.end(), twin,
           [](const OldEdge& p, Index h) { return p.Before < h; });
+        // The twin was taken out as well: it is known by its new id.
         if (other != this->Old.end() && other->Before == twin)
         {
           twin = other->After;
@@ -385,6 +441,7 @@ private:
       (from == segment.A ? "." : " after " + NameOf(this->Surface, from) + "."));
   }
 
+  // An edge of a polygon before and after: its half-edge, the twin, whether it must stay.
   struct OldEdge
   {
     Index Before;
@@ -405,6 +462,7 @@ private:
 
 } // namespace
 
+// Only one edge of a star can lie on a segment, unless the mesh overlaps itself.
 SegmentStep StepAlong(const Mesh& mesh, VertexStars& stars, Index from, Index to)
 {
   const Ends ends{ { mesh.PointOf(from), mesh.PointOf(to) } };
@@ -429,6 +487,8 @@ SegmentStep StepAlong(const Mesh& mesh, VertexStars& stars, Index from, Index to
 
 Index FirstCrossed(const Mesh& mesh, VertexStars& stars, Index from, Index to)
 {
+  // The triangle at a that the segment enters has its next corner on the right and the last on the
+  // left.
   const Point2 &a = mesh.PointOf(from), &b = mesh.PointOf(to);
   Index crossed = None;
   stars.VisitToward(mesh, from, to, [&](Index h) {

@@ -46,7 +46,8 @@ struct Segment
 
 /**
  * Whether the edge from a to b of two triangles with the apexes p and q is not locally Delaunay; of
- * cocircular points, the lowest is on all edges between them.
+ * cocircular points, the lowest is on all edges between them. Both this and Validate's TieRule
+ * state the tie rule of Triangulate.h for one edge.
  */
 inline bool ShouldFlip(const Point2& a, const Point2& b, const Point2& p, const Point2& q)
 {

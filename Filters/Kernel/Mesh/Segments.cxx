@@ -22,6 +22,7 @@ namespace
 class CrossingSweep
 {
 public:
+  // A segment of no length crosses nothing.
   explicit CrossingSweep(const std::vector<Ends>& segments)
   {
     for (const Ends& s : segments)
@@ -33,6 +34,7 @@ public:
     }
   }
 
+  /** Runs the sweep, and ends at the first crossing. */
   bool FindsCrossing(const Progress& progress)
   {
     std::vector<Ends>& all = this->Segments;
@@ -42,6 +44,7 @@ public:
         return s[0] != t[0] ? IsLower(s[0], t[0]) : IsLower(s[1], t[1]);
       },
       progress.Between(0.0, 0.3));
+    // The order needs a position for each on the sweep line; equal segments would have the same.
     all.erase(std::unique(all.begin(), all.end()), all.end());
     std::vector<Index> byEnd(all.size());
     std::iota(byEnd.begin(), byEnd.end(), 0);
@@ -67,6 +70,7 @@ public:
       for (; ending != byEnd.end() && (i == all.size() || !IsLower(all[i][0], all[*ending][1]));
            ++ending)
       {
+        // Until the first crossing the set is in order; from there on this function has returned.
         const auto place = places[*ending];
         if (isCrossed(before(place), std::next(place)))
         {
@@ -100,12 +104,17 @@ private:
 };
 
 // Coordinates modulo a prime. Sums and products are exact, so that what depends on a line alone is
-// equal for all segments on it.
+// equal for all segments on it. For JoinOverlaps(), which needs to find the pieces on one line
+// among all: by a hash in n log n, where comparing pairs would be quadratic. A wrong match is
+// caught by exact orientations. A missed one is possible only if the prime divides a difference of
+// coordinates.
 constexpr std::uint64_t Prime = 0x7FFFFFFF; // 2^31 - 1
 
+/** A coordinate modulo the prime: exact, also for fractions, as 2 has an inverse. */
 std::uint64_t RemainderOf(double x)
 {
   int exponent = 0;
+  // A double is an integer of 53 bits times a power of two, and 2^31 = 1 modulo 2^31 - 1.
   const double whole = std::ldexp(std::frexp(std::fabs(x), &exponent), 53);
   // 2^31 is 1 modulo the prime, so powers of two repeat.
   const int power = ((exponent - 53) % 31 + 31) % 31;
@@ -118,6 +127,7 @@ std::uint64_t LineHash(const Point2& a, const Point2& b)
 {
   const std::uint64_t x = RemainderOf(a.X), y = RemainderOf(a.Y);
   std::uint64_t power = (RemainderOf(b.X) + Prime - x) % Prime;
+  // A vertical line, by its x. Prime is no remainder, so no slope is mistaken for it.
   if (power == 0)
   {
     return Prime << 32 | x;
@@ -132,6 +142,7 @@ std::uint64_t LineHash(const Point2& a, const Point2& b)
   return slope << 32 | (y + Prime - slope * x % Prime) % Prime;
 }
 
+// A piece with the hash of its line, to be sorted by it.
 struct LinePiece
 {
   std::uint64_t Line;
@@ -141,6 +152,10 @@ struct LinePiece
 /**
  * Replaces pieces on one line, which overlap one after another and are sorted by their lower ends,
  * by pieces from vertex to vertex.
+ *
+ *   A-----------B          Three pieces, drawn apart. Vertices in their order: A C E F B D. Pieces
+ *      C-------------D     from one to the next: A-C stands for one segment, C-E for two, E-F for
+ *         E--F             three, F-B for two, B-D for one. At C, E, F and B some run through.
  */
 void JoinRun(const LinePiece* begin, const LinePiece* end, const std::vector<Point2>& places,
   std::vector<SegmentPiece>& joined, std::vector<Passage>& passages, WorkReporter& work)
@@ -163,6 +178,8 @@ void JoinRun(const LinePiece* begin, const LinePiece* end, const std::vector<Poi
   std::sort(vertices.begin(), vertices.end(), isLower);
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
 
+  // Sets with repeats: pieces end in any order, and the smallest rank and the largest units of
+  // those that remain are wanted at each vertex.
   // Of the pieces that go on from a vertex:
   std::multiset<Index> ranks;
   std::multiset<double> unitsX, unitsY;
@@ -179,6 +196,7 @@ void JoinRun(const LinePiece* begin, const LinePiece* end, const std::vector<Poi
       unitsX.erase(unitsX.find(ending->Unit.X));
       unitsY.erase(unitsY.find(ending->Unit.Y));
     }
+    // Some pieces began before this vertex and go on: they run straight through it.
     if (count > 0)
     {
       passages.push_back({ v, vertices.back(), count });
@@ -190,6 +208,7 @@ void JoinRun(const LinePiece* begin, const LinePiece* end, const std::vector<Poi
       unitsX.insert(begin->Piece.Unit.X);
       unitsY.insert(begin->Piece.Unit.Y);
     }
+    // No gap: the pieces of a run overlap, so between its first and last vertex one always goes on.
     joined.push_back({ v, vertices[i + 1], *ranks.begin(), count,
       { *unitsX.rbegin(), *unitsY.rbegin() } });
   }
@@ -220,6 +239,8 @@ bool Cross(const Ends& s, const Ends& t)
 void VisitCrossings(const std::vector<Ends>& segments, const CellGrid& grid,
   const Progress& progress, const std::function<void(std::size_t, std::size_t)>& visit)
 {
+  // Crossings are few where lines are right. Long lines side by side share many cells without
+  // crossing, and only for them is the sweep worth its n log n.
   const std::size_t many = 64 * segments.size();
   bool isSwept = false;
   WorkReporter work(progress);
@@ -271,6 +292,7 @@ std::vector<Passage> JoinOverlaps(
   pieces.clear();
   for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end)
   {
+    // A run: pieces on one line, each beginning below the highest end of those before.
     work.Step(begin, entries.size());
     const Point2 &a = places[entries[begin].Piece.A], &b = places[entries[begin].Piece.B];
     Point2 top = b;

@@ -25,6 +25,8 @@ bool CopyPoints(
   places.resize(points.Count);
   std::atomic<bool> areFinite{ true };
   const auto copy = [&](Index, Index begin, Index end) {
+    // One test for a range, which the compiler turns into wide instructions; which point it is
+    // matters only for a triangle that has it, see Turn().
     double sum = 0.0; // of values times 0: 0, or NaN
     for (Index i = begin; i < end; ++i)
     {
@@ -40,7 +42,11 @@ bool CopyPoints(
   return areFinite;
 }
 
-/** Makes a triangle, whose corners exist, counter-clockwise. @throws Error */
+/**
+ * Makes a triangle, whose corners exist, counter-clockwise. Points without triangles may have any
+ * coordinates, so only those of corners are refused.
+ * @throws Error
+ */
 void Turn(const TriangleList& list, Index t, bool areFinite, Mesh& mesh)
 {
   const auto name = [&]() { return std::to_string(static_cast<std::int64_t>(list.FirstCell) + t); };
@@ -88,7 +94,8 @@ Mesh MeshOf(const TriangleList& list, int threads, const Progress& progress)
   const bool areFinite = CopyPoints(list.Points, threads, progress.Between(0.0, 0.2), mesh.Points);
   mesh.Triangles.resize(3 * static_cast<std::size_t>(list.Count));
   const auto read = [&](Index, Index begin, Index end) {
-    // Few at a time, so that their points can be prefetched.
+    // Few at a time, so that their points can be prefetched. Two passes over each group: the first
+    // checks ids and prefetches, the second computes.
     constexpr Index few = 128;
     for (; begin < end; begin += few)
     {
@@ -119,6 +126,8 @@ Mesh SubMesh(
 {
   Mesh mesh;
   const Index count = static_cast<Index>(triangles.size());
+  // A set of bits, and ranks by counting them: points keep their order, and vertices are numbered
+  // without sorting.
   IdSet corners(list.Points.Count);
   ForEachStretch(count, progress.Between(0.0, 0.4), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)

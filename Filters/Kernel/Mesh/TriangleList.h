@@ -15,7 +15,10 @@
 namespace elevation
 {
 
-/** Triangles in the layout of a cell array, and their points; not owned. */
+/**
+ * Triangles in the layout of a cell array, and their points; not owned. What filters have before a
+ * mesh exists. TriangleSweep reads it in place; MeshOf() copies it.
+ */
 struct TriangleList
 {
   const Index* Corners = nullptr; ///< three a triangle
@@ -24,6 +27,7 @@ struct TriangleList
   Index FirstCell = 0; ///< messages name triangle t as cell FirstCell + t
 
   const Index* CornersOf(Index t) const { return this->Corners + 3 * static_cast<std::size_t>(t); }
+  /** Points come in any order, so loops ask for them some triangles ahead. */
   void PrefetchPoint(Index vertex) const
   {
     const std::size_t k = 3 * static_cast<std::size_t>(vertex);
@@ -35,6 +39,7 @@ struct TriangleList
     Point2 a = this->Points.At(this->CornersOf(t)[0]);
     Point2 b = this->Points.At(this->CornersOf(t)[1]);
     Point2 c = this->Points.At(this->CornersOf(t)[2]);
+    // The lowest corner first: rounding depends on the order of operands.
     while (IsLower(b, a) || IsLower(c, a))
     {
       const Point2 first = a;

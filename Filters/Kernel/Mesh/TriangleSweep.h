@@ -10,6 +10,11 @@
  * border. Each thread sweeps over a range of triangles; triangles with a vertex that is also in
  * another range are deferred to the end.
  *
+ *       d---c        Triangles come by their lowest vertex, here p: b c, c d and d e over p. Edges
+ *      / \ / \       p-c and p-d lie inside the fan: they are matched without any memory. Of b-c,
+ *     e---p---b      c-d and d-e the half-edges stay open until the triangle above comes. Those of
+ *                    p-b and e-p are matched with half-edges that triangles below have left open.
+ *
  * Cost: linear. The triangles should come in the order of a sweep over the plane, as those of this
  * kernel do: then the open half-edges fit into the records of their vertices. Where too many do
  * not, the sweep is given up. Memory: one Visitor::Vertex a point, and a bit a point for each
@@ -32,7 +37,7 @@
 namespace elevation
 {
 
-/** What the sweep keeps of a vertex. */
+/** What the sweep keeps of a vertex; a visitor's Vertex adds its own. */
 struct SweptVertex
 {
   Point2 Place{ 0.0, 0.0 };
@@ -58,7 +63,8 @@ struct SweptEdge
 /**
  * The half-edges whose twins have not come yet. Each is stored at the lower end of its edge, which
  * has room for one that leads up and one that leads down: no more are open at a time when triangles
- * come by their lowest vertices. Others go to a hash set.
+ * come by their lowest vertices. Others go to a hash set. "Up" and "down" are by the order of
+ * points, not by ids: ids may be in any order.
  */
 template <typename Vertex>
 class OpenEdges
@@ -74,7 +80,8 @@ public:
   /** Matches a half-edge with its open twin; without one, leaves it open. */
   void Add(const SweptEdge& edge)
   {
-    // The fast path, as most stay open. A half-edge that is open already takes the slow one.
+    // The fast path, as most stay open. A half-edge that is open already takes the slow one. Three
+    // conditions in one test without branches: room, no twin here, and none in the set.
     Vertex& at = this->Vertices[edge.Lower];
     if ((at.Upper[edge.IsDown] == None) & (at.Upper[1 - edge.IsDown] != edge.Upper) &
       (at.NumberOfOthers == 0))
@@ -111,6 +118,7 @@ public:
       twin = None;
       return true;
     }
+    // The count keeps most vertices away from the hash set.
     if (at.NumberOfOthers == 0 || this->Others.erase(KeyOf(edge, 1 - edge.IsDown)) == 0)
     {
       return false;
@@ -119,6 +127,7 @@ public:
     return true;
   }
 
+  /** Leaves a half-edge open: at the vertex if there is room, else in the set. */
   void Open(const SweptEdge& edge)
   {
     Vertex& at = this->Vertices[edge.Lower];
@@ -128,6 +137,7 @@ public:
       open = edge.Upper;
       return;
     }
+    // The same half-edge twice is an edge with two triangles on one side: no surface.
     const bool isNew = open != edge.Upper && this->Others.insert(KeyOf(edge, edge.IsDown)).second;
     ++at.NumberOfOthers;
     this->Failed = this->Failed || !isNew || this->Others.size() > this->Most;
@@ -147,6 +157,7 @@ public:
   void AddStoredAt(Index vertex, std::vector<BorderEdge>& border) const
   {
     const Vertex& at = this->Vertices[vertex];
+    // None is -1, all bits set: the result is None only if both are.
     if ((at.Upper[0] & at.Upper[1]) != None)
     {
       if (at.Upper[0] != None)
@@ -169,6 +180,7 @@ public:
   }
 
 private:
+  /** Origin and destination in one number; isDown is passed, as the twin's key is wanted, too. */
   static std::uint64_t KeyOf(const SweptEdge& edge, int isDown)
   {
     return isDown ? std::uint64_t(edge.Upper) << 32 | std::uint32_t(edge.Lower)
@@ -194,9 +206,11 @@ inline bool IsExactlyCounterClockwise(Point2 a, Point2 b, Point2 c)
   return Orientation(a, b, c) == Positive;
 }
 
+/** Whether a triangle is counter-clockwise with finite corners. */
 inline bool IsCounterClockwise(Point2 a, Point2 b, Point2 c)
 {
-  // The filter of Orientation(), which coordinates that are not finite never pass.
+  // The filter of Orientation(), which coordinates that are not finite never pass. NaN fails every
+  // comparison, and so does infinity less infinity.
   const double left = (a.X - c.X) * (b.Y - c.Y);
   const double right = (a.Y - c.Y) * (b.X - c.X);
   return left - right > 1e-15 * (std::fabs(left) + std::fabs(right)) + 1e-290 ||
@@ -216,6 +230,7 @@ class TriangleSweep
 public:
   using Vertex = typename Visitor::Vertex;
 
+  /** @param threads  0: all there are; few triangles are swept on fewer */
   TriangleSweep(const TriangleList& list, int threads)
     : List(list)
     , Threads(ResolveNumberOfThreads(threads))
@@ -224,6 +239,7 @@ public:
   {
     static_assert(std::is_trivially_destructible<Vertex>::value, "nobody destroys them");
     this->Memory.Resize(static_cast<std::size_t>(list.Points.Count));
+    // Not constructed here, but by Read() on all threads: the first write to a page is what costs.
     this->Vertices = reinterpret_cast<Vertex*>(this->Memory.data());
   }
 
@@ -243,6 +259,8 @@ public:
         return static_cast<Index>(static_cast<std::int64_t>(this->List.Count) * k / number);
       };
       this->Ranges.emplace_back(Range{ at(i), at(i + 1), at(i),
+        // So many open half-edges that do not fit into vertices: with more, the order of triangles
+        // is not that of a sweep, and the hash set would take too long.
         OpenEdges<Vertex>(this->Vertices, 1024 + static_cast<std::size_t>(this->List.Count) / 64),
         visitor, IdSet(number > 1 ? this->List.Points.Count : 0), {} });
     }
@@ -251,6 +269,7 @@ public:
       return false;
     }
     bool isRight = true;
+    // Several ranges: first each marks its corners, then corners of two ranges are found.
     if (number > 1)
     {
       isRight = this->InRanges(
@@ -324,6 +343,7 @@ public:
   }
 
 private:
+  // What one thread works on; no vertex is written by two, as triangles with shared ones wait.
   struct alignas(64) Range // against false sharing
   {
     Index Begin, End, Next;
@@ -332,6 +352,7 @@ private:
     IdSet Corners;
     std::vector<Index> Deferred; ///< triangles with a vertex of another range
   };
+  // Plain bytes of a vertex: Buffer holds plain values only, and does not initialise them.
   struct alignas(Vertex) Storage
   {
     unsigned char Bytes[sizeof(Vertex)];
@@ -394,6 +415,7 @@ private:
   template <typename GoOn>
   bool InRanges(const Progress& progress, GoOn&& goOn)
   {
+    // The same ranges are walked through twice: by Mark(), then by Sweep().
     for (Range& range : this->Ranges)
     {
       range.Next = range.Begin;
@@ -427,6 +449,8 @@ private:
   /** Whether the points of corners [begin, end) exist. */
   bool Exist(std::size_t begin, std::size_t end) const
   {
+    // Unsigned, a negative id is large, and most - id wraps around for an id beyond: bit 31 shows
+    // both.
     const std::uint32_t most = static_cast<std::uint32_t>(this->List.Points.Count - 1);
     std::uint32_t sign = 0; // of ids below 0 or beyond the last
     for (std::size_t h = begin; h < end; ++h)
@@ -460,6 +484,7 @@ private:
     const std::size_t count = 3 * static_cast<std::size_t>(this->List.Count);
     const Index begin = range.Next;
     const Index end = range.Next += std::min(AtOnce, range.End - begin);
+    // Corners are checked before anything is read by them, also those that are only prefetched.
     const std::size_t known = std::min(count, 3 * static_cast<std::size_t>(end) + ahead + 3);
     const std::size_t reach = known < count ? ahead : 0;
     if (!this->Exist(3 * static_cast<std::size_t>(begin), known))
@@ -489,6 +514,7 @@ private:
     const Index* ids = this->List.CornersOf(begin);
     const Index* const lastIds = this->List.CornersOf(end);
     Index t = begin;
+    // One fan after another: the triangles that follow each other around a first corner.
     while (ids < lastIds)
     {
       const Index first = ids[0];
@@ -504,6 +530,8 @@ private:
       Vertex& r = vertices[right];
       visitor.Begin(p, r);
       Index last = right;
+      // The upper edges of the fan; its inner edges cancel out, as consecutive triangles share
+      // them.
       Vertex* b = &r;
       do
       {
@@ -519,6 +547,7 @@ private:
         ids += 3;
         ++t;
       } while (ids < lastIds && ids[0] == first && ids[1] == last && isOurs(ids[2]));
+      // Mostly both ends of the fan have open twins from the triangles below.
       if (!edges.MatchBoth(p, right, last))
       {
         // First match both: a match makes room for the other one to stay open.
@@ -537,6 +566,7 @@ private:
   /** Sweeps over the deferred triangles of all ranges. @return whether all are valid */
   bool SweepDeferred(const Progress& progress)
   {
+    // On one thread, after the others have ended: now any vertex may be written.
     Range& all = this->Ranges[0];
     std::vector<Index> triangles;
     for (Range& range : this->Ranges)
@@ -559,6 +589,7 @@ private:
       }
       const Index first = triangles[i];
       Index end = first;
+      // Consecutive numbers in one go, so that fans stay whole.
       for (; i < triangles.size() && triangles[i] == end && end - first < AtOnce; ++i)
       {
         ++end;

@@ -15,6 +15,10 @@ namespace elevation
 namespace
 {
 
+/**
+ * Written apart from the code that it checks, as far as possible: predicates, twins and the sweep
+ * of Holes.cxx are shared, everything else is stated anew from the rules.
+ */
 class Checker
 {
 public:
@@ -56,6 +60,7 @@ public:
   }
 
 private:
+  /** Adds a finding, unless there are enough: a broken mesh may have one at every edge. */
   void Add(Rule rule, Index where, const std::string& message)
   {
     if (this->Findings.size() < this->Options.MaximumFindings)
@@ -64,6 +69,7 @@ private:
     }
   }
 
+  /** Ids, then Orientation: no later check may read beyond the points. */
   void CheckTriangles()
   {
     const auto& ids = this->Checked.Triangles;
@@ -94,6 +100,7 @@ private:
     }
   }
 
+  /** By connecting the copy, which throws at an edge that is not manifold. */
   void CheckManifold()
   {
     this->Checked.Twins.clear();
@@ -120,6 +127,7 @@ private:
       const Index twin = this->Checked.Twin(h);
       if (twin < h || (this->Options.Constrained && (*this->Options.Constrained)[h]))
       {
+        // Constrained edges are exempt from both rules.
         continue; // a border, or seen from the other side
       }
       const Point2& a = this->Checked.PointOf(this->Checked.Origin(h));
@@ -135,6 +143,7 @@ private:
       }
       else if (side == Zero)
       {
+        // An edge of the fan of the lowest of the four points has this point as an end.
         const Point2& lowEnd = IsLower(a, b) ? a : b;
         const Point2& lowApex = IsLower(c, d) ? c : d;
         if (!IsLower(lowEnd, lowApex))
@@ -146,6 +155,7 @@ private:
     }
   }
 
+  /** One loop that never turns inwards, and goes around once. */
   void CheckHull()
   {
     if (this->Checked.NumberOfTriangles() == 0)
@@ -168,11 +178,14 @@ private:
       const Point2& before = this->Checked.PointOf(vertex(i));
       const Point2& here = this->Checked.PointOf(vertex(i + 1));
       const Point2& after = this->Checked.PointOf(vertex(i + 2));
+      // Straight is right: points on the hull's edges are vertices.
       if (Orientation(before, here, after) == Negative)
       {
         this->Add(Rule::Hull, vertex(i + 1),
           "the border turns inwards at point " + std::to_string(vertex(i + 1)));
       }
+      // Left turns alone would allow a loop that winds around twice; such a loop has two lowest
+      // points.
       lowestVertices += IsLower(here, before) && IsLower(here, after);
     }
     if (lowestVertices != 1)
@@ -226,6 +239,7 @@ std::vector<Finding> Validate(const Mesh& mesh, const ValidateOptions& options)
 
 namespace
 {
+// 16 roundoffs cover the operations below.
 constexpr long double LongUnit = 16.0L * std::numeric_limits<long double>::epsilon();
 // Some needles need more digits than long double has. This takes twenty times as long.
 #ifdef __SIZEOF_FLOAT128__
@@ -288,6 +302,8 @@ bool IsWithin(double most, Real unit, const PointView& points, const Index* corn
     whole += area[k];
     wholeSize += areaSize[k];
   }
+  // At least so large is the area, so the quotient is an upper bound; no bound for a triangle
+  // without area.
   const Real least = whole - unit * wholeSize;
   return least > 0.0 && (size(sum) + unit * sumSize) / least <= most;
 }
@@ -304,7 +320,10 @@ std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points,
     const Index* const c = cornersOf(static_cast<Index>(t));
     return std::array<Point2, 3>{ mesh.PointOf(c[0]), mesh.PointOf(c[1]), mesh.PointOf(c[2]) };
   });
-  /** Whether a point is on the left of an edge, or at most so far to its right. */
+  /**
+   * Whether a point is on the left of an edge, or at most so far to its right. Exact for the
+   * triangles that cover a point; a distance only beside the mesh.
+   */
   const auto isLeftOf = [&mesh](Index from, Index to, const Point2& p, double by) {
     const Point2 a = mesh.PointOf(from), b = mesh.PointOf(to);
     const long double x = b.X - a.X, y = b.Y - a.Y;
@@ -319,12 +338,15 @@ std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points,
     {
       continue;
     }
+    // Whether any triangle covers the point, and whether it is near one of those that do.
     bool isCovered = false, isNear = false;
     const auto look = [&](Index t, double by) {
       const Index* const c = cornersOf(t);
       if (isLeftOf(c[0], c[1], p, by) && isLeftOf(c[1], c[2], p, by) && isLeftOf(c[2], c[0], p, by))
       {
         isCovered = true;
+        // Of the triangles that cover the point, also of two at an edge, one that is near is
+        // enough.
         isNear = isNear || IsWithin(most, LongUnit, points, c, point) ||
           IsWithin(most, WidestUnit, points, c, point);
         for (int k = 0; k < 3 && !isNear; ++k)
@@ -337,6 +359,7 @@ std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points,
     };
     grid.Visit(p, [&](Index t) { look(t, 0.0); });
     const bool isBeside = !isCovered && besideBy > 0.0;
+    // Few points are beside the mesh, so all triangles are looked at.
     for (Index t = 0; isBeside && t < mesh.NumberOfTriangles(); ++t)
     {
       look(t, besideBy);

@@ -29,6 +29,7 @@
 namespace elevation
 {
 
+/** As in the list above. */
 enum class Rule
 {
   Ids,
@@ -42,6 +43,7 @@ enum class Rule
   Distance
 };
 
+/** One breach of a rule. */
 struct Finding
 {
   Rule Broken;

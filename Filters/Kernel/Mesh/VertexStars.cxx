@@ -13,6 +13,8 @@ VertexStars::VertexStars(const Mesh& mesh, const Progress& progress)
 {
   // From the last half-edge to the first, so that the first one is kept.
   const Index count = mesh.NumberOfHalfEdges();
+  // Few, and wanted by increasing id: the first of a vertex becomes First, the others are of
+  // pinches.
   std::vector<Index> borders;
   ForEachStretch(count, progress, [&](Index begin, Index end) {
     for (Index h = count - 1 - begin; h > count - 1 - end; --h)
@@ -39,6 +41,7 @@ VertexStars::VertexStars(const Mesh& mesh, const Progress& progress)
   }
 }
 
+// The new vertex enters, and the old destination may have been known by the half-edge that moved.
 void VertexStars::ReplaceCut(const Mesh& mesh, Index after, Index before)
 {
   this->First.resize(mesh.Points.size(), None);
@@ -69,6 +72,9 @@ void VertexStars::ReplaceBorder(Index vertex, Index before, Index after)
   }
 }
 
+// A hub's edges are sorted by direction once, and only sorted anew when too many have changed: the
+// segments of a fan of lines, which all end in one vertex, would else each look at all of its
+// edges.
 Index VertexStars::Toward(const Mesh& mesh, Index from, Index to)
 {
   const Point2& a = mesh.PointOf(from);
@@ -77,7 +83,8 @@ Index VertexStars::Toward(const Mesh& mesh, Index from, Index to)
   {
     return None;
   }
-  // Searches counter-clockwise from a half-edge.
+  // Searches counter-clockwise, from a half-edge a little before the direction to the triangle in
+  // which it lies.
   const auto look = [&](Index first, Index most) {
     Sign side = Orientation(a, b, mesh.PointOf(mesh.Destination(first)));
     Index h = first;
@@ -94,11 +101,15 @@ Index VertexStars::Toward(const Mesh& mesh, Index from, Index to)
     return None;
   };
   std::vector<Spoke>& spokes = this->Hubs[from];
+  // By direction from +x counter-clockwise: first the half of the plane above a (in the order of
+  // points), then the other one; within a half, by orientation.
   const auto isBefore = [&](const Spoke& s, const Spoke& t) {
     const Point2 &p = mesh.PointOf(s.Vertex), &q = mesh.PointOf(t.Vertex);
     const bool isUp = IsLower(a, p);
     return isUp != IsLower(a, q) ? isUp : Orientation(a, p, q) == Positive;
   };
+  // The last spoke before the direction whose half-edge still leaves this vertex. It may lead
+  // elsewhere by now: then the look from there fails or takes longer, but finds nothing wrong.
   const auto lookFromSpoke = [&](Index most) {
     auto spoke = std::upper_bound(spokes.begin(), spokes.end(), Spoke{ to, None }, isBefore);
     for (Index tried = 0; tried < Few && !spokes.empty(); ++tried)
@@ -120,6 +131,7 @@ Index VertexStars::Toward(const Mesh& mesh, Index from, Index to)
       spokes.push_back({ mesh.Destination(h), h });
       return true;
     });
+    // The fan is in cyclic order already: turning it to its first spoke from +x sorts it.
     std::rotate(
       spokes.begin(), std::is_sorted_until(spokes.begin(), spokes.end(), isBefore), spokes.end());
     found = lookFromSpoke(mesh.NumberOfHalfEdges());

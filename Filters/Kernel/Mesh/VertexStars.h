@@ -21,6 +21,10 @@
 namespace elevation
 {
 
+/**
+ * The stars of all vertices of a mesh: one half-edge for each vertex, from which the mesh leads on.
+ * Functions take the mesh as an argument, since Recovery and Trim change it while the stars follow.
+ */
 class VertexStars
 {
 public:
@@ -88,7 +92,10 @@ public:
     });
   }
 
-  /** Enters half-edge h at its origin, in place of one that may no longer exist. */
+  /**
+   * Enters half-edge h at its origin, in place of one that may no longer exist. Recovery calls this
+   * for every half-edge of the triangles that it has written.
+   */
   void Replace(const Mesh& mesh, Index h)
   {
     Index& first = this->First[mesh.Origin(h)];
@@ -108,7 +115,15 @@ public:
   /** Changes the id of a border that leaves the vertex from @a before to @a after. */
   void ReplaceBorder(Index vertex, Index before, Index after);
 
-  /** Visits one fan, from its first half-edge on or once around. @return whether all of it */
+  /**
+   * Visits one fan, from its first half-edge on or once around.
+   *
+   *    w   u      h is v-u. The half-edge before it in its triangle is w-v, whose twin v-w is
+   *     \ /       the next one that leaves v, counter-clockwise. Where it has none, v-w is the
+   *      v        border that ends the fan.
+   *
+   * @return whether all of it
+   */
   template <typename Visitor>
   static bool VisitFan(const Mesh& mesh, Index first, Visitor&& visit)
   {
@@ -130,7 +145,11 @@ private:
   /** The half-edge that VisitToward() looks for; None if not found. */
   Index Toward(const Mesh& mesh, Index from, Index to);
 
-  /** An edge of a vertex when its star was sorted; the half-edge may no longer exist. */
+  /**
+   * An edge of a vertex when its star was sorted; the half-edge may no longer exist. The vertex is
+   * kept, as its position gives the direction in which the star was sorted, whatever the half-edge
+   * has become since.
+   */
   struct Spoke
   {
     Index Vertex; ///< at its other end

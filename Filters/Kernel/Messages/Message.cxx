@@ -22,6 +22,7 @@ template <typename Fill>
 std::string Filled(std::string_view text, Fill&& fill)
 {
   std::string filled;
+  // Texts are our own, so every brace has its counterpart.
   for (std::size_t end = 0; end < text.size();)
   {
     const std::size_t begin = std::min(text.find('{', end), text.size());
@@ -61,12 +62,15 @@ Message::Message(const Sentence& sentence, const std::vector<Argument>& values)
 {
   auto next = values.begin();
   std::vector<std::string> places; // of the values
+  // Places of values stay in the text, also those of a message inside, under longer names; a place
+  // that comes again has its value already.
   this->Text = Filled(sentence.Text, [&](std::string_view place) {
     if (!PropertyOf(place).empty())
     {
       return InBraces(place);
     }
     const std::string name(place);
+    // Values come in the order of places; a place that comes again takes the value it had.
     auto at = std::find(places.begin(), places.end(), name);
     const bool isNew = at == places.end();
     const Argument& value = isNew ? *next++ : values[at - places.begin()];
@@ -89,6 +93,7 @@ Message::Message(const Sentence& sentence, const std::vector<Argument>& values)
 std::string Message::Words() const
 {
   return (this->Block.empty() ? "" : this->Block + ": ") +
+    // The name of a property stands for itself; Python puts its own names there.
     Filled(this->Text, [this](std::string_view place) {
       const auto value = std::find_if(this->Values.begin(), this->Values.end(),
         [place](const Value& one) { return one.first == place; });
@@ -96,6 +101,7 @@ std::string Message::Words() const
     });
 }
 
+// Texts one after another, each with a zero at its end, which no text contains.
 std::string Message::Pack() const
 {
   std::string bytes;
@@ -136,6 +142,7 @@ Message MessageOf(const std::exception& failure)
   {
     return error->AsMessage();
   }
+  // For errors that were made of words alone.
   static constexpr Sentence words{ "Words", "{words}" };
   return dynamic_cast<const std::bad_alloc*>(&failure) ? MakeMessage<sentences::NotEnoughMemory>()
                                                        : Message(words, { failure.what() });

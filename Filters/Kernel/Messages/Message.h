@@ -26,14 +26,24 @@
 namespace elevation
 {
 
-/** A code, and the text of its messages. */
+/**
+ * A code, and the text of its messages.
+ *
+ * An example, with the values of its Message:
+ *   Code    InvalidThreads
+ *   Text    {property:NumberOfThreads} is {value}; it must be 0 (those of VTK) to {most}.
+ *   Values  value = -1, most = 256
+ */
 struct Sentence
 {
   const char* Code;
   const char* Text;
 };
 
-/** How many values a text has places for. One that comes again counts once; properties do not. */
+/**
+ * How many values a text has places for. One that comes again counts once; properties do not. At
+ * compile time, see MakeMessage().
+ */
 constexpr std::size_t CountValues(std::string_view text)
 {
   std::size_t count = 0;
@@ -78,6 +88,7 @@ public:
   static Message Unpack(const std::string& bytes);
   ///@}
 
+  // All that a message has is in its bytes.
   bool operator==(const Message& other) const { return this->Pack() == other.Pack(); }
 
 private:
@@ -91,7 +102,10 @@ private:
   std::vector<Value> Values;
 };
 
-/** What a place is filled with: a number, a text, or another message. */
+/**
+ * What a place is filled with: a number, a text, or another message. One type for all kinds of
+ * values, so that MakeMessage() passes them as one list.
+ */
 class Message::Argument
 {
 public:
@@ -134,7 +148,9 @@ Message MakeMessage(const Values&... values)
   return Message(sentence, { Message::Argument(values)... });
 }
 
-/** An Error as data. */
+/**
+ * An Error as data. For programs that catch it; elsewhere it is an Error with its sentence.
+ */
 class CodedError : public Error
 {
 public:

@@ -28,6 +28,7 @@ public:
     : A(a)
     , Az(az)
   {
+    // z = az + X dx + Y dy with dx and dy from the corner a; by Cramer's rule.
     double bx = b.X - a.X, by = b.Y - a.Y, cx = c.X - a.X, cy = c.Y - a.Y;
     const double db = bz - az, dc = cz - az;
     // Scaled by a power of two, so that their products neither overflow nor vanish.
@@ -57,6 +58,7 @@ public:
   {
     constexpr double unit = 8.0 * 0x1p-53;
     const double dx = p.X - this->A.X, dy = p.Y - this->A.Y;
+    // The distance itself; the other terms below bound what rounding may have taken from it.
     const double distance = std::fabs(z - this->Az - this->X * dx - this->Y * dy);
     return distance + this->ErrorX * std::fabs(dx) + this->ErrorY * std::fabs(dy) +
       unit * (std::fabs(z) + std::fabs(this->Az)) + Smallest;
@@ -66,7 +68,10 @@ private:
   /** More than the results above lose together that are below the least normal number. */
   static constexpr double Smallest = 8.0 * std::numeric_limits<double>::denorm_min();
 
-  /** @return whether nothing was lost */
+  /**
+   * A difference that becomes subnormal may lose bits; then there is no bound.
+   * @return whether nothing was lost
+   */
   static bool Scale(double& difference, double scale)
   {
     const double before = difference;

@@ -14,9 +14,18 @@ namespace elevation
 
 namespace
 {
+// The passes of FewerPieces():
+// 1. Network::Chains(): the pieces as chains, each between two places that stay.
+// 2. Straightening::From(): along a chain, the longest stretch that one piece can replace, again
+//    and again.
+// 3. FindHindered(): of stretches that are not exactly straight, those with a point between the
+//    chain and the new piece; they keep their pieces.
 constexpr double BesidePerLength = 0.001; // of the shorter piece at a point
 
-/** Of a place from the line through two others; with what rounding may have taken from it. */
+/**
+ * Of a place from the line through two others; with what rounding may have taken from it. Rather
+ * too large: what is near by rounding counts as near.
+ */
 double DistanceFromLine(const Point2& p, const Point2& q, const Point2& r)
 {
   constexpr double unit = 4e-15;
@@ -27,7 +36,10 @@ double DistanceFromLine(const Point2& p, const Point2& q, const Point2& r)
   return std::fabs(along.X * (r.Y - p.Y) - along.Y * (r.X - p.X)) + unit * largest;
 }
 
-/** The pieces at each place. */
+/**
+ * The pieces at each place: each piece in both directions, sorted by position, so that the ways
+ * from a place are contiguous and nothing depends on the order of pieces.
+ */
 class Network
 {
 public:
@@ -53,6 +65,8 @@ public:
   std::vector<std::vector<Index>> Chains(const Progress& progress)
   {
     std::vector<std::vector<Index>> chains;
+    // Closed lines that pass no point that stays are what is left after the open ones. The first
+    // way left of one is from its lowest point, as ways are sorted.
     for (const bool areOpen : { true, false })
     {
       const Progress half = areOpen ? progress.Between(0.0, 0.5) : progress.Between(0.5, 1.0);
@@ -89,6 +103,7 @@ private:
       !std::binary_search(this->Corners.begin(), this->Corners.end(), place);
   }
 
+  // In both directions, so that a chain is followed once.
   void Take(std::size_t way)
   {
     const Segment there = this->Ways[way];
@@ -102,6 +117,7 @@ private:
     }
   }
 
+  /** Follows a way to the next place that stays, or around a closed line. */
   std::vector<Index> ChainFrom(std::size_t way, WorkReporter& reporter)
   {
     const Index start = this->Ways[way].A;
@@ -116,6 +132,7 @@ private:
       {
         return chain;
       }
+      // Of the two ways from here, the one that does not lead back.
       way = this->WaysFrom(at).first;
       way += this->IsTaken[way] ? 1 : 0;
     }
@@ -142,7 +159,10 @@ struct Range
   }
 };
 
-/** A stretch of a chain that one piece replaces: the places from First to Last. */
+/**
+ * A stretch of a chain that one piece replaces: the places from First to Last. A chain by address:
+ * chains are all made before the first stretch.
+ */
 struct Stretch
 {
   const std::vector<Index>* Chain;
@@ -153,6 +173,7 @@ struct Stretch
   Index End() const { return (*this->Chain)[this->Last]; }
 };
 
+/** Finds how far one piece can replace those of a chain. */
 class Straightening
 {
 public:
@@ -166,6 +187,7 @@ public:
   Stretch From(const std::vector<Index>& chain, std::size_t first) const
   {
     const Point2 from = this->Placed.At(chain[first]);
+    // Coordinates along and across the first piece: slopes are then small numbers.
     const Point2 next = this->Placed.At(chain[first + 1]);
     const double length = this->Length(chain, first);
     const Point2 along{ (next.X - from.X) / length, (next.Y - from.Y) / length };
@@ -178,12 +200,15 @@ public:
       const double u = (p.X - from.X) * along.X + (p.Y - from.Y) * along.Y;
       const double v = (p.Y - from.Y) * along.X - (p.X - from.X) * along.Y;
       const double z = this->Elevation(chain[i]) - this->Elevation(chain[first]);
+      // The point must be an end within all earlier bounds, and farther than the points before: a
+      // line that turns back is not straight.
       if (!(u > reached) || !beside.Contains(v / u) || !above.Contains(z / u))
       {
         break;
       }
       last = i;
       reached = u;
+      // If it is not the end, it is to be passed, and bounds the slopes of what follows.
       if (i + 1 < chain.size())
       {
         const double reach = std::min(this->Length(chain, i - 1), this->Length(chain, i));
@@ -209,6 +234,7 @@ private:
     for (std::size_t i = first + 1; i < last; ++i)
     {
       const Point2 r = this->Placed.At(chain[i]);
+      // 0 means exactly straight: then nothing can lie between the line and the piece.
       if (Orientation(p, q, r) != Zero)
       {
         largest = std::max(largest, DistanceFromLine(p, q, r));
@@ -221,7 +247,10 @@ private:
   const double Error;
 };
 
-/** Whether a place that is not an end is within twice the distance of a stretch's own places. */
+/**
+ * Whether a place that is not an end is within twice the distance of a stretch's own places. Twice,
+ * so that two stretches that are each bent a little do not meet either.
+ */
 bool IsNear(const PlacedPoints& placed, const Stretch& one, Index place)
 {
   const Point2 a = placed.At(one.Begin()), b = placed.At(one.End()), p = placed.At(place);
@@ -236,6 +265,7 @@ bool IsNear(const PlacedPoints& placed, const Stretch& one, Index place)
 std::vector<char> FindHindered(
   const PlacedPoints& placed, const std::vector<Stretch>& stretches, const Progress& progress)
 {
+  // The grid holds the new pieces; all points are looked up in it.
   const auto endsOf = [&](std::size_t i) {
     return std::array<Point2, 2>{ { placed.At(stretches[i].Begin()),
       placed.At(stretches[i].End()) } };
@@ -298,11 +328,13 @@ std::vector<Segment> FewerPieces(const PlacedPoints& placed, const std::vector<S
       }
     }
   }
+  // Only stretches that are not exactly straight can have a point between line and piece.
   const std::vector<char> isHindered =
     bent.empty() ? std::vector<char>() : FindHindered(placed, bent, progress.Between(0.6, 1.0));
   for (std::size_t i = 0; i < bent.size(); ++i)
   {
     const Stretch& one = bent[i];
+    // Hindered: the line stays, piece by piece.
     const std::size_t step = isHindered[i] ? 1 : one.Last - one.First;
     for (std::size_t at = one.First; at < one.Last; at += step)
     {

@@ -14,6 +14,10 @@
  * lies no point, else the line stays as it was. So they do not cross either: a piece that crosses
  * another one's replacement, but not its line, has an end between the two.
  *
+ *        :b   :          A piece from a must pass b, c and d within a reach of each (the dots):
+ *   a----+----+--:---    each narrows the range of its slopes. The stretch ends before a point
+ *        :    :c :d      whose own slope is not in the range that those before it leave.
+ *
  * Guarantees: the result depends on the positions of points and pieces alone. No point other than
  * those left out changes its side of a line. Two lines with the same ends may become one piece,
  * given twice.

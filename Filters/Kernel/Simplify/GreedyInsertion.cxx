@@ -12,9 +12,18 @@ namespace elevation
 
 namespace
 {
+// The passes of Run(), for each sample from the coarsest to all points:
+// 1. AddSample(): each new point of the sample is put into the list of its face.
+// 2. Refine(), with strips, with shifted strips, and with one: points are inserted level by level,
+//    until errors are small or the sample has enough vertices.
+// Insert() serves the caller, who has found points that rounding had hidden (Simplify.cxx).
+
+// The sizes of samples, and when one has served its purpose: with a vertex for each dozen of its
+// points, triangles have so few of them that the next sample is needed.
 constexpr std::uint32_t SampleFactor = 16;
 constexpr double LeastSample = 2000.0;
 constexpr double PointsPerVertex = 12.0; // of a sample, where it ends
+// A strip with fewer rows of vertices would have most of its triangles on its borders.
 constexpr double VertexRowsPerStrip = 16.0;
 constexpr Index MostStrips = 64;
 // A strip takes faces in stretches of which the last is not full, in three runs for each of few
@@ -42,7 +51,11 @@ GreedyInsertion::GreedyInsertion(const Buffer<ElevatedPlace>& places, const Buff
   std::iota(this->Ordered.begin(), this->Ordered.end(), 0);
 }
 
-/** Gives the points of a sample that are new to their faces. */
+/**
+ * Gives the points of a sample that are new to their faces. First on all threads the face of each,
+ * walking from that of the point before, which is near; then one after another the lists, whose
+ * order must not depend on threads.
+ */
 void GreedyInsertion::AddSample(std::uint32_t mask, int threads, const Progress& progress)
 {
   constexpr Index pointsAtOnce = 1 << 14;
@@ -51,6 +64,7 @@ void GreedyInsertion::AddSample(std::uint32_t mask, int threads, const Progress&
   Buffer<Index> faces;
   errors.Resize(this->Inserted.Places.size());
   faces.Resize(this->Inserted.Places.size());
+  // Samples are nested: a place of the last one is in a list already, or a vertex.
   const auto isNew = [&](Index place) {
     return this->Inserted.Links[place] == InsertionMesh::Unassigned && IsInSample(place, mask);
   };
@@ -86,14 +100,22 @@ void GreedyInsertion::AddSample(std::uint32_t mask, int threads, const Progress&
   }
 }
 
-/** Strips of whole rows with about as many points each. */
+/**
+ * Strips of whole rows with about as many points each.
+ *
+ *   |  strip 0  |  strip 1  |  strip 2  |    Run() goes through three kinds of strips: first these;
+ *   | 0 |  strip 1  |  strip 2  |   3   |    then the same shifted by half a strip, for triangles
+ *   |            one strip              |    across borders; last all in one, for what is left.
+ */
 std::vector<InsertionStrip> GreedyInsertion::MakeStrips(Index count, bool areShifted)
 {
   std::vector<InsertionStrip> strips;
   Index begin = 0;
   const double all = static_cast<double>(this->Inserted.Places.size());
+  // Shifted, the first and the last strip are halves.
   for (Index i = 0; i < count + (areShifted ? 1 : 0); ++i)
   {
+    // Where the strip would end if rows could be cut; it ends with the row.
     const double end = (i + (areShifted ? 0.5 : 1.0)) / count * all;
     const auto row = std::lower_bound(
       this->Rows.begin(), this->Rows.end() - 1, static_cast<Index>(std::min(end, all)));
@@ -107,6 +129,8 @@ std::vector<InsertionStrip> GreedyInsertion::MakeStrips(Index count, bool areShi
 void GreedyInsertion::Refine(double error, double density, std::vector<InsertionStrip>&& strips,
   int threads, const Progress& progress)
 {
+  // Faces that no strip may change, as they have corners in two; a strip may not change what they
+  // border on either, so Insert() can fail.
   std::vector<Index> border;
   for (const Index face : this->Ordered)
   {
@@ -141,6 +165,7 @@ void GreedyInsertion::Refine(double error, double density, std::vector<Insertion
         ++done;
       }
     });
+  // By strips, not by threads: the order is that of the points.
   this->Ordered = std::move(border);
   for (const InsertionStrip& strip : strips)
   {
@@ -151,7 +176,9 @@ void GreedyInsertion::Refine(double error, double density, std::vector<Insertion
 void GreedyInsertion::Run(double error, int threads, const Progress& progress)
 {
   const double count = static_cast<double>(this->Inserted.Places.size());
+  // Of ten million points, samples have 2,441, then 39,062, then 625,000 points, then all.
   std::uint32_t every = 1;
+  // The coarsest sample has some thousand points.
   while (count / every / SampleFactor >= LeastSample)
   {
     every *= SampleFactor;
@@ -160,7 +187,9 @@ void GreedyInsertion::Run(double error, int threads, const Progress& progress)
   {
     const double end = every == 1 ? 1.0 : begin + 0.1;
     this->AddSample(every - 1, threads, progress.Between(begin, begin + 0.3 * (end - begin)));
+    // The last run has all points, and no limit to its vertices.
     const double density = every == 1 ? count : 1.0 / (PointsPerVertex * every);
+    // Vertices are about half as many as triangles, and as many along a side as the root of that.
     const double rows = std::sqrt(0.5 * static_cast<double>(this->Ordered.size()));
     const Index strips =
       static_cast<Index>(std::min(rows / VertexRowsPerStrip, static_cast<double>(MostStrips)));
@@ -189,6 +218,8 @@ Index GreedyInsertion::FaceWith(Index place, Index start) const
   }
   const Index* const neighbors = this->At(face).Neighbors;
   const Index* const nearby = std::find_if(neighbors, neighbors + 3, has);
+  // Rounding gives a point to a neighbour at most; the search through all faces is for the rest, if
+  // there ever is one.
   return nearby != neighbors + 3 ? *nearby
                                  : *std::find_if(this->Ordered.begin(), this->Ordered.end(), has);
 }
@@ -201,6 +232,7 @@ void GreedyInsertion::Insert(const std::vector<Index>& chosen)
   for (const Index place : chosen)
   {
     const std::size_t before = all.Faces.size();
+    // The face of the point before is a good start: places come in rows.
     face = this->FaceWith(place, face);
     all.Insert(place, face);
     this->Ordered.insert(this->Ordered.end(),

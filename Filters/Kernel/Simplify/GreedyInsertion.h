@@ -56,6 +56,7 @@
 namespace elevation
 {
 
+/** Holds the mesh and the lists of its points. Run(), then perhaps Insert() and Run() in turn. */
 class GreedyInsertion
 {
 public:

@@ -18,6 +18,7 @@ InsertionMesh::InsertionMesh(const Buffer<ElevatedPlace>& places, const LatticeM
 {
   this->Links.Resize(places.size());
   std::fill(this->Links.begin(), this->Links.end(), Unassigned);
+  // Fewer than two triangles a point, by Euler's formula.
   const std::size_t most = 2 * places.size() + spare;
   if (most > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
   {
@@ -40,6 +41,8 @@ InsertionMesh::InsertionMesh(const Buffer<ElevatedPlace>& places, const LatticeM
   this->NumberOfFaces = first.NumberOfTriangles();
   if (metric)
   {
+    // Offsets of nodes are at most this wide. A lift is at most 3 A w^2, as |B| is at most half of
+    // A and C; the three terms of a determinant are at most 18 A w^4. 9e18 is below 2^63.
     double width = 1.0;
     for (const ElevatedPlace& place : places)
     {
@@ -58,6 +61,7 @@ Sign InsertionMesh::SideOf(Index from, Index to, Index place) const
   {
     return Orientation(a, b, p);
   }
+  // Exact: columns and rows have at most 20 bits.
   const double side = (a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X); // of integers
   return side > 0.0 ? Positive : side < 0.0 ? Negative : Zero;
 }
@@ -74,6 +78,7 @@ Sign InsertionMesh::IsInCircle(const Face& face, Index place) const
   {
     return InNodeCircle(*this->Metric, a, b, c, p);
   }
+  // The determinant of InCircle(), in 64 bits: faster than in 128.
   struct Offset
   {
     std::int64_t X, Y, Lift;
@@ -100,6 +105,8 @@ bool InsertionMesh::IsInConflict(const Face& face, Index place, int edge) const
   {
     return side == Positive;
   }
+  // The face keeps its edge if the lowest of the four points is on it; so both triangles of the
+  // edge belong to the fan of that point.
   const Point2 from = this->PointOf(face.Corners[edge]),
                to = this->PointOf(face.Corners[(edge + 1) % 3]),
                apex = this->PointOf(face.Corners[(edge + 2) % 3]), p = this->PointOf(place);
@@ -124,6 +131,8 @@ double InsertionMesh::ShapeOf(Index a, Index b, Index c) const
 
 void InsertionMesh::AddTo(Face& face, Index place, float error)
 {
+  // At the front. Of equal errors the lowest place is the worst, so that the order of the list does
+  // not matter.
   this->Links[place] = face.First;
   face.First = place;
   if (error > face.Error || face.Worst == None || (error == face.Error && place < face.Worst))

@@ -21,12 +21,17 @@
 namespace elevation
 {
 
-/** A triangle, counter-clockwise; edge k runs from corner k to the next. */
+/**
+ * A triangle, counter-clockwise; edge k runs from corner k to the next. Unlike the half-edges of
+ * Mesh: a face is replaced as a whole while others stay, several threads take new ones, and a face
+ * has the list of its points.
+ */
 struct Face
 {
   Index Corners[3];
   Index Neighbors[3];       ///< over each edge, or None
   Index First;              ///< of the list of its points; None: it has none
+  // Kept with the face, so that no queue is needed: see GreedyInsertion.h.
   Index Worst;              ///< of its points
   float Error;              ///< of this one
   bool IsInCavity;          ///< while a point is inserted
@@ -46,12 +51,16 @@ struct ElevatedPlace
   double X, Y, Z;
 };
 
-/** A plane through a place: z = Z + X x + Y y from there. */
+/**
+ * A plane through a place: z = Z + X x + Y y from there. Differences from a corner lose less to
+ * rounding than z = a x + b y + c.
+ */
 struct Slopes
 {
   double X, Y;
 };
 
+/** The plane through three places; not finite if they are on one line. */
 inline Slopes SlopesOf(const ElevatedPlace& a, const ElevatedPlace& b, const ElevatedPlace& c)
 {
   const double bx = b.X - a.X, by = b.Y - a.Y, bz = b.Z - a.Z;
@@ -60,6 +69,11 @@ inline Slopes SlopesOf(const ElevatedPlace& a, const ElevatedPlace& b, const Ele
   return { (bz * cy - cz * by) / d, (bx * cz - cx * bz) / d };
 }
 
+/**
+ * The vertical distance of a place from the plane through @a a, in the unit of elevations. A float,
+ * as one is kept for each face and each point of a sample; what is promised is measured anew
+ * (FacePlane.h).
+ */
 inline float ErrorOf(const ElevatedPlace& p, const ElevatedPlace& a, const Slopes& slopes)
 {
   return static_cast<float>(std::fabs(p.Z - a.Z - slopes.X * (p.X - a.X) - slopes.Y * (p.Y - a.Y)));
@@ -67,9 +81,14 @@ inline float ErrorOf(const ElevatedPlace& p, const ElevatedPlace& a, const Slope
 /** Triangles that may be entered on the way to a place: see FaceOf(). */
 constexpr auto IsAnyFace = [](const Face&) { return true; };
 
+/**
+ * Faces, and lists of places; the operations are those of InsertionStrip, which all strips call at
+ * the same time on different faces.
+ */
 class InsertionMesh
 {
 public:
+  // Each place is in one list, or a vertex, or in no list yet: one number says which.
   static constexpr Index Vertex = -2;     ///< in place of a link
   static constexpr Index Unassigned = -3; ///< the same: not yet in a list
 
@@ -94,6 +113,8 @@ public:
   const Buffer<ElevatedPlace>& Places;
   Buffer<Index> Links; ///< of each place: the next one in the list, or None
   Buffer<Face> Faces;
+  // Room for all faces there can be is taken at the start, so threads never wait for memory to
+  // grow.
   std::atomic<Index> NumberOfFaces{ 0 }; ///< handed out; not all are used
 
 private:
@@ -116,6 +137,8 @@ Index InsertionMesh::FaceOf(Index place, Index start, const MayEnter& mayEnter) 
   for (std::uint32_t step = 0;; ++step)
   {
     const Face& at = this->Faces[face];
+    // At first from the first edge on, which is faster; then from an edge that looks chosen by
+    // chance.
     const std::uint32_t first = step < manySteps ? 0 : (step * 0x9E3779B9u >> 16) % 3;
     Index next = face;
     for (std::uint32_t i = first; i < first + 3 && next == face; ++i)

@@ -20,6 +20,9 @@ constexpr double LeastShape = 0.5;  // of two ways to flip an edge, in parts of 
 constexpr double LeastLevel = 0.5 * std::numeric_limits<float>::denorm_min();
 constexpr float LargestLevel = std::numeric_limits<float>::max();
 
+// The passes of an insertion, see the drawing in InsertionStrip.h: MayBegin() or Move(),
+// FindCavity(), FillCavity(), MovePoints(), and FlipByData() for data-dependent edges.
+
 /**
  * The two triangles beside an edge from P to D: the first one, right of it, with A, the second one
  * with B.
@@ -34,6 +37,7 @@ struct TwoTriangles
     , Second(SlopesOf(p, d, b))
   {
   }
+  /** By rounded sides: near the edge either plane is nearly right. */
   bool IsInFirst(const ElevatedPlace& q) const
   {
     return (this->D.X - this->P.X) * (q.Y - this->P.Y) -
@@ -50,8 +54,11 @@ struct TwoTriangles
 };
 } // namespace
 
+/** The number of a face that is free, entered in Faces. */
 Index InsertionStrip::NewFace()
 {
+  // In stretches, as the counter is shared. Which numbers a strip gets depends on threads; the
+  // order of Faces does not, and nothing else asks for numbers.
   if (this->NextFace == this->LastFace)
   {
     this->NextFace = this->Surface.NumberOfFaces.fetch_add(FacesAtOnce);
@@ -67,6 +74,8 @@ Index InsertionStrip::NewFace()
  */
 bool InsertionStrip::MayBegin(Index place, const Face& face) const
 {
+  // Delaunay: it must be in the face's circle, and a fixed edge of the face must not lie between.
+  // By data: it must be in the face itself.
   const bool isDelaunay = this->Edges == EdgeCriterion::Delaunay;
   bool isVisible = true;
   for (int k = 0; k < 3; ++k)
@@ -84,6 +93,7 @@ bool InsertionStrip::MayBegin(Index place, const Face& face) const
  */
 bool InsertionStrip::Move(Index place, Index& face)
 {
+  // By exact sides, on the way through faces of this strip alone.
   const Index own =
     this->Surface.FaceOf(place, face, [this](const Face& next) { return this->HasCorners(next); });
   if (own == None)
@@ -91,6 +101,7 @@ bool InsertionStrip::Move(Index place, Index& face)
     return false;
   }
   Face& before = this->Surface.Faces[face];
+  // The list is made anew, as the worst of the rest must be found.
   std::vector<Index> others;
   for (Index point = before.First; point != None; point = this->Surface.Links[point])
   {
@@ -126,6 +137,8 @@ bool InsertionStrip::FindCavity(Index place, Index face)
   this->Rim.clear();
   this->Cut[0] = this->Cut[1] = None;
   this->Cavity.assign(1, face);
+  // A stack, with the edges of each face in reverse: edges come off counter-clockwise, so the rim
+  // is listed in its order around the cavity.
   this->Open = { { face, 2 }, { face, 1 }, { face, 0 } };
   faces[face].IsInCavity = true;
   const bool isDelaunay = this->Edges == EdgeCriterion::Delaunay;
@@ -137,10 +150,12 @@ bool InsertionStrip::FindCavity(Index place, Index face)
     const Index from = faces[inside].Corners[edge], to = faces[inside].Corners[(edge + 1) % 3];
     const Index outside = faces[inside].Neighbors[edge];
     const bool isFixed = (faces[inside].Fixed >> edge & 1) != 0;
+    // Only asked where it matters: at borders, at fixed edges, and with edges by data.
     const bool isOn =
       (outside == None || isFixed || !isDelaunay) && this->Surface.SideOf(from, to, place) == Zero;
     if (outside == None)
     {
+      // On the border itself, this edge has no triangle with the place: the rim has a gap.
       this->Rim.push_back({ from, to, isOn ? Gap : None, isFixed });
       continue;
     }
@@ -150,6 +165,7 @@ bool InsertionStrip::FindCavity(Index place, Index face)
       this->Cut[1] = to;
     }
     Face& other = faces[outside];
+    // Also a face that is not taken must be of this strip: its link to the cavity is written.
     isOwn = this->HasCorners(other);
     const int entry = other.EdgeFrom(to);
     if (isOwn && !other.IsInCavity && (isOn || !isFixed) &&
@@ -168,6 +184,7 @@ bool InsertionStrip::FindCavity(Index place, Index face)
     }
     this->Rim.push_back({ from, to, outside, isFixed });
   }
+  // In any case, since the next insertion expects no flag to be set.
   for (const Index inside : this->Cavity)
   {
     faces[inside].IsInCavity = false;
@@ -175,11 +192,18 @@ bool InsertionStrip::FindCavity(Index place, Index face)
   return isOwn;
 }
 
-/** Joins the place to the edges of the rim; the last one may be a gap. */
+/**
+ * Joins the place to the edges of the rim; the last one may be a gap.
+ *
+ *       p         The face of rim edge From-To: its corners are From, To and the place p. Edge 0 is
+ *      / \        the rim edge, 1 leads from To to p, 2 from p to From. Over them lie the face
+ *   From--To      outside, the next face of the fan, and the one before.
+ */
 void InsertionStrip::FillCavity(Index place, std::size_t count, bool isClosed)
 {
   Buffer<Face>& faces = this->Surface.Faces;
   const ElevatedPlace& p = this->Surface.Places[place];
+  // The cavity's faces are used again, so the numbers of faces grow only by those that are added.
   this->Fan.assign(this->Cavity.begin(), this->Cavity.end());
   while (this->Fan.size() < count)
   {
@@ -192,6 +216,8 @@ void InsertionStrip::FillCavity(Index place, std::size_t count, bool isClosed)
     const RimEdge& edge = this->Rim[i];
     const Index before = i > 0 ? this->Fan[i - 1] : isClosed ? this->Fan[count - 1] : None;
     const Index after = i + 1 < count ? this->Fan[i + 1] : isClosed ? this->Fan[0] : None;
+    // Edge 0 is that of the rim; edges 1 and 2 lead to the place and back, and are fixed if they
+    // are halves of the fixed edge that it cuts.
     const int fixed =
       (edge.IsFixed ? 1 : 0) | (this->IsCut(edge.To) ? 2 : 0) | (this->IsCut(edge.From) ? 4 : 0);
     faces[this->Fan[i]] = { { edge.From, edge.To, place }, { edge.Outside, after, before }, None,
@@ -213,10 +239,13 @@ void InsertionStrip::FillCavity(Index place, std::size_t count, bool isClosed)
 std::size_t InsertionStrip::SectorOf(
   double dx, double dy, std::size_t start, std::size_t count, bool isClosed) const
 {
+  // In rounded arithmetic: Insert() puts right what matters, by MayBegin() and Move().
   const auto isLeftOf = [&](std::size_t spoke) {
     const Point2& s = this->Spokes[spoke];
     return s.X * dy - s.Y * dx >= 0.0;
   };
+  // Points of a face are near each other in its list, so the sector of the one before is a good
+  // guess.
   std::size_t sector = start;
   // A point opposite to a spoke is on neither side: no more than a turn.
   for (std::size_t step = 0; step < count; ++step)
@@ -242,6 +271,7 @@ std::size_t InsertionStrip::SectorOf(
       return sector;
     }
   }
+  // Reached only by rounding: the first sector that fits, or the last one.
   for (sector = 0; sector + 1 < count; ++sector)
   {
     if (isLeftOf(sector) && !isLeftOf(sector + 1))
@@ -268,6 +298,7 @@ void InsertionStrip::MovePoints(Index place, std::size_t count, bool isClosed)
 
 bool InsertionStrip::Insert(Index place, Index face)
 {
+  // Nothing has changed before this returns false, so another strip, or the last run, may try.
   if ((!this->MayBegin(place, this->Surface.Faces[face]) && !this->Move(place, face)) ||
     !this->FindCavity(place, face))
   {
@@ -292,10 +323,12 @@ bool InsertionStrip::Insert(Index place, Index face)
   const bool isClosed = gap == this->Rim.end();
   if (!isClosed)
   {
+    // The gap last: the fan then is open between its last and first face.
     std::rotate(this->Rim.begin(), gap + 1, this->Rim.end());
   }
   const std::size_t count = this->Rim.size() - (isClosed ? 0 : 1);
   this->FillCavity(place, count, isClosed);
+  // Lists and errors of the new faces come with their points.
   this->MovePoints(place, count, isClosed);
   if (this->Edges == EdgeCriterion::DataDependent)
   {
@@ -319,14 +352,17 @@ bool InsertionStrip::IsBetterFlipped(Index face) const
   const Index from = here.Corners[0], to = here.Corners[1], place = here.Corners[2];
   const Face& beyond = this->Surface.Faces[here.Neighbors[0]];
   const int entry = beyond.EdgeFrom(to);
+  // A flip must not touch faces of other strips: neither the two triangles nor those beyond.
   const Index across = beyond.Corners[(entry + 2) % 3], outside = beyond.Neighbors[(entry + 1) % 3];
   if (!this->HasCorner(across) ||
     (outside != None && !this->HasCorners(this->Surface.Faces[outside])) ||
+    // Only the diagonal of a convex quadrilateral can be flipped.
     this->Surface.SideOf(place, from, across) != Positive ||
     this->Surface.SideOf(place, across, to) != Positive)
   {
     return false;
   }
+  // By the worse triangle of each way.
   const double shape =
     std::min(this->Surface.ShapeOf(from, to, place), this->Surface.ShapeOf(to, from, across));
   const double flipped =
@@ -341,6 +377,7 @@ bool InsertionStrip::IsBetterFlipped(Index face) const
   double sum = 0.0;
   for (const Face* one : { &here, &beyond })
   {
+    // Only points that are left out count; those of the sample stand for the others.
     const Slopes slopes = SlopesOf(a, b, one == &here ? p : d);
     for (Index point = one->First; point != None; point = this->Surface.Links[point])
     {
@@ -352,7 +389,15 @@ bool InsertionStrip::IsBetterFlipped(Index face) const
   return sum < 0.0;
 }
 
-/** The face becomes the triangle before the new edge, its neighbour the one after it. */
+/**
+ * The face becomes the triangle before the new edge, its neighbour the one after it.
+ *
+ *      to             to         p is the new place. The face p from to and the one beyond, d to
+ *     / | \          /   \        from, give their edge from-to for p-d: then the face is p from d,
+ *    p  |  d  -->  p --- d       the other p d to. Points go by their side of p-d.
+ *     \ | /          \   /
+ *      from           from
+ */
 void InsertionStrip::Flip(Index face)
 {
   Buffer<Face>& faces = this->Surface.Faces;
@@ -360,8 +405,10 @@ void InsertionStrip::Flip(Index face)
   const Index other = here.Neighbors[0];
   const Face beyond = faces[other];
   const Index from = here.Corners[0], to = here.Corners[1], place = here.Corners[2];
+  // Edge 0 of the face is the one that goes; entry is the same edge seen from beyond.
   const int entry = beyond.EdgeFrom(to), before = (entry + 1) % 3, after = (entry + 2) % 3;
   const Index across = beyond.Corners[after];
+  // Fixed edges keep their flag where they get another number.
   const auto bit = [](const Face& of, int edge, int as) { return (of.Fixed >> edge & 1) << as; };
   faces[face] = { { from, across, place }, { beyond.Neighbors[before], other, here.Neighbors[2] },
     None, None, 0.0f, false, static_cast<unsigned char>(bit(beyond, before, 0) | bit(here, 2, 2)) };
@@ -393,6 +440,8 @@ void InsertionStrip::Flip(Index face)
 /** Flips edges around the fan of a new place, and around those that it gets by this. */
 void InsertionStrip::FlipByData()
 {
+  // Each flip joins the place to one more vertex, so flips end. It shows the place two more edges,
+  // those of the triangle beyond.
   std::vector<Index> open(this->Fan);
   while (!open.empty())
   {
@@ -419,6 +468,7 @@ void InsertionStrip::SetLevels(double error, double mostVertices)
   largest = std::min(largest, LargestLevel);
   this->Error = std::max(error, LeastLevel);
   this->MostFaces = 2.0 * mostVertices;
+  // The lowest level is the error asked for, to the last bit; those above are powers of the factor.
   this->Level = this->Error;
   while (this->Level < LevelFactor * static_cast<double>(largest))
   {
@@ -439,8 +489,10 @@ bool InsertionStrip::Work(const Round& round)
     }
     if (!this->Due.empty())
     {
+      // The newest face first: it is near the last insertion, whose points are in the cache.
       const Index face = this->Due.back();
       this->Due.pop_back();
+      // Checked again, as an insertion since may have changed the face.
       if (this->IsDue(face) && this->Insert(this->Surface.Faces[face].Worst, face))
       {
         std::copy_if(this->Fan.begin(), this->Fan.end(), std::back_inserter(this->Due),
@@ -451,6 +503,7 @@ bool InsertionStrip::Work(const Round& round)
     {
       this->Due.push_back(this->Faces[this->Cursor++]);
     }
+    // Done, or the sample has as many vertices as it is good for.
     else if (this->Level <= this->Error ||
       static_cast<double>(this->Faces.size()) >= this->MostFaces)
     {

@@ -17,7 +17,16 @@
 namespace elevation
 {
 
-/** The work on the triangles with all corners in some rows. */
+/**
+ * The work on the triangles with all corners in some rows. A strip reads and writes only these, so
+ * several work at once without locks; only the numbers of new faces come from a common counter.
+ *
+ *   d-----c        d-----c    The insertion of p. Cavity: the faces whose circles p is in. Rim:
+ *   |    /|        |\   /|    the edges around it, a b, b c, c d, d a. Fan: a face for p and each
+ *   | p / |  --->  |  p  |    rim edge, two more than the cavity had; the first take the places of
+ *   |  /  |        | / \ |    those that go. Loose: the points of the cavity, which go to the fan's
+ *   a-----b        a-----b    faces by the sides of the spokes, p-a to p-d.
+ */
 class InsertionStrip
 {
 public:
@@ -38,6 +47,11 @@ public:
     return this->HasCorner(face.Corners[0]) && this->HasCorner(face.Corners[1]) &&
       this->HasCorner(face.Corners[2]);
   }
+  /**
+   * Chooses the first level from the largest error of the strip's faces.
+   * @param[in] error         the level to end at
+   * @param[in] mostVertices  at about so many, the strip ends before that
+   */
   void SetLevels(double error, double mostVertices);
   /** @return false when done; it may be called again from there on */
   bool Work(const Round& round);
@@ -53,6 +67,7 @@ public:
   std::vector<Index> Faces; ///< in an order that does not depend on other strips
 
 private:
+  // Kept apart from faces, as the cavity's faces are overwritten while the fan is made.
   struct RimEdge
   {
     Index From, To;
@@ -82,6 +97,8 @@ private:
     return this->End - this->Begin == static_cast<Index>(this->Surface.Places.size());
   }
 
+  // A level at a time: every face with a larger error is due. Cursor and Count go once through the
+  // faces that there were when the level began; faces made since are put on the stack at once.
   double Error = 0.0, Level = 0.0, MostFaces = 0.0;
   std::size_t Cursor = 0, Count = 0;
   std::vector<Index> Due; // a stack of faces to look at

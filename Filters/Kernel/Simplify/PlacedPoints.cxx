@@ -15,7 +15,10 @@ namespace elevation
 
 namespace
 {
-/** Keeps the strict corners of a hull, which has candidates by increasing (y, x). */
+/**
+ * Keeps the strict corners of a hull, which has candidates by increasing (y, x). Other points on
+ * its edges need not become vertices.
+ */
 std::vector<Index> CornersOf(const PlacedPoints& placed, const Buffer<Index>& candidates)
 {
   const auto turn = [&placed](Index p, Index q, Index r) {
@@ -40,7 +43,10 @@ std::vector<Index> CornersOf(const PlacedPoints& placed, const Buffer<Index>& ca
   return corners;
 }
 
-/** Puts the points of a bin in order, from the lowest up. */
+/**
+ * Puts the points of a bin in order, from the lowest up: in the grid they are in the order of ids,
+ * or of the tree, and the choice of points must not depend on ids.
+ */
 void SortBin(BinGrid& grid, Index bin)
 {
   Index slot = grid.Starts[bin];
@@ -65,6 +71,7 @@ void SortBin(BinGrid& grid, Index bin)
   }
 }
 
+/** The same for all bins. From here on the grid's Order and Tree are wrong. */
 void SortBins(BinGrid& grid, int threads, const Progress& progress)
 {
   constexpr Index binsAtOnce = 2048;
@@ -79,7 +86,10 @@ void SortBins(BinGrid& grid, int threads, const Progress& progress)
     binsAtOnce);
 }
 
-/** The slot of a point after SortBins(). */
+/**
+ * The slot of a point after SortBins(). Hull points are known by their slots before sorting, so
+ * their positions are kept and found again.
+ */
 Index SlotOf(const BinGrid& grid, const Point2& point)
 {
   const Index column = grid.Bins.Column(point.X);
@@ -96,6 +106,7 @@ Index SlotOf(const BinGrid& grid, const Point2& point)
 Buffer<Index> SortedCandidates(BinGrid& grid, int threads, const Progress& progress)
 {
   std::vector<Point2> corners;
+  // Before the bins are sorted: the hull's search needs the order that the grid has now.
   const Hull hull = FindHull(grid, Progress());
   for (const std::vector<Index>* chain : { &hull.RightChain, &hull.LeftChain })
   {
@@ -150,6 +161,7 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
   {
     return false;
   }
+  // Places have the order of ranks: those of a row begin where all lower rows end.
   const auto placesBefore = [&nodes](Index row) {
     return row < nodes.Rows ? nodes.RankOf(nodes.NodeAt(row, 0)) : nodes.NumberOfPoints();
   };
@@ -157,6 +169,7 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
   ForEachPiece(nodes.Rows, threads, progress.Between(0.8, 1.0), [&](Index row) {
     Index place = placesBefore(row);
     const Index first = nodes.NodeAt(row, 0) / 64;
+    // Rows are converted in parallel, each from its first place on.
     const Index words = (nodes.Columns + 63) / 64;
     for (const Index word : Counted(words))
     {
@@ -168,6 +181,7 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
       }
     }
   });
+  // The ends of rows: nodes between them are no strict corners.
   Buffer<Index> candidates;
   for (Index row = 0; row <= nodes.Rows; ++row)
   {
@@ -236,6 +250,7 @@ std::vector<Segment> PiecesByPlaces(
   {
     ids.insert(ids.end(), { piece.A, piece.B });
   }
+  // The pieces' points are few, all points many: one pass over all looks each up among the few.
   Sort(ids.begin(), ids.end(), std::less<Index>(), progress.Between(0.0, 0.3));
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   std::vector<Index> placeOf(ids.size(), None);

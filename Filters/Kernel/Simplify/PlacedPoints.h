@@ -21,6 +21,7 @@ namespace elevation
 struct PlacedPoints
 {
   Buffer<ElevatedPlace> Places; ///< on a lattice: column and row
+  // Strips are cut between rows, so that a triangle of near points is in one strip, or in two.
   Buffer<Index> Rows;           ///< the first place of each, and the number of all
   Buffer<Index> Ids;            ///< of the points
   std::vector<Index> Corners;   ///< places, those of the convex hull, from the lowest up

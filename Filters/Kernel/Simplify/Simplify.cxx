@@ -20,6 +20,12 @@ namespace elevation
 
 namespace
 {
+// Simplified(), below, goes through the passes of Simplify.h:
+// 1. FewerPieces() and FirstMesh(): what must be there, the hull's corners and lines;
+// 2. GreedyInsertion: points, until no error is too large;
+// 3. Measurement: the same errors with a bound on rounding, and again from 2. if one is too large;
+// 4. TrianglesOf() and ListUnused(): the result, in the order of Triangulate.h.
+
 /**
  * The triangulation of the corners, with Twins, by places.
  * @param[in] pieces  by corners
@@ -35,6 +41,7 @@ Mesh FirstMesh(const PlacedPoints& placed, const std::vector<Segment>& pieces,
     corners.Append(placed.At(place));
   }
   const Buffer<Index> triangles = DivideAndConquer(
+    // On a lattice in its metric, as all that follows.
     corners, progress.Between(0.0, 0.5), placed.Metric ? &*placed.Metric : nullptr);
   mesh.Triangles.assign(triangles.begin(), triangles.end());
   mesh.Points.assign(corners.begin(), corners.end());
@@ -89,11 +96,13 @@ public:
   }
 
 private:
+  // By coordinates: on a lattice, places are nodes, which points are a little off.
   Point2 At(Index place) const
   {
     return this->Placed.Metric ? this->Points.At(this->Placed.Ids[place]) : this->Placed.At(place);
   }
   double ElevationOf(Index place) const { return this->Placed.Places[place].Z; }
+  /** By the coordinates and elevations of the input. */
   FacePlane PlaneOf(const Face& face) const
   {
     const Index* const c = face.Corners;
@@ -101,6 +110,10 @@ private:
       this->At(c[2]), this->ElevationOf(c[2]) };
   }
 
+  /**
+   * Measures the points of one face; those beyond are added, the largest distance of others is
+   * kept.
+   */
   void MeasureFace(Index number, double most, double& largest, std::vector<Index>& beyond) const
   {
     const Face& face = this->Mesh.At(number);
@@ -115,6 +128,8 @@ private:
       return; // no plane is needed
     }
     const FacePlane plane = this->PlaneOf(face);
+    // A point is in its face but for rounding; where exact sides say otherwise, it is looked for
+    // nearby.
     for (Index place = face.First; place != None; place = this->Mesh.Next(place))
     {
       const Point2 p = this->At(place);
@@ -137,6 +152,7 @@ private:
   double DistanceFrom(Index face, Index place) const
   {
     const Point2 p = this->At(place);
+    // A walk that does not end soon is given up: the point then counts as too far, and is inserted.
     for (int step = 0; step < 16; ++step)
     {
       const Face& at = this->Mesh.At(face);
@@ -175,6 +191,7 @@ Buffer<Index> RanksOf(
       }
     }
   });
+  // Bins are in rows, but points of a row of bins are not by y.
   if (!placed.Metric) // on a lattice, places are in this order
   {
     const auto isLower = [&placed](
@@ -204,6 +221,7 @@ Buffer<Index> TrianglesOf(
   const Buffer<Index> ranks = RanksOf(placed, mesh, progress.Between(0.0, 0.4));
   const Progress turning = progress.Between(0.4, 0.6), sorting = progress.Between(0.6, 1.0);
   std::vector<Turned> faces;
+  // A counting sort by lowest vertex, then each fan by angle, exactly.
   std::vector<Index> begins(1, 0); // of fans
   for (const Index number : Counted(mesh.Order()))
   {
@@ -248,6 +266,7 @@ Buffer<Index> TrianglesOf(
 void ListUnused(Index count, const PlacedPoints& placed, const GreedyInsertion* mesh,
   const Progress& progress, Triangulation& result)
 {
+  // By ids, as the lists must be increasing.
   std::vector<unsigned char> reasons(static_cast<std::size_t>(count), 0);
   const auto set = [&reasons](Index id, UnusedReason reason) {
     reasons[id] = static_cast<unsigned char>(reason);
@@ -289,6 +308,7 @@ void ListUnused(Index count, const PlacedPoints& placed, const GreedyInsertion* 
   });
 }
 
+/** All passes, after points have been placed. @throws NotOnLattice as Measurement */
 Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   const std::vector<Segment>& pieces, const DelaunayOptions& options, int threads,
   const Progress& progress)
@@ -301,9 +321,13 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   {
     lines = FewerPieces(placed, lines, options.MaximumElevationError, progress.Between(0.01, 0.02));
   }
+  // The first mesh has these corners alone; its triangles then get the numbers of places.
   const std::vector<Segment> byCorners = AddEnds(lines, placed, progress.Between(0.02, 0.03));
   std::vector<char> fixed;
+  // Few triangles, mostly long: the hull's corners, and the ends of lines.
   const Mesh first = FirstMesh(placed, byCorners, fixed, progress.Between(0.03, 0.05));
+  // All points are on one line, or fewer than three: duplicates and points that are not finite are
+  // still reported.
   if (first.NumberOfTriangles() == 0)
   {
     ListUnused(points.Count, placed, nullptr, progress.Between(0.05, 1.0), result);
@@ -314,6 +338,7 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   const Measurement measurement(points, placed, mesh);
   std::vector<Index> beyond;
   Progress ofRound = progress.Between(0.05, 0.8);
+  // Ends, as each round inserts what was beyond: at worst all points.
   do
   {
     if (!beyond.empty())
@@ -328,6 +353,7 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   } while (!beyond.empty());
   result.Triangles = TrianglesOf(placed, mesh, progress.Between(0.9, 0.98));
   ListUnused(points.Count, placed, &mesh, progress.Between(0.98, 1.0), result);
+  // Euler's formula, with the vertices that are left.
   result.NumberOfHullPoints = 2 * (placed.Count() - result.NumberOfRedundant) - 2 -
     static_cast<Index>(result.Triangles.size() / 3);
   Report(progress, 1.0);

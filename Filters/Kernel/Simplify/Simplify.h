@@ -15,10 +15,11 @@
  *      in, and bound what rounding may have taken from it. Points that may be too far are inserted,
  *      too, until there are none.
  *
- * Guarantees: no finite point that is not a duplicate is farther from the surface; LargestError is
- * the largest distance. Topology is exact. With Delaunay edges it is unique as in Triangulate.h:
- * the triangles are those of Triangulate() for the chosen points. The choice depends on the
- * positions of the points alone, not on their order, nor on the number of threads.
+ * Guarantees: no finite point that is not a duplicate is farther from the surface;
+ * LargestElevationError is the largest distance. Topology is exact. With Delaunay edges it is
+ * unique as in Triangulate.h: the triangles are those of Triangulate() for the chosen points. The
+ * choice depends on the positions of the points alone, not on their order, nor on the number of
+ * threads.
  *
  * Pass 3 takes the points by their coordinates. On a lattice they may lie beside their nodes. A
  * triangle that is flat or inverted by coordinates sends everything back to the start, without a

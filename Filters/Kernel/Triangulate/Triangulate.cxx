@@ -30,6 +30,7 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
       return asked.Monitor(done);
     };
   }
+  // Few points have passes of their own, with or without a lattice.
   if (options.MaximumElevationError > 0.0)
   {
     return TriangulateFew(points, options);
@@ -38,6 +39,7 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
   const bool isLatticeAsked = options.UseLattice == LatticeMode::Automatic;
   if (isLatticeAsked && options.GivenLattice.IsSet())
   {
+    // A lattice that the user has given must fit: there is no way back to coordinates.
     return TriangulateOnGivenLattice(points, options);
   }
   if (isLatticeAsked && TriangulateLattice(points, options, result, extent))
@@ -46,6 +48,7 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
   }
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
   BinGrid grid(points, options.Duplicates, options.Monitor.Between(0.0, 0.2), threads,
+    // The search has found the extent, which binning needs first.
     isLatticeAsked ? &extent : nullptr);
   SetUnusedPoints(
     std::move(grid.Duplicates), grid.NotFinite, options.Monitor.Between(0.2, 0.2), result);

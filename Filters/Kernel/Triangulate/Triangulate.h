@@ -41,7 +41,8 @@ namespace elevation
 {
 
 /**
- * Triangulates.
+ * Triangulates. Ways that end elsewhere: few points (Simplify.h), and a lattice that is given
+ * (TriangulateNodes.h).
  * @param[in] points  those whose x, y or z is not finite are set aside and reported
  * @return no triangle if fewer than three distinct points remain or all are on one line
  * @throws Error if there are more points than an Index can hold; std::bad_alloc; Aborted
