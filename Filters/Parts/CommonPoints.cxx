@@ -1,5 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Points of all parts have numbers, part after part. The passes:
+ * 1. A key for each point, if any two may be one.
+ * 2. Sort the points by key. Of one key, the owner's comes first, then the order of the parts
+ *    counts.
+ * 3. In each run of one key, decide which are the same: First[i] is the one that i stands for.
+ * 4. Number those that stand for themselves: by their ids, or else in the order of the points.
+ */
 #include "CommonPoints.h"
 
 #include "Adapt/Adapt.h"
@@ -44,6 +52,7 @@ CommonPoints::CommonPoints(const Parts& parts, PartKind kind, const Progress& pr
     }
     this->Match(order.data() + begin, order.data() + end, kind, haveIds);
   }
+  // Sorted by key so far, which for ids is the order wanted.
   if (!haveIds)
   {
     std::sort(order.begin(), order.end());
@@ -55,6 +64,7 @@ CommonPoints::CommonPoints(const Parts& parts, PartKind kind, const Progress& pr
       this->Places[i] = this->NumberOfJoined++;
     }
   }
+  // One step leads to the end: First of a First is itself.
   for (std::size_t i = 0; i < count; ++i)
   {
     this->Places[i] = this->Places[this->First[i]];
@@ -70,6 +80,7 @@ void CommonPoints::ReadMarks(const Parts& parts)
     {
       if (ghosts->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT)
       {
+        // Only now: without any mark the list stays empty.
         this->IsMarked.resize(this->First.size(), 0);
         this->IsMarked[this->Offsets[part] + i] = 1;
       }
@@ -118,7 +129,10 @@ void CommonPoints::Match(const vtkIdType* begin, const vtkIdType* end, PartKind 
     }
     return;
   }
-  // The first of one part is the first of any other, the second the second, and so on.
+  // A part may have several points at one place: duplicates, which have no triangle, or those of
+  // two sheets. The first of one part is the first of any other, the second the second, and so on:
+  //
+  //     part 0: p q    part 1: r s t    joined: p = r, q = s, t
   std::vector<vtkIdType> different;
   std::map<std::ptrdiff_t, std::size_t> found; // so far, in each part
   for (const vtkIdType* i = begin; i < end && end - begin > 1; ++i)

@@ -1,5 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Step 1 is the class AddedLines, which all ranks go through function by function; then come steps
+ * 2 and 3 as functions. Points near lines, and those that lines add, are numbered together:
+ *
+ *     0 ... n - 1      Near, by ids, the same list on all ranks
+ *     n, n + 1, ...    Pieces.Added, as CutLines() has made them, the same on all ranks
+ *
+ * As the lists are the same, no rank asks another what a number of a piece means.
+ */
 #include "ConstrainParts.h"
 
 #include "Adapt/Adapt.h"
@@ -20,7 +29,7 @@ namespace elevation
 
 namespace
 {
-/** A point of some part. */
+/** A point of some part: how a number of the two lists above becomes a number of all points. */
 struct PlaceInPart
 {
   int Part;
@@ -80,6 +89,7 @@ void AddedLines::Read()
 /** Looks at each part once: where points are, and which are near lines. */
 void AddedLines::ListNear(std::vector<Message>& warnings)
 {
+  // Of all points of this rank; lines that are nowhere near are an error, or a warning.
   Box box;
   this->Store.Crew.ForEach(this->Fraction(0.0, 0.5), [&](int part, const Progress& ofPart) {
     const Progress reading = ofPart.Between(0.0, 0.5);
@@ -131,6 +141,7 @@ void AddedLines::ShareNear()
     this->Near.Unpack(packed); // rank by rank, as the places
     std::vector<vtkIdType> order(this->Near.Count());
     std::iota(order.begin(), order.end(), vtkIdType(0));
+    // By ids, as DuplicatePolicy chooses by the order of points: the same point as on one rank.
     std::sort(order.begin(), order.end(),
       [this](vtkIdType a, vtkIdType b) { return this->Near.Ids[a] < this->Near.Ids[b]; });
     this->Near.Choose(order);
@@ -144,6 +155,7 @@ void AddedLines::ShareNear()
 
 void AddedLines::Cut()
 {
+  // Each rank does the same work, and so has the same pieces without a message.
   this->AllRanks.Agree([&]() {
     this->Pieces = CutLines(ViewOf(this->Near).View, this->Lines, this->Options.Duplicates,
       this->AllRanks.Watched(this->Fraction(0.5, 0.9)));
@@ -184,11 +196,13 @@ void AddedLines::AddPoints()
     PassPoints(near, this->Source, this->Pieces.Added, watched, extended);
     const vtkIdType ofNear = static_cast<vtkIdType>(this->Near.Count());
     PointTable rows(common.Kinds);
+    // Numbered such that the first added point gets the id after the largest.
     rows.Read(extended, this->LargestId + 1 - ofNear, watched);
     std::vector<vtkIdType> counts;
     std::map<int, std::vector<vtkIdType>> added; // rows, for each part
     for (int part = 0; part < crew.PartCount(); ++part)
     {
+      // How many each part has by now: the place of the next point that is added.
       counts.push_back(this->Store.EndOf(part) - this->Store.FirstOf(part));
     }
     for (const AddedPoint& point : this->Pieces.Added)
@@ -204,11 +218,14 @@ void AddedLines::AddPoints()
         this->Store.AddOwn(ofPart.first, rows.Pack(ofPart.second));
       }
     }
+    // Numbers of later parts move up by what parts before them have got. Nothing has been kept by
+    // numbers so far.
     std::partial_sum(counts.begin(), counts.end(), common.Bases.begin() + 1);
     this->Store.FirstLineId = this->LargestId + 1;
   });
 }
 
+// After AddPoints(), by the new numbers: ends of a piece are found again among those of triangles.
 SharedLines AddedLines::Result() const
 {
   SharedLines lines;
@@ -258,7 +275,8 @@ void ForEachTriangle(
 }
 
 /**
- * The pieces that are edges of no part's triangles; the same on all ranks.
+ * The pieces that are edges of no part's triangles; the same on all ranks. Where lines have points
+ * as densely as the surface around them, these are few.
  * @param[out] extents  of the triangles of the parts of this rank
  */
 std::vector<std::size_t> ListMissing(
@@ -285,6 +303,8 @@ std::vector<std::size_t> ListMissing(
             extent.Add(whole.PointAt(corners[k]));
             const GlobalId a = triangle[k], b = triangle[(k + 1) % 3];
             const GlobalId low = std::min(a, b);
+            // Nearly all edges end here: few points are the lower end of a piece, and a sorted list
+            // is faster to search than a map.
             const auto found = std::binary_search(ends.begin(), ends.end(), low)
               ? pieces.find({ low, std::max(a, b) })
               : pieces.end();
@@ -296,6 +316,7 @@ std::vector<std::size_t> ListMissing(
         });
     });
   });
+  // An edge between two parts counts on each of them, so a sum, and not a flag.
   store.Crew.AllRanks().Sum(isEdge);
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < isEdge.size(); ++i)
@@ -319,6 +340,7 @@ void SendMeeting(
     std::vector<vtkIdType> corners; // own ones
     ForEachTriangle(whole, store.FirstOf(part), progress.Between(0.5, 1.0),
       [&](std::size_t t, const Index* c, const GlobalTriangle& triangle) {
+        // With the coordinates, as the first part has not these points.
         const SentTriangle sent{ part, t, triangle,
           { whole.PointAt(c[0]), whole.PointAt(c[1]), whole.PointAt(c[2]) } };
         bool meets = false;
@@ -332,13 +354,19 @@ void SendMeeting(
       });
     if (!bytes.empty())
     {
+      // What becomes of these triangles may get corners in parts that had none of them.
       store.KeepForOthers(part, whole, std::move(corners));
       store.Crew.Send(0, Meeting, std::move(bytes));
     }
   });
 }
 
-/** Recovers the pieces. @return what has become of the triangles of each part */
+/**
+ * Recovers the pieces in the mesh of the triangles sent. Its vertices are their corners, by number,
+ * as the map sorts them. Recovery writes new triangles into the slots of old ones (Recovery.h):
+ * triangle t stays that of the part that sent it, whatever corners it has then.
+ * @return what has become of the triangles of each part
+ */
 ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
   const SharedLines& lines, const std::vector<std::size_t>& missing, const Progress& progress)
 {
@@ -432,6 +460,7 @@ bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& pr
   });
   crew.ForEach(progress.Between(0.4, 0.6), [&](int part, const Progress& ofPart) {
     const Box& extent = extents[part];
+    // A part that no piece comes near is not read again.
     const auto isThere = [&extent](const Ends& piece) {
       Box box;
       box.Add(piece[0]);

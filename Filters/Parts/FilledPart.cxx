@@ -1,5 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Read() looks at the part for pass 1. FindCorners() and Write() are pass 6: the patches come by
+ * the points that surround their holes, on whatever rank that was, and their corners are found
+ * among the part's own points by their keys. Corners that are not among these are appended as
+ * ghosts.
+ */
 #include "FilledPart.h"
 
 #include "Adapt/Adapt.h"
@@ -51,6 +57,9 @@ void FilledPart::ListShared(bool byIds)
   this->AreUsed.assign(mayBeShared.size(), 0);
   for (const Index corner : this->OwnMesh.Triangles)
   {
+    // A point with a triangle is shared only if it is on the border, or a corner of a long
+    // triangle: inside a part, no other part has triangles with it. A point without a triangle may
+    // be a copy of any.
     mayBeShared[corner] = 0;
     this->AreUsed[corner] = 1;
   }
@@ -71,6 +80,7 @@ void FilledPart::ListShared(bool byIds)
       this->Shared.OnBoundary.push_back(marks && marks->GetValue(static_cast<vtkIdType>(i)) != 0);
     }
   }
+  // In this order: TakeMarks() and Sort() need places and keys.
   this->Shared.Keys = KeysOf(this->Input, byIds, &this->Shared.Places);
   this->Shared.TakeMarks(this->Input);
   this->Shared.Sort(this->AreUsed);
@@ -90,6 +100,7 @@ std::vector<char> FilledPart::AreOthers() const
   }
   for (std::size_t i = 0; i < this->Shared.Places.size(); ++i)
   {
+    // For points that may be shared, what ranks have found out together replaces the mark.
     areOthers[this->Shared.Places[i]] = this->Shared.AreCopies[i];
   }
   return areOthers;
@@ -129,6 +140,7 @@ void FilledPart::FindCorners()
   this->PlaceOf.assign(this->Filled.Keys.size(), None);
   this->Added.clear();
   std::map<PointKey, Index> added; // a point may be there several times
+  // Beyond the first new point, a corner is one that the patch itself has made.
   const auto place = [&](Index corner) {
     if (corner < first && this->PlaceOf[corner] == None)
     {
@@ -186,6 +198,7 @@ vtkSmartPointer<vtkPolyData> FilledPart::WithCorners(bool areMarked, const Progr
       points.OfOthers.push_back(this->Shared.Places[i]);
     }
   }
+  // Each is another part's, and a ghost here.
   for (std::size_t i = 0; i < this->Added.size(); ++i)
   {
     points.OfOthers.push_back(own + static_cast<Index>(i));
@@ -197,7 +210,11 @@ vtkSmartPointer<vtkPolyData> FilledPart::WithCorners(bool areMarked, const Progr
   return data;
 }
 
-/** The patches among those of all holes, by the places of the input's points. */
+/**
+ * The patches among those of all holes, by the places of the input's points. MakeSurface() then
+ * does for a part what it does for a surface: holes of other parts just have no points and
+ * triangles here.
+ */
 FillResult FilledPart::PlacedPatches(const SharedHoles& all, vtkPolyData* input) const
 {
   const FillResult& from = this->Filled.Patches;
@@ -213,6 +230,7 @@ FillResult FilledPart::PlacedPatches(const SharedHoles& all, vtkPolyData* input)
     from.Triangles.begin(), from.Triangles.end(), std::back_inserter(to.Triangles), placed);
   std::transform(from.NearestBoundaryPoints.begin(), from.NearestBoundaryPoints.end(),
     std::back_inserter(to.NearestBoundaryPoints), placed);
+  // Offsets for each of all holes; where a hole is not one of this part, they do not rise.
   std::size_t next = 0;
   for (Index hole = 0; hole < static_cast<Index>(all.Result.Reports.size()); ++hole)
   {
@@ -231,7 +249,10 @@ FillResult FilledPart::PlacedPatches(const SharedHoles& all, vtkPolyData* input)
   return to;
 }
 
-/** Attributes in the order of the input's arrays. */
+/**
+ * Attributes in the order of the input's arrays. The surrounding was joined from parts of several
+ * ranks, whose arrays may be in another order; so they are found by their names.
+ */
 void FilledPart::PlaceAttributes(vtkPolyData* input, FillResult& placed) const
 {
   vtkPointData* const given =

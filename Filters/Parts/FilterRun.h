@@ -4,6 +4,17 @@
  * @file
  * How a filter calls the kernel: for each block of the input; progress and abort go in, warnings
  * and exceptions come out as one message of the filter. Private to the module.
+ *
+ * The way of a run; all ranks are together at the steps with a star, of several ranks:
+ *
+ *     * list the places of the input in the outputs (Blocks.h); share the second input
+ *     * for each block with points on several ranks: Spread, or gather it to one of them
+ *       for each place of this rank: prepare the input, call the body, finish the outputs
+ *     * add up the results, and whether any rank was aborted
+ *     * report: rank 0 for all
+ *
+ * Preparing leaves out hidden cells, sets the precision of points and adds original ids; finishing
+ * removes unused points and rounds. So a body sees none of this.
  */
 #ifndef FilterRun_h
 #define FilterRun_h

@@ -18,6 +18,7 @@
 namespace elevation
 {
 
+/** How large a hole is: what is known of it on all ranks, before anybody has its surroundings. */
 struct HoleExtent
 {
   Box OfRim;
@@ -28,7 +29,12 @@ struct HoleExtent
 std::vector<HoleExtent> ExtentsOf(const Holes& holes, const PointView& points);
 
 /**
- * The rank of each hole: the largest first, to the one with least work. @param[in] can  have some
+ * The rank of each hole: the largest first, to the one with least work. So no rank has more than a
+ * third above the best that is possible [Graham 1969], as far as the work is known. The same on all
+ * ranks.
+ * @param[in] can  one a rank; 0: it gets no hole
+ *
+ * [Graham 1969] Bounds on multiprocessing timing anomalies.
  */
 std::vector<int> BalancedRanks(
   const std::vector<HoleExtent>& holes, const std::vector<vtkIdType>& can);

@@ -1,5 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Rows say which tuple of which part each joined tuple is. Points, point data, cells and cell data
+ * are then the same copying of rows. The passes: which points are the same (CommonPoints.h); points
+ * and their arrays; field data; then, for a mesh, vertices, lines and polygons in this order, as
+ * VTK numbers cells, and their arrays.
+ */
 #include "Joining.h"
 
 #include "Adapt/Adapt.h"
@@ -31,6 +37,7 @@ namespace
 template <typename Copy>
 void CopyRows(const Rows& rows, const Progress& progress, const Copy& copy)
 {
+  // VTK's lists of ids are copies; so many are made at a time, and progress is reported in between.
   constexpr std::size_t atOnce = 65536;
   vtkNew<vtkIdList> from, to;
   for (std::size_t begin = 0; begin < rows.From.size(); begin += atOnce)
@@ -55,6 +62,7 @@ vtkSmartPointer<vtkPoints> JoinPoints(
   const auto isFloat = [](const auto& part) {
     return part->GetPoints()->GetDataType() == VTK_FLOAT;
   };
+  // Float in, float out; else no value may be rounded.
   points->SetDataType(std::all_of(parts.begin(), parts.end(), isFloat) ? VTK_FLOAT : VTK_DOUBLE);
   SetTuples(count, points->GetData());
   for (std::size_t i = 0; i < parts.size(); ++i)
@@ -74,6 +82,7 @@ vtkSmartPointer<vtkAbstractArray> JoinArray(vtkAbstractArray* first,
   std::vector<vtkAbstractArray*> arrays = { first };
   for (auto each = data.begin() + 1; each != data.end(); ++each)
   {
+    // By name. An array without one has no partner, unless there is a single part.
     arrays.push_back(first->GetName() ? (*each)->GetAbstractArray(first->GetName()) : nullptr);
     if (!arrays.back() || arrays.back()->GetDataType() != first->GetDataType() ||
       arrays.back()->GetNumberOfComponents() != first->GetNumberOfComponents())
@@ -145,6 +154,7 @@ std::set<std::string> JoinArrays(const std::vector<vtkDataSetAttributes*>& data,
         vtkAbstractArray* const active = part->GetAbstractAttribute(type);
         return active && active->GetName() && !std::strcmp(active->GetName(), first->GetName());
       };
+      // Scalars on one rank alone are an array like others.
       if (std::all_of(data.begin(), data.end(), isActive))
       {
         output->SetActiveAttribute(index, type);
@@ -158,6 +168,7 @@ std::set<std::string> JoinArrays(const std::vector<vtkDataSetAttributes*>& data,
     {
       vtkAbstractArray* const array = part->GetAbstractArray(i);
       const std::string name = array->GetName() ? array->GetName() : "";
+      // Also arrays that only a later part has: the loop above sees those of the first.
       if (!IsGhostArray(array) && !output->HasArray(name.c_str()))
       {
         left.insert(name);
@@ -178,6 +189,7 @@ vtkSmartPointer<vtkCellArray> JoinCells(const Parts& parts, const std::vector<vt
   for (std::size_t part = 0; part < parts.size(); ++part)
   {
     vtkUnsignedCharArray* const ghosts = GhostsOf(parts[part]->GetCellData());
+    // Cells of a kind follow those of the kinds before, and so do their tuples.
     vtkIdType cell = firstCells[part];
     auto each = vtk::TakeSmartPointer(kind[part]->NewIterator());
     for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell(), ++cell)
@@ -227,6 +239,7 @@ void JoinFieldData(const Parts& parts, const CommonPoints& points, vtkFieldData*
          ids && reasons && i < std::min(ids->GetNumberOfTuples(), reasons->GetNumberOfTuples());
          ++i)
     {
+      // A list from elsewhere may name points that are not there.
       const double id = ids->GetComponent(i, 0);
       if (id >= 0.0 && id < static_cast<double>(parts[part]->GetNumberOfPoints()))
       {
@@ -234,6 +247,7 @@ void JoinFieldData(const Parts& parts, const CommonPoints& points, vtkFieldData*
       }
     }
   }
+  // No list where no part had one: an empty list would say that all points are used.
   if (!areKnown)
   {
     return;
@@ -272,6 +286,7 @@ vtkSmartPointer<vtkPolyData> Join(
   const Parts& parts, PartKind kind, const Progress& progress, std::vector<Message>& warnings)
 {
   auto joined = vtkSmartPointer<vtkPolyData>::New();
+  // The sort takes most of the time.
   const CommonPoints points(parts, kind, progress.Between(0.0, 1.0));
   std::vector<Rows> rows = points.Sources();
   const Progress copying = progress.Between(1.0, 1.0);

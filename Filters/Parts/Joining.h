@@ -3,6 +3,8 @@
 /**
  * @file
  * Joins the parts of a data set that was spread over ranks. Private to the module.
+ *
+ * Cost: linear, apart from CommonPoints.h; each value is copied once.
  */
 #ifndef Joining_h
 #define Joining_h

@@ -56,7 +56,10 @@ public:
    */
   void Add(vtkPointSet* points, const Progress& progress);
 
-  /** Whether the points bring global ids, known after Distribute(); or these are places. */
+  /**
+   * Whether the points bring global ids, known after Distribute(); or these are places: the points
+   * of all ranks counted, rank after rank, in the order of Add().
+   */
   bool AreIdsGiven() const { return this->AreGiven; }
   vtkIdType Count() const { return this->OwnCount; } ///< of this rank, marked ones included
 
@@ -78,6 +81,7 @@ private:
   };
 
   bool IsInFile() const { return !this->Folder.empty(); }
+  /** The arrays of the next slice. @throws Error if they differ from those before */
   void TakeKinds(vtkPointSet* points);
   void SampleStretch(const std::vector<vtkIdType>& places);
   void KeepSample();

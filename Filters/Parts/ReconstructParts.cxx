@@ -1,5 +1,16 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * States, and what leads from one to the next:
+ *
+ *     closed  --- AddPoints() --->  open     Work has points
+ *     open    --- RequestData() ->  begun    NumberOfParts is set: no more points or settings
+ *     any     --- failure ------->  lost     IsLost, but for refusals before anything is done
+ *     any     --- Close() ------->  closed
+ *
+ * Do() sets IsLost while it works. So whatever way it is left by, an exception included, what it
+ * has begun and not finished is never used again.
+ */
 #include "ReconstructParts.h"
 
 #include "Gathering.h"
@@ -53,6 +64,7 @@ void ReconstructParts::ReportError(const std::exception& error)
   Message message = MessageOf(error);
   if (message.GetCode() == sentences::NotEnoughMemory.Code)
   {
+    // More pieces make triangulating and trimming fit; holes need what surrounds them, too.
     message = this->Set.FillHoles ? MakeMessage<sentences::TooFewPiecesToFill>()
                                   : MakeMessage<sentences::TooFewPieces>();
   }
@@ -134,6 +146,7 @@ bool ReconstructParts::AddPoints(vtkPointSet* points)
       throw Error("Points cannot be added after the first piece; that needs Reset().");
     }
     this->Open(settings.Controller);
+    // ReportError() looks at it.
     this->Set = settings;
     this->Do(false, [&]() {
       if (!this->Work)
@@ -159,6 +172,8 @@ void ReconstructParts::CheckPart(int part, int count) const
     throw Error("There are " + std::to_string(this->NumberOfParts) +
       " pieces; another number of pieces needs Reset().");
   }
+  // The same number of pieces on each rank, rank after rank: part and rank follow without a
+  // message.
   const int ranks = this->AllRanks->Count(), ofEach = count / ranks;
   if (count % ranks != 0)
   {
@@ -192,6 +207,7 @@ void ReconstructParts::Begin(int count)
   const vtkMTimeType time = this->Source->GetMTime();
   if (this->Refusal && this->RefusalTime == time && this->RefusedParts == count)
   {
+    // All ranks did throw it. One that asks again must not meet: others may have stopped asking.
     throw CodedError(*this->Refusal);
   }
   this->IsOnAllRanks = true;
@@ -203,6 +219,7 @@ void ReconstructParts::Begin(int count)
       constraints = UpdatedLines(this->Set.HasConstraints);
       boundary = UpdatedLines(this->Set.HasBoundary);
     });
+    // A different number on a rank would make it hold other parts than the others think.
     const std::vector<vtkIdType> counts = this->AllRanks->Collect(std::vector<vtkIdType>{ count });
     if (std::count(counts.begin(), counts.end(), count) != this->AllRanks->Count())
     {
@@ -309,6 +326,7 @@ void ReconstructParts::Triangulate(const Progress& progress)
   this->Do(true, [&]() {
     DelaunayOptions& options = this->Set.Delaunay;
     options.Monitor = progress;
+    // Lines add points, which float would round off them. Their type is that of all parts.
     if (NeedsDouble(vtkAlgorithm::DEFAULT_PRECISION, this->Constraints || this->Boundary))
     {
       this->Work->UseDoublePoints();
@@ -356,6 +374,7 @@ void ReconstructParts::Fill(const Progress& progress)
       this->Set.Fill, this->Set.InterpolatePointData, this->Set.LongestEdge);
     filled->FindHoles(0);
     filled->Fill();
+    // Only when it has succeeded: Pass() would write from it.
     this->Filled = std::move(filled);
     warnings = OnFirst(WarningsOf(this->Filled->Result()), *this->AllRanks);
   });
@@ -373,6 +392,7 @@ vtkSmartPointer<vtkPolyData> ReconstructParts::MakePart(int part, const Progress
   auto made = vtkSmartPointer<vtkPolyData>::New();
   PassPart(taken, ResolveNumberOfThreads(this->Set.Delaunay.NumberOfThreads), made);
   ConstrainedTriangulation counts;
+  // AddReport() looks at the number alone.
   counts.Added.resize(static_cast<std::size_t>(taken.AddedPoints));
   counts.NumberOfCrossings = this->Work->GetTotals().Crossings;
   counts.Result = std::move(taken.Result);
@@ -424,6 +444,7 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
   const int count = std::max(1, get(Pipeline::UPDATE_NUMBER_OF_PIECES()));
   vtkPolyData* const output = vtkPolyData::GetData(outputs, 0);
   vtkPolyData* const rims = vtkPolyData::GetData(outputs, 1);
+  // Whether this rank reports an error in any case: one that it finds before it meets the others.
   bool isReporting = true;
   try
   {
@@ -435,6 +456,7 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
     }
     this->CheckPart(part, count);
     const bool isFirst = this->NumberOfParts == 0;
+    // What has been done was done by the settings then.
     if (!isFirst && settings.Time > this->Set.Time)
     {
       throw Error("Properties were changed after the first piece; that needs Reset().");
@@ -448,6 +470,7 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
       this->WorkOnAll(progress.Between(0.0, 0.9));
     }
     this->Pass(part, progress.Between(0.9, 1.0), output, rims);
+    // A part can then be passed on once, and its files make room for what is written.
     if (!settings.KeepFiles)
     {
       this->Work->Forget(part);

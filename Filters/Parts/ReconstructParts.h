@@ -19,6 +19,12 @@
  * without a meeting of the ranks, until the properties change: so a rank that asks for its next
  * part does not wait for one that has given up. Any other error loses the points of the rank, in
  * step 3 of all ranks. What all ranks throw is reported by the first one.
+ *
+ *     AddPoints()  AddPoints() ...   RequestData(piece 0)        RequestData(piece 1) ...
+ *     points to files                all steps; part 0           part 1, from the files
+ *
+ * The steps are made into each other: FillParts asks for parts by MakeTrimmed(), that makes them by
+ * MakePart(), and that takes them from TriangulateParts. Nothing but their own files is kept.
  */
 #ifndef ReconstructParts_h
 #define ReconstructParts_h

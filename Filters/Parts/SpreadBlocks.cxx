@@ -16,6 +16,7 @@ namespace elevation
 
 vtkIdType IdOf(const std::string& path)
 {
+  // Not negative as a signed number.
   return static_cast<vtkIdType>(std::hash<std::string>()(path) >> 2);
 }
 
@@ -42,12 +43,14 @@ std::map<vtkIdType, int> FindSpread(
   {
     rows.insert(rows.end(), { block.first, ranks.OwnRank(), block.second });
   }
+  // All ranks go through the same list in the same order, and find the same.
   rows = ranks.Collect(rows);
   occupied.clear();
   std::map<vtkIdType, int> spread;
   std::map<vtkIdType, std::size_t> largest; // row of each block
   for (std::size_t i = 0; i < rows.size(); i += 3)
   {
+    // A first row of a block makes it occupied; a second, of another rank, makes it spread.
     const auto found = largest.emplace(rows[i], i);
     if (found.second)
     {
@@ -55,6 +58,7 @@ std::map<vtkIdType, int> FindSpread(
       continue;
     }
     std::size_t& row = found.first->second;
+    // Of ranks with as much, the first.
     row = rows[i + 2] > rows[row + 2] ? i : row;
     spread[rows[i]] = static_cast<int>(rows[row + 1]);
   }
@@ -82,6 +86,7 @@ Place* FirstWithPoints(const std::vector<Place*>& places)
   return first == places.end() ? nullptr : *first;
 }
 
+// The input stays the caller's: a place gets another data set.
 void Empty(const std::vector<Place*>& places)
 {
   for (Place* place : places)
@@ -100,6 +105,7 @@ void GatherBlock(const std::vector<Place*>& places, int home, PartKind kind, con
   const vtkSmartPointer<vtkPolyData> whole =
     Gather(PartsOf(places), kind, home, ranks, progress, warnings);
   Place* const first = FirstWithPoints(places);
+  // On the home rank, which has points of the block, as it has most of it.
   if (whole)
   {
     CopyMark(first->Input, whole);
@@ -109,6 +115,7 @@ void GatherBlock(const std::vector<Place*>& places, int home, PartKind kind, con
   {
     first->Made = whole;
     first->Input = whole;
+    // It is no longer one partition that messages are about.
     first->Name = first->BlockName;
   }
 }

@@ -18,6 +18,13 @@
  *      point that several parts get, the first is the owner; in the others it is a ghost.
  *   4. Each part is written, when it is asked for.
  *
+ *     far triangles of a part:   kept or outward, decided there (pass 1)
+ *     near triangles:            -- pass 2 --> one rank -- pass 3 --> kept, outward, or cut
+ *
+ * Why only the near ones travel: the raster of the rings decides all others (NearTriangles.h), and
+ * the outline depends on those alone that a local test leaves in doubt (Outline.h). The raster is
+ * the same for all parts, as it is made of the rings and the number of all triangles.
+ *
  * Guarantee: what is kept covers what one surface would keep; next to inserted points, diagonals
  * may differ. What needs the whole surface is refused: triangles that the sweep cannot prove, near
  * triangles that do not decide the outline, InwardNormal.
@@ -90,6 +97,9 @@ private:
   void WithPart(int part, const Progress& progress, const Step& step);
   void Sweep(TrimmedPart& part, const Progress& progress);
   void TrimAll();
+  /**
+   * The error that the parts cannot be trimmed apart. In memory nobody sees it: they are gathered.
+   */
   CodedError Refusal() const;
   void Read();
   void FindNear(int margin);
