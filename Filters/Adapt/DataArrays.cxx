@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Copies are made in stretches of tuples, as an abort must be heard within them, and memory for the
+ * whole is taken at once by SetTuples(), as VTK's own growth does not throw.
+ */
 #include "DataArrays.h"
 
 #include "UsedPoints.h"
@@ -57,6 +61,7 @@ vtkSmartPointer<vtkAbstractArray> Extend(
     for (vtkIdType i = components * count; i < components * (count + numberOfNew); ++i)
     {
       ReportStep(progress, static_cast<std::size_t>(i / components), all);
+      // Slow, but for any type; new points are few beside those of the input.
       output->SetVariantValue(i, value);
     }
   }
@@ -69,6 +74,7 @@ void SetNewTuples(vtkAbstractArray* input, const NewValues& values, bool areNorm
 {
   vtkDataArray* const numbers =
     IsFloatingPoint(input) ? vtkArrayDownCast<vtkDataArray>(output) : nullptr;
+  // Extend() has set what stands for no value.
   if (numbers ? !values.Interpolated : !values.Nearest)
   {
     return;
@@ -80,6 +86,7 @@ void SetNewTuples(vtkAbstractArray* input, const NewValues& values, bool areNorm
     ReportStep(progress, static_cast<std::size_t>(i), static_cast<std::size_t>(numberOfNew));
     if (!numbers)
     {
+      // From the input: the nearest point is one of its own.
       output->SetTuple(count + i, values.Nearest(i), input);
       continue;
     }
@@ -90,6 +97,8 @@ void SetNewTuples(vtkAbstractArray* input, const NewValues& values, bool areNorm
       numbers->SetComponent(count + i, c, value);
       squares += value * value;
     }
+    // A mean of unit vectors is shorter than 1; one of opposite vectors has no direction and stays
+    // 0.
     for (int c = 0; areNormals && squares > 0.0 && c < 3; ++c)
     {
       numbers->SetComponent(count + i, c, numbers->GetComponent(count + i, c) / std::sqrt(squares));
@@ -109,12 +118,14 @@ bool NumberNewTuples(vtkIdType numberOfNew, vtkAbstractArray* output)
     return false;
   }
   const vtkIdType count = ids->GetNumberOfTuples() - numberOfNew;
+  // Ids below 0 count for nothing.
   double first = 0.0;
   for (vtkIdType i = 0; i < count; ++i)
   {
     first = std::max(first, ids->GetComponent(i, 0) + 1.0);
   }
   constexpr double largest = 9007199254740992.0; // up to which doubles are exact
+  // As an array of bytes has no number after 255.
   if (first + static_cast<double>(numberOfNew) > std::min(largest, ids->GetDataTypeMax()))
   {
     return false;
@@ -131,6 +142,7 @@ void CopyTuples(vtkDataSetAttributes* input, vtkIdType count,
   const std::function<vtkIdType(vtkIdType i)>& sourceOf, const Progress& progress,
   vtkDataSetAttributes* output)
 {
+  // Also global and pedigree ids, which VTK leaves out unless it is asked.
   output->CopyAllOn();
   output->CopyAllocate(input, count);
   vtkNew<vtkIdList> from;
@@ -159,6 +171,7 @@ vtkSmartPointer<vtkPolyData> ChosenPoints(
   vtkNew<vtkIdList> ids;
   ids->SetNumberOfIds(static_cast<vtkIdType>(chosen.size()));
   std::copy(chosen.begin(), chosen.end(), ids->begin());
+  // Memory first: GetPoints() would not say that there is none.
   SetTuples(ids->GetNumberOfIds(), points->GetData());
   source->GetPoints()->GetPoints(ids, points);
   data->SetPoints(points);
@@ -223,6 +236,7 @@ vtkSmartPointer<vtkPoints> AppendPoints(vtkPoints* input, vtkIdType numberOfNew,
   const vtkIdType count = input ? input->GetNumberOfPoints() : 0;
   const std::size_t all = static_cast<std::size_t>(count + numberOfNew);
   auto points = vtkSmartPointer<vtkPoints>::New();
+  // An input without points may have none whose type could be taken.
   points->SetDataType(input ? input->GetDataType() : VTK_DOUBLE);
   points->SetNumberOfPoints(count + numberOfNew);
   if (input)

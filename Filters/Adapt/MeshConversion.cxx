@@ -1,5 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * The kernel reads x, y, z in turn as float or double, and corners as 32-bit numbers, three a
+ * triangle. A vtkPolyData has just that in its usual arrays; then nothing is copied. Everything
+ * else is converted: coordinates of other types or layouts, ids of 64 bits, offsets that are
+ * computed.
+ */
 #include "MeshConversion.h"
 
 #include "ArrayChecks.h"
@@ -50,6 +56,7 @@ DataSetPoints ViewPoints(vtkPointSet* input)
     converted->DeepCopy(points.Owner);
     points.Owner = converted;
   }
+  // A copy with NaN, if any is hidden; else the array itself.
   points.Owner = WithoutHidden(points.Owner, GhostsOf(input->GetPointData()));
   if (isFloat)
   {
@@ -77,7 +84,10 @@ const Value* ValuesOf(vtkDataArray* array)
   return plain ? plain->GetPointer(0) : nullptr;
 }
 
-/** Whether offsets are 0, 3, 6, ...: those of @a count triangles. */
+/**
+ * Whether offsets are 0, 3, 6, ...: those of @a count triangles. The loop has no branch, and
+ * collects differing bits instead, so that compilers can use wide instructions.
+ */
 bool AreMultiplesOfThree(vtkDataArray* offsets, vtkIdType count)
 {
   const auto areTriples = [count](const auto* begins) {
@@ -118,7 +128,11 @@ struct NoPoint
   }
 };
 
-/** Copies corners. @throws Error naming the first that no id of the kernel can hold */
+/**
+ * Copies corners. A number beyond 32 bits loses its upper ones, and then differs from what it was.
+ * Ids that are too large only for this mesh are left to the kernel.
+ * @throws Error naming the first that no id of the kernel can hold
+ */
 void ConvertIds(const vtkTypeInt64* ids, Buffer<Index>& corners, const NoPoint& toBlame)
 {
   std::copy_n(ids, corners.size(), corners.begin());
@@ -154,6 +168,7 @@ DataSetTriangles ViewTriangles(vtkPolyData* input)
   vtkCellArray* polygons = input->GetPolys();
   const vtkIdType count = polygons->GetNumberOfCells();
   const vtkIdType firstCell = FirstPolygon(input);
+  // Half-edges are numbered by an Index, three a triangle.
   if (count > std::numeric_limits<Index>::max() / 3)
   {
     throw Error("The input has " + std::to_string(count) + " triangles; at most " +
@@ -164,6 +179,7 @@ DataSetTriangles ViewTriangles(vtkPolyData* input)
     polygons->GetNumberOfConnectivityIds() != 3 * count ||
     !AreMultiplesOfThree(polygons->GetOffsetsArray(), count))
   {
+    // Slowly, to name the cell; valid cells of three ids in an unusual array come through.
     CheckCells(input);
     for (vtkIdType i = 0; i < count; ++i)
     {
@@ -222,6 +238,7 @@ void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& pr
       ReportStep(progress, static_cast<std::size_t>(line.Cell), count);
       each->GetCurrentCell(line.Size, line.Ids);
       sum += line.Size;
+      // Vertices of lines are counted by an Index; a point may be in many lines.
       if (sum > MaximumNumberOfPoints)
       {
         throw MakeError<sentences::TooManyPointsInLines>(name, MaximumNumberOfPoints);
@@ -276,6 +293,7 @@ vtkSmartPointer<vtkPolyData> Append(const std::vector<vtkSmartPointer<vtkPolyDat
   vtkNew<vtkAppendPolyData> append;
   for (const auto& part : parts)
   {
+    // The filter reads cells without checking them.
     CheckCells(part);
     append->AddInputData(part);
   }
@@ -288,6 +306,7 @@ vtkSmartPointer<vtkPolyData> Append(const std::vector<vtkSmartPointer<vtkPolyDat
 
 vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads)
 {
+  // The memory becomes VTK's as it is, with what is unused.
   triangles.Shrink();
   const vtkIdType size = static_cast<vtkIdType>(triangles.size());
   vtkNew<vtkTypeInt32Array> connectivity;
@@ -295,6 +314,7 @@ vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads
   Buffer<Index> begins; // of the cells, then the end of the last
   const Index count = static_cast<Index>(size / 3) + 1;
   begins.Resize(static_cast<std::size_t>(count));
+  // A megabyte of offsets for each call.
   constexpr Index pieceCells = 1 << 18;
   ForEachPiece((count - 1) / pieceCells + 1, threads, [&](Index piece) {
     const Index first = piece * pieceCells, last = first + std::min(pieceCells, count - first);
@@ -313,6 +333,7 @@ vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads
 void PassRings(
   const Rings& rings, vtkPolyData* source, const Progress& progress, vtkPolyData* output)
 {
+  // Without a ring there may be no points.
   vtkPoints* from = source->GetPoints();
   vtkNew<vtkPoints> points;
   points->SetDataType(from ? from->GetDataType() : VTK_FLOAT);
@@ -330,6 +351,7 @@ void PassRings(
       pointData->CopyData(source->GetPointData(), rings.Vertices[i], id);
       lines->InsertCellPoint(id);
     }
+    // A closed line ends with its first point, which it has once.
     lines->InsertCellPoint(first);
   }
   output->SetPoints(points);

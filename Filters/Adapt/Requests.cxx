@@ -51,6 +51,7 @@ namespace
 {
 vtkInformationIntegerKey* IsReportedKey()
 {
+  // Made once and never freed: VTK keeps keys until the program ends.
   static auto* const key = vtkInformationIntegerKey::MakeKey("IS_REPORTED", "ElevationSurface");
   return key;
 }
@@ -68,6 +69,7 @@ int AfterError(vtkAlgorithm* filter)
   if (vtkObject::GetGlobalWarningDisplay())
   {
     vtkNew<vtkCallbackCommand> once;
+    // The observer goes with the one line that it has kept from the window.
     once->SetCallback([](vtkObject* caller, unsigned long, void* self, void*) {
       caller->RemoveObserver(static_cast<vtkCommand*>(self));
     });
@@ -118,6 +120,7 @@ void AddTuple(vtkFieldData* fieldData, const char* name,
   array->SetNumberOfComponents(static_cast<int>(counts.size()));
   for (const auto& [component, count] : counts)
   {
+    // The number of values so far is the component that comes next.
     array->SetComponentName(array->GetNumberOfValues(), component);
     array->InsertNextValue(count);
   }
