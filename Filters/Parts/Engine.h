@@ -72,6 +72,7 @@ class Inbox
 {
 public:
   Inbox() = default; ///< in memory
+  /** In a file of this name. */
   explicit Inbox(const std::string& path);
 
   /** An empty stretch is nothing. @throws Error, as where the disk is full */
@@ -97,6 +98,12 @@ private:
   std::unique_ptr<SpoolFile> File; // nullptr: in memory
 };
 
+/**
+ * Who holds which part, and the post between parts. The constructor, ForEach(), ForEachInTurn() and
+ * Deliver() are meetings of all ranks; Send() and At() are not. Several engines may stand over the
+ * same ranks, each with parts and boxes of its own, as FillParts has one of parts and one of groups
+ * of holes.
+ */
 class Engine
 {
 public:

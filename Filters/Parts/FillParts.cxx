@@ -187,6 +187,8 @@ void FillParts::SendRims(Parts&& borders)
       std::vector<Index> chosen;
       for (std::size_t i = 0; i < keys.size(); ++i)
       {
+        // Of points on the border of the part: those on that of the surface alone are needed for
+        // outlines.
         if (this->AllHoles.Border.Find(keys[i]) != None)
         {
           chosen.push_back(static_cast<Index>(i));
@@ -469,6 +471,7 @@ void FillParts::FindQuotas(const Progress& progress)
 }
 
 /** @return false if holes, which are added to those beyond, need more of the surface around them */
+// Fills a group. What is done leaves memory, and the box, when the next one is worked on.
 bool FillParts::FillGroup(int group, const Progress& progress, std::vector<vtkIdType>& beyond)
 {
   SurroundedHoles& holes = this->HolesOf(group, progress.Between(0.0, 0.1));
@@ -513,6 +516,7 @@ void FillParts::FillAll()
     {
       this->FindQuotas(this->Fraction(0.58, 0.6));
     }
+    // Numbers as vtkIdType, so that one kind of Collect() is enough.
     std::vector<vtkIdType> beyond, waiting; // holes, and their groups
     const Progress filling = isFirst ? this->Fraction(0.6, 0.9) : this->Fraction(0.9, 1.0);
     this->GroupCrew->ForEach(filling, [&](int group, const Progress& progress) {

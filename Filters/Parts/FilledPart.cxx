@@ -32,6 +32,7 @@
 namespace elevation
 {
 
+// Ghost cells and other cells than triangles have been refused, or are none in files.
 void FilledPart::Read(bool byIds, double longest, const Progress& progress)
 {
   ToMesh(this->Input, this->OwnMesh, progress.Between(0.0, 0.4));
@@ -283,6 +284,7 @@ void FilledPart::NumberNewPoints(
   const SharedHoles& all, vtkIdType largest, vtkPolyData* output) const
 {
   vtkDataArray* const ids = output->GetPointData()->GetGlobalIds();
+  // New points come last, hole by hole, as Numbers lists the holes.
   vtkIdType next = output->GetNumberOfPoints() - this->Filled.Patches.NumberOfPoints();
   for (const Index hole : this->Filled.Numbers)
   {
@@ -308,6 +310,7 @@ vtkSmartPointer<vtkPolyData> FilledPart::PointsOnBorder() const
   IdSet ends(static_cast<Index>(this->Input->GetNumberOfPoints()));
   for (Index h = 0; h < static_cast<Index>(this->OwnMesh.Twins.size()); ++h)
   {
+    // More than are needed: which are on the border of the surface is not known yet.
     if (this->IsRim(h))
     {
       ends.Add(this->OwnMesh.Origin(h));

@@ -25,6 +25,10 @@
 namespace elevation
 {
 
+/**
+ * One part from Read() to Write(). In memory it stays in between; in files it is read again for
+ * Write(), and is the same then, as all of Read() depends on the input alone.
+ */
 struct FilledPart
 {
   int Number = 0;

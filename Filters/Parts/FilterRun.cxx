@@ -223,6 +223,8 @@ double FilterRun::GatherSpreadBlocks(
   // Gathering alone is short; the filter's own way on ranks is nearly all of the work.
   const double share = this->Spread ? 0.9 : 0.1;
   double done = 0.0;
+  // In the order of their numbers, which is the same on all ranks: each block is a series of
+  // meetings.
   for (const auto& block : spread)
   {
     const double next = done + share / static_cast<double>(spread.size());
@@ -255,6 +257,7 @@ double FilterRun::GatherSpreadBlocks(
       this->IsAborted = true;
       return done;
     }
+    // The block is done with on all ranks; the next one is worked on.
     catch (const std::exception& error) // on all ranks
     {
       this->AddMessages(own, { MessageOf(error) }, this->Errors);
@@ -383,6 +386,10 @@ void FilterRun::FinishOutputs(Block& block, const Ranks& ranks) const
   }
 }
 
+/*
+ * The result goes to the outputs of the first place with points, or of any; the other places of the
+ * block on this rank, partitions, become empty: they are the parts of one surface.
+ */
 bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
   vtkPolyData* second, const Progress& progress, Message& whyGathered)
 {
@@ -403,6 +410,7 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
     block.Outputs = home->Outputs;
   }
   bool isDone = false;
+  // Finishing counts nothing, but may throw: then the block failed, and nothing of it counts.
   this->CountIfDone([&] {
     isDone = this->Spread(block, ranks);
     if (isDone)
@@ -474,10 +482,12 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
     {
       continue;
     }
+    // On how the data came here: before what the filter says of them.
     if (!place.Warning.IsEmpty())
     {
       block.Warnings.insert(block.Warnings.begin(), place.Warning);
     }
+    // What was warned of before an error is about a result that is not there.
     if (!error.IsEmpty())
     {
       block.Warnings = { error };
@@ -499,6 +509,7 @@ Message FilterRun::RunPlace(
   try
   {
     const char* const required = RequiredType(this->Filter);
+    // The executive checks the type of the whole input alone, and a composite may have anything.
     if (!place.Input->IsA(required))
     {
       throw Error(std::string("It is a ") + place.Input->GetClassName() + ", but a " + required +
@@ -555,6 +566,7 @@ void FilterRun::ShareResults(const Ranks& ranks)
   }
   if (this->IsAborted)
   {
+    // Those of composites with their blocks, so that all ranks have the same: nothing.
     this->EmptyOutputs();
     this->Errors.clear();
     this->Warnings.clear();

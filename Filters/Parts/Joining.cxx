@@ -80,6 +80,7 @@ vtkSmartPointer<vtkAbstractArray> JoinArray(vtkAbstractArray* first,
   const Progress& progress)
 {
   std::vector<vtkAbstractArray*> arrays = { first };
+  // All parts are looked at before anything is copied.
   for (auto each = data.begin() + 1; each != data.end(); ++each)
   {
     // By name. An array without one has no partner, unless there is a single part.
@@ -196,6 +197,7 @@ vtkSmartPointer<vtkCellArray> JoinCells(const Parts& parts, const std::vector<vt
     {
       ReportStep(progress, static_cast<std::size_t>(cell),
         static_cast<std::size_t>(parts[part]->GetNumberOfCells()));
+      // Its owner is another part, and has it.
       if (ghosts && (ghosts->GetValue(cell) & vtkDataSetAttributes::DUPLICATECELL))
       {
         continue;
@@ -209,6 +211,7 @@ vtkSmartPointer<vtkCellArray> JoinCells(const Parts& parts, const std::vector<vt
         corners.push_back(points.Place(part, ids[i]));
       }
       cells->InsertNextCell(size, corners.data());
+      // From the cell of the part to the next of the joined ones, which are counted over all kinds.
       rows[part].Add(cell, count++);
     }
   }

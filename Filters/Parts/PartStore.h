@@ -70,6 +70,18 @@ struct ChangedTriangle
 /** Names of their files; those without one are small. */
 const std::vector<std::string>& BoxNames();
 
+/**
+ * What there is of the parts of this rank between the passes of TriangulateParts.h. The calls, in
+ * their order:
+ *
+ *     Number()                                     after pass 1 has filled OwnPoints
+ *     AddOwn()                                     with lines, which Bases then count
+ *     WithOwn(), KeepSettled()                     each part, pass 2; again without a lattice
+ *     ForgetOthers(), ListOthersOf(),              pass 5, and once more when lines have changed
+ *     ReadForOthers(), PackForOthers()             triangles
+ *     WithWhole()                                  lines, pass 6
+ *     TakeWhole(), Forget()                        for the output, in any order of parts
+ */
 class PartStore
 {
 public:

@@ -29,6 +29,7 @@
 namespace elevation
 {
 
+/** One for the life of a Ranks. All ranks have one, or none has. */
 class RankNotes
 {
 public:

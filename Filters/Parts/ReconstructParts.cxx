@@ -89,6 +89,10 @@ bool ReconstructParts::CanChange(const char* setting)
   return !this->HasPoints();
 }
 
+/*
+ * With the first points, or the first request. The controller cannot change after it, until
+ * Close().
+ */
 void ReconstructParts::Open(vtkMultiProcessController* controller)
 {
   if (!this->AllRanks)
@@ -131,6 +135,10 @@ void ReconstructParts::Do(bool withAll, const Step& step)
   this->IsLost = false;
 }
 
+/*
+ * Two kinds of errors: those before Do(), as of a folder that is not set, which leave all as it
+ * was; and those of Do(), after which a slice may be half written, so that only Close() helps.
+ */
 bool ReconstructParts::AddPoints(vtkPointSet* points)
 {
   try
@@ -433,6 +441,15 @@ void ReconstructParts::Pass(
   });
 }
 
+/*
+ * A request goes through:
+ * 1. Nothing to do: no points on the only rank, or a piece that is none. The output is empty.
+ * 2. What this rank can refuse alone: a piece of another rank, or one that has gone; settings that
+ *    have changed. Errors are this rank's own.
+ * 3. At the first request, steps 2 and 3 with all ranks. An error is that of all, and rank 0
+ *    reports it.
+ * 4. The part, from the files of this rank. Errors are this rank's own again.
+ */
 int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector* outputs)
 {
   const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
@@ -450,6 +467,7 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
   {
     const Settings settings = this->MakeSettings();
     this->Open(settings.Controller);
+    // Of several ranks, one without points has to take part all the same.
     if ((this->IsAlone() && !this->HasPoints()) || part < 0 || part >= count)
     {
       return 1; // empty, as VTK's sources

@@ -120,6 +120,7 @@ public:
   Counts GetCounts() const;
 
 private:
+  // What is known, and checked, before all begin:
   void Open(vtkMultiProcessController* controller);
   bool IsAlone() const { return this->AllRanks->Count() == 1; }
   bool HasPoints() const { return this->Work || this->IsLost; } // or has lost some
@@ -128,13 +129,16 @@ private:
   void CheckPart(int part, int count) const;
   template <typename Step>
   void Do(bool withAll, const Step& step);
+  // Step 2:
   void Begin(int count);
   void Prepare();
   void Check() const;
+  // Step 3:
   void WorkOnAll(const Progress& progress);
   void Triangulate(const Progress& progress);
   void Trim(const Progress& progress);
   void Fill(const Progress& progress);
+  // Step 4, and what the steps of 3 hand to each other:
   vtkSmartPointer<vtkPolyData> MakePart(int part, const Progress& progress);
   vtkSmartPointer<vtkPolyData> MakeTrimmed(int part, const Progress& progress);
   void Pass(int part, const Progress& progress, vtkPolyData* output, vtkPolyData* rims);

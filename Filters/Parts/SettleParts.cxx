@@ -264,6 +264,10 @@ void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress
 }
 
 /** Settles what a larger cell can, of whose halves the seams are known. */
+/*
+ * What is settled now lies in the larger cell, and in no half of it. The rest is the seam that goes
+ * up.
+ */
 void Settling::SettleNode(
   const Node& node, const Piece& other, const SharedLattice* lattice, const Progress& progress)
 {

@@ -80,6 +80,7 @@ std::vector<Value> Unpacked(const std::vector<Bytes>& packed)
 
 Index SharedPoints::Find(const PointKey& key) const
 {
+  // From place 0 on, so the first entry of the key.
   const auto found =
     std::lower_bound(this->Sorted.begin(), this->Sorted.end(), std::make_pair(key, Index(0)));
   return found != this->Sorted.end() && found->first == key ? found->second : None;
@@ -97,7 +98,7 @@ void SharedPoints::Sort(const std::vector<char>& areUsed)
     return std::make_tuple(a.first, !areUsed[a.second], a.second) <
       std::make_tuple(b.first, !areUsed[b.second], b.second);
   });
-  // Two vertices at one place cannot be told from each other by their keys.
+  // Two vertices at one place have one key, and nobody could say which of them is meant.
   const auto isTwice = [&](const auto& a, const auto& b) {
     return a.first == b.first && areUsed[a.second] && areUsed[b.second];
   };
@@ -106,6 +107,7 @@ void SharedPoints::Sort(const std::vector<char>& areUsed)
     throw Error("Two points of a part have the same global id or place.");
   }
   const auto isSame = [](const auto& a, const auto& b) { return a.first == b.first; };
+  // Of points with one key, one with a triangle is found, if there is one.
   this->Sorted.erase(
     std::unique(this->Sorted.begin(), this->Sorted.end(), isSame), this->Sorted.end());
 }
@@ -381,6 +383,7 @@ SharedBorder CollectBorder(const Ranks& ranks, PartEdges&& edges)
       edges.OnBorder = Unpacked<PartEdge>(packed);
       KeepSingleEdges(edges);
     });
+    // Each rank sends all of what it has to all: what is left is short, as a border is.
     const auto toAll = [&](auto& some) {
       using Some = std::decay_t<decltype(some.front())>;
       ranks.Agree([&]() {

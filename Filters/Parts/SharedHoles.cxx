@@ -162,6 +162,7 @@ void SurroundedHoles::ListRegions(Index first, Holes& holes) const
     this->Regions.VisitInnerEdges(found->second, [&holes](Index a, Index b) {
       holes.InnerEnds.insert(holes.InnerEnds.end(), { a, b });
     });
+    // As Holes keeps them: two ends an edge.
     holes.InnerOffsets.push_back(static_cast<Index>(holes.InnerEnds.size() / 2));
   }
   holes.LongestEdge = this->Regions.LongestEdge;
@@ -197,6 +198,7 @@ Holes SurroundedHoles::Listed(const SharedHoles& all) const
     // Where borders touch, FillParts has given up before.
     holes.Touched.push_back(0);
   }
+  // A box holds the rim, so each of its points has come with a triangle.
   if (std::count(holes.Walks.Vertices.begin(), holes.Walks.Vertices.end(), None) > 0)
   {
     throw Error("A point of a hole has not come from another part of the surface.");
@@ -208,6 +210,7 @@ Holes SurroundedHoles::Listed(const SharedHoles& all) const
   return holes;
 }
 
+// What is by the points of the surrounding: their precision and their attributes.
 FillOptions SurroundedHoles::OptionsFor(const SharedHoles& all, const Progress& progress) const
 {
   FillOptions options = all.Options;
@@ -220,6 +223,7 @@ FillOptions SurroundedHoles::OptionsFor(const SharedHoles& all, const Progress& 
   return options;
 }
 
+// What one run would know by looking at the whole surface.
 WholeSurface SurroundedHoles::KnownOf(const SharedHoles& all) const
 {
   WholeSurface whole;
@@ -227,6 +231,7 @@ WholeSurface SurroundedHoles::KnownOf(const SharedHoles& all) const
   for (const Index hole : this->Numbers)
   {
     whole.Surroundings.push_back(all.BoxOf(hole));
+    // There are none yet while needs are found, of which quotas are made.
     if (!all.Quotas.empty())
     {
       whole.Quotas.push_back(all.Quotas[hole]);
@@ -335,6 +340,14 @@ SurroundedHoles::SurroundedHoles(const Bytes& bytes)
   this->Surrounding = UnpackData(from, static_cast<std::size_t>(bytes.end() - from));
 }
 
+/*
+ * Points of the groups' surroundings come first, group after group; then the new points of all:
+ *
+ *     surroundings of 0, 1, 2 | new points of 0, 1, 2
+ *     in group 1, id i < count is first + i, and an id beyond is firstNew + (i - count)
+ *
+ * A point that two groups have is there twice; FilledPart finds both by their key.
+ */
 SurroundedHoles::SurroundedHoles(std::vector<SurroundedHoles>&& groups)
 {
   // A group that was filled again comes after later ones.

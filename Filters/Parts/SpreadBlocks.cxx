@@ -32,6 +32,7 @@ std::map<vtkIdType, int> FindSpread(
   std::map<vtkIdType, vtkIdType> own; // points and cells of each block
   for (const Place& place : places)
   {
+    // An empty place does not make a block spread.
     if (HasPoints(place))
     {
       own[IdOf(place.Path)] += place.Input->GetNumberOfElements(vtkDataObject::POINT) +

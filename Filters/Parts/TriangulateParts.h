@@ -54,6 +54,11 @@
 namespace elevation
 {
 
+/**
+ * One use: Add(), then Triangulate() once on all ranks, then Take() for each part of this rank, as
+ * often as wanted from files. The engine and its boxes live as long as this object; later steps
+ * (SurfaceParts.h) refer to them.
+ */
 class TriangulateParts
 {
 public:

@@ -240,6 +240,7 @@ bool TrimParts::TrimNear()
 }
 
 /** Pass 3, on the rank that has trimmed the near triangles. */
+// Pass 3, the half of the rank that has trimmed. The other half is Write(), at the part's own time.
 void TrimParts::SendBack(const BoundaryZone& zone)
 {
   const Trimmed& result = zone.Result();

@@ -49,6 +49,10 @@
 namespace elevation
 {
 
+/**
+ * One use: Trim() once on all ranks, then Write() for each part of this rank. What is known of all
+ * parts can be asked for in between.
+ */
 class TrimParts
 {
 public:
@@ -95,16 +99,19 @@ private:
   }
   template <typename Step>
   void WithPart(int part, const Progress& progress, const Step& step);
+  /** Pass 1 for one part. @throws Error if the sweep cannot prove its triangles */
   void Sweep(TrimmedPart& part, const Progress& progress);
   void TrimAll();
   /**
    * The error that the parts cannot be trimmed apart. In memory nobody sees it: they are gathered.
    */
   CodedError Refusal() const;
+  /** Before the passes: the boundary, and the number of triangles. */
   void Read();
   void FindNear(int margin);
   bool TrimNear();
   void SendBack(const BoundaryZone& zone);
+  /** After pass 3: the counts of all ranks, and whether any point is marked. */
   void AddUp();
 
   const SurfaceParts Surface;

@@ -229,6 +229,7 @@ void TrimmedPart::FindOwn(const Progress& progress)
   }
   for (std::size_t i = 0; i < count; ++i)
   {
+    // What it does not have, inserted or another part's, comes after its own points.
     if (this->Places[i] == None)
     {
       this->Places[i] = static_cast<Index>(own) + static_cast<Index>(this->Points.Added.size());

@@ -70,7 +70,9 @@ public:
 
 private:
   void LeaveOutCopies();
+  /** Of Take(): the places of the points that have come. */
   void FindOwn(const Progress& progress);
+  /** All triangles of a side: 0 kept, 1 outward. */
   TrimmedSide SideOf(int side, const Progress& progress) const;
 
   const vtkSmartPointer<vtkPolyData> Input;
