@@ -185,6 +185,7 @@ int vtkFillElevationHoles::RequestData(
     this->NumberOfHoles += patches.Found.Count();
     this->NumberOfFilledHoles += CountFilled(patches);
   };
+  // A block on several ranks: without gathering it, if that can be done.
   call.Spread = [&](elevation::Block& block, const elevation::Ranks& ranks) {
     FillResult patches;
     if (!elevation::FillOnRanks(ranks, options, interpolates, this->OpenEdgeLength, block, patches))

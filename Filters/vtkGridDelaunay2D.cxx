@@ -136,6 +136,7 @@ double Quantile(std::vector<double>& values, double part)
 {
   const auto at =
     values.begin() + elevation::QuantilePlace(part, static_cast<vtkIdType>(values.size()));
+  // Linear: one value is looked for, and the rest needs no order.
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -395,6 +396,7 @@ int vtkGridDelaunay2D::RequestData(
     this->NumberOfAddedPoints += static_cast<vtkIdType>(made.Added.size());
     this->NumberOfLattices += made.Result.LatticeFound ? 1 : 0;
   };
+  // A block on several ranks: its surface stays spread, unless what is asked for needs all points.
   call.Spread = [&](elevation::Block& block, const elevation::Ranks& ranks) {
     // Both need the whole surface: the least set of points for an error, and the triangles along a
     // line.

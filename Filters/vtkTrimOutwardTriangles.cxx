@@ -267,6 +267,7 @@ int vtkTrimOutwardTriangles::RequestData(
     this->NumberOfPointsLeftOut += counts.PointsLeftOut;
     this->NumberOfInsertedPoints += counts.InsertedPoints;
   };
+  // A block on several ranks: near triangles go to one rank and back, the others stay.
   call.Spread = [&](elevation::Block& block, const elevation::Ranks& ranks) {
     // Said before it is tried: TrimParts refuses it, and FilterRun then gathers with this reason.
     if (options.Test != elevation::OutwardTest::Exact)

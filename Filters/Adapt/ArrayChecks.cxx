@@ -46,6 +46,7 @@ void CheckPointArrays(vtkPointSet* input, const std::string& owner)
     owner + (owner.empty() ? "Point" : " point"), "points");
 }
 
+// What reads plain values would take the components of tuples for them.
 bool HasSingleComponents(vtkCellArray* cells)
 {
   return cells->GetOffsetsArray()->GetNumberOfComponents() == 1 &&

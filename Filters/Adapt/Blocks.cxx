@@ -44,6 +44,7 @@ int FillOutput(vtkInformation* info)
   return 1;
 }
 
+// The executive has asked for a vtkDataObject (FillOutput), so what it is gets decided here.
 int MakeOutputs(vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   auto* const tree = vtkDataObjectTree::GetData(inputs[0]);
@@ -173,6 +174,7 @@ std::vector<Place> ListPlaces(vtkDataObject* input, vtkInformationVector* output
   auto* const tree = vtkDataObjectTree::SafeDownCast(input);
   if (!tree)
   {
+    // Not a composite: one place without a name, since messages need none.
     Place whole{ input, {}, "", "", "" };
     for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
     {
@@ -193,6 +195,10 @@ std::vector<Place> ListPlaces(vtkDataObject* input, vtkInformationVector* output
   return places;
 }
 
+/*
+ * Boundary and constraints hold for all blocks of the first input, so their own blocks do not
+ * matter.
+ */
 vtkSmartPointer<vtkPolyData> JoinBlocks(vtkDataObject* input, const std::string& name)
 {
   auto* const tree = vtkDataObjectTree::SafeDownCast(input);

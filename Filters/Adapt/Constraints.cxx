@@ -43,6 +43,7 @@ void WarnOfLattice(const DelaunayOptions& options, std::vector<Message>& warning
   }
 }
 
+// Lines that lie elsewhere are found by boxes alone; by points only how many are far out.
 void CheckLines(const ConstraintLines& lines, const Box& box, std::vector<Message>& warnings)
 {
   if (lines.Vertices.empty())

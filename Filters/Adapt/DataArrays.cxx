@@ -138,6 +138,7 @@ bool NumberNewTuples(vtkIdType numberOfNew, vtkAbstractArray* output)
 }
 } // namespace
 
+// Lists of ids for VTK, a stretch at a time; a list for all would take 16 bytes a tuple.
 void CopyTuples(vtkDataSetAttributes* input, vtkIdType count,
   const std::function<vtkIdType(vtkIdType i)>& sourceOf, const Progress& progress,
   vtkDataSetAttributes* output)
@@ -191,6 +192,7 @@ bool IsGhostArray(vtkAbstractArray* array)
   return array->GetName() && !std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName());
 }
 
+// By name, as VTK knows it; an array of the name and of another type has no flags.
 vtkUnsignedCharArray* GhostsOf(vtkDataSetAttributes* data)
 {
   return vtkUnsignedCharArray::SafeDownCast(
@@ -267,6 +269,7 @@ void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSet
     vtkAbstractArray* before = input->GetAbstractArray(i);
     const double count = input->GetNumberOfArrays();
     const Progress ofArray = progress.Between(i / count, (i + 1) / count);
+    // A new point is none of the first input.
     const bool areOriginalIds = IsOriginalIds(before);
     const vtkSmartPointer<vtkAbstractArray> after = Extend(
       before, numberOfNew, areOriginalIds || IsIdArray(input, before), ofArray.Between(0.0, 0.5));

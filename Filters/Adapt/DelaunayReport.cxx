@@ -106,6 +106,8 @@ void AddReport(
   {
     fieldData->RemoveArray(name); // passed from the input, of other points
   }
+  // Six numbers, as the property Lattice of the filter takes them: a lattice found can be given
+  // again.
   if (triangulation.LatticeFound)
   {
     const Lattice& lattice = triangulation.Steps;

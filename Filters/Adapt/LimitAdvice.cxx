@@ -25,6 +25,10 @@ void WarnOfNoTriangle(vtkIdType points, vtkIdType hidden, std::vector<Message>& 
   }
 }
 
+/*
+ * What was left out, and, if lengths are known, the shortest and the median edge with a better
+ * limit.
+ */
 Message AdviceOnLimit(double limit, const LimitEffect& effect)
 {
   const Message what = MakeMessage<sentences::FewTriangles>(limit, effect.Missing, effect.Vertices);

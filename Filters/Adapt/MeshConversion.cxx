@@ -34,6 +34,7 @@
 namespace elevation
 {
 
+// No copy of float and double points in their usual layout: they may be most of what is in memory.
 DataSetPoints ViewPoints(vtkPointSet* input)
 {
   DataSetPoints points;
@@ -198,6 +199,7 @@ DataSetTriangles ViewTriangles(vtkPolyData* input)
   triangles.View.Count = static_cast<Index>(count);
   triangles.View.FirstCell = static_cast<Index>(firstCell);
   vtkDataArray* const corners = polygons->GetConnectivityArray();
+  // What this module makes has 32 bits (ToCellArray): one filter after another converts nothing.
   triangles.View.Corners = count > 0 ? ValuesOf<vtkTypeInt32>(corners) : nullptr;
   if (count > 0 && !triangles.View.Corners)
   {
@@ -216,6 +218,7 @@ void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress, int thread
   mesh = MeshOf(ViewTriangles(input).View, threads, progress);
 }
 
+// Each cell is checked before it is visited, so a visitor may use its ids.
 void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& progress,
   const std::function<void(const DataSetLine&)>& visit)
 {
@@ -286,6 +289,7 @@ void OrderArrays(vtkDataSetAttributes* wanted, vtkDataSetAttributes* data)
 
 vtkSmartPointer<vtkPolyData> Append(const std::vector<vtkSmartPointer<vtkPolyData>>& parts)
 {
+  // Itself, as the filter would copy it.
   if (parts.size() == 1)
   {
     return parts.front();

@@ -79,6 +79,10 @@ bool IsInterpolated(vtkPointData* pointData, vtkAbstractArray* array)
   return IsFloatingPoint(array) && !IsGhostArray(array) && !IsIdArray(pointData, array);
 }
 
+/*
+ * In the order of the arrays, and of the components in each: PassPoints() counts them in the same
+ * way.
+ */
 std::vector<Values> AttributesOf(vtkPointData* pointData)
 {
   std::vector<Values> attributes;
@@ -264,6 +268,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   output->GetFieldData()->PassData(input->GetFieldData());
 }
 
+// One entry a hole, filled or not: the report says why one was not.
 void MakeReport(
   vtkPolyData* input, const FillResult& patches, const Progress& progress, vtkPolyData* output)
 {
@@ -327,6 +332,10 @@ void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& o
   }
 }
 
+/*
+ * The first few holes that failed, each with its reason; then how many more. Holes that a limit of
+ * the user leaves out are no warning.
+ */
 std::vector<Message> WarningsOf(const FillResult& patches)
 {
   const Holes& holes = patches.Found;

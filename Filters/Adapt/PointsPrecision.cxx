@@ -45,6 +45,7 @@ void CheckTurns(vtkPolyData* rounded, const PointView& before)
     return std::isfinite(p.X) && std::isfinite(p.Y) && std::isfinite(after.Elevation(corner));
   };
   const auto turnIn = [](const PointView& points, const Index* corners) {
+    // A triangle that was flat before may stay so: what it is must not change.
     return Orientation(points.At(corners[0]), points.At(corners[1]), points.At(corners[2]));
   };
   for (Index t = 0; t < triangles.View.Count; ++t)

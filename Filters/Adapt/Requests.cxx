@@ -22,6 +22,10 @@
 namespace elevation
 {
 
+/*
+ * VTK's progress must not fall; an abort is asked for at each report, the observer is called as
+ * ReportPace admits.
+ */
 Progress ProgressOf(vtkAlgorithm* filter)
 {
   return [filter, last = 0.0, pace = ReportPace()](double fraction) mutable {
@@ -57,6 +61,7 @@ vtkInformationIntegerKey* IsReportedKey()
 }
 } // namespace
 
+// The line is "Algorithm ... returned failure for request", with all of the request.
 int AfterError(vtkAlgorithm* filter)
 {
   vtkExecutive* const executive = filter->GetExecutive();
@@ -89,6 +94,10 @@ void CopyMark(vtkDataObject* original, vtkDataObject* copy)
   copy->GetInformation()->CopyEntry(original->GetInformation(), IsReportedKey());
 }
 
+/*
+ * Points without triangles are most often those of a file that was meant to go through
+ * vtkGridDelaunay2D first.
+ */
 bool NeedsWarning(vtkPolyData* meshWithoutTriangles)
 {
   return meshWithoutTriangles->GetNumberOfPoints() > 0 &&
@@ -104,6 +113,7 @@ void CheckThreads(int threads)
   }
 }
 
+// An array of this name that came with the input is replaced.
 void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count)
 {
   vtkNew<vtkIdTypeArray> array;

@@ -46,6 +46,10 @@ void CheckOptions(const TrimOptions& options)
   }
 }
 
+/*
+ * Lines by ids of the data set first; TakePoints() then copies the points that they use, so that a
+ * boundary inside of a large data set does not keep all of it.
+ */
 BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress, const std::string& name)
 {
   const DataSetPoints points = ViewPoints(boundary);
@@ -72,6 +76,10 @@ BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress, const std
   return lines;
 }
 
+/*
+ * Splitting looks at the surface as it was, and writes into the same data set: hence the shallow
+ * copy.
+ */
 vtkIdType SplitSurface(
   vtkPolyData* surface, vtkPolyData* constraints, int threads, const Progress& progress)
 {
@@ -161,6 +169,7 @@ vtkSmartPointer<vtkAbstractArray> Extended(vtkAbstractArray* array, const Trimme
 }
 
 /** The flags of ghosts of the input, and of the points that another rank owns. */
+// Flags of the input stay; those of added points are known by OfOthers alone.
 vtkSmartPointer<vtkUnsignedCharArray> MarksOf(vtkPolyData* input, const TrimmedPoints& points)
 {
   const vtkIdType own = input->GetNumberOfPoints();
@@ -189,6 +198,7 @@ void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBounda
   SetTuples(count, marks);
   marks->FillValue(0);
   vtkPointData* const data = output->GetPointData();
+  // A surface may be trimmed along one boundary after another; holes look at the marks of all.
   if (vtkUnsignedCharArray* const before = BoundaryMarksOf(data))
   {
     std::copy_n(before->GetPointer(0), count, marks->GetPointer(0));
@@ -207,6 +217,7 @@ void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBounda
   std::unordered_map<Point2, double, PointHash> elevations;
   for (std::size_t i = 0; i < lines.Elevations.size(); ++i)
   {
+    // Of line points at one place, the first counts.
     elevations.emplace(lines.Points.Places[i], lines.Elevations[i]);
   }
   vtkNew<vtkPoints> moved;
@@ -256,6 +267,7 @@ void PassTrimmedPoints(
   }
 }
 
+// Vertices and lines go with the kept side (firstCells), pieces of a triangle with its values.
 void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool arePieces,
   const Progress& progress, vtkPolyData* output)
 {

@@ -105,6 +105,7 @@ vtkSmartPointer<vtkPointSet> WithOriginalIds(
   return numbered;
 }
 
+// Vertices and lines count as cells, too: their points stay.
 std::vector<char> FlagUsed(vtkPolyData* surface)
 {
   std::vector<char> areUsed(static_cast<std::size_t>(surface->GetNumberOfPoints()), 0);
@@ -120,6 +121,7 @@ std::vector<char> FlagUsed(vtkPolyData* surface)
   return areUsed;
 }
 
+// The list has places among the points; these go, and original ids stay.
 void NameUnusedByOriginalIds(vtkPolyData* surface)
 {
   auto* const unused =
@@ -149,6 +151,7 @@ void KeepFlagged(
     return;
   }
   const vtkSmartPointer<vtkPolyData> points = ChosenPoints(surface, kept, progress);
+  // Order of cells and cell data stay, as all cells do.
   const DataSetTriangles triangles = ViewTriangles(surface);
   Buffer<Index> corners;
   corners.Resize(3 * static_cast<std::size_t>(triangles.View.Count));

@@ -96,6 +96,7 @@ void BoundaryZone::JoinAll(const Progress& progress)
   this->Triangles = ViewTriangles(this->JoinedParts);
 }
 
+// Along a given boundary. Whether the zone is proven is decided before anything is trimmed.
 bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& options)
 {
   this->JoinAll(options.Monitor.Between(0.0, 0.3));
@@ -133,6 +134,7 @@ constexpr const char* StatesName = "States";
 constexpr const char* SpacingsName = "Spacings";
 } // namespace
 
+// Field data carry the two lists, since the near part travels as a data set anyway.
 void BoundaryZone::AddKnown(
   const std::vector<Known>& states, const std::vector<double>& spacings, vtkPolyData* part)
 {
@@ -239,6 +241,7 @@ bool BoundaryZone::AreSamePlaces() const
   return true;
 }
 
+// Joined lines, as Join() keeps lines of all parts: they are no lines of the user.
 std::vector<BorderEdge> BoundaryZone::PartBorders() const
 {
   std::vector<BorderEdge> all;
@@ -281,9 +284,11 @@ std::optional<std::vector<BorderEdge>> BoundaryZone::ProvenBorder(
     : std::nullopt;
 }
 
+// First the triangles, by their parents; then who owns which point; last, corners by parts' places.
 std::vector<TrimmedZone> BoundaryZone::Split(const Progress& progress) const
 {
   std::vector<TrimmedZone> splits(this->GivenParts.size());
+  // One an inserted point: whether a part before has become its owner.
   std::vector<char> areOwned(this->Sides.Inserted.size(), 0);
   for (const int side : { 0, 1 })
   {

@@ -88,6 +88,7 @@ void CommonPoints::ReadMarks(const Parts& parts)
   }
 }
 
+// In the order of the numbers of points.
 void CommonPoints::ReadKeys(const Parts& parts, bool byIds)
 {
   this->Keys.reserve(this->First.size());
@@ -147,6 +148,7 @@ void CommonPoints::Match(const vtkIdType* begin, const vtkIdType* end, PartKind 
   }
 }
 
+// Of points that are one, the values of the first count: those of the owner, or of the first part.
 std::vector<Rows> CommonPoints::Sources() const
 {
   std::vector<Rows> sources(this->Offsets.size() - 1);

@@ -77,6 +77,7 @@ private:
   LinePieces Pieces;
 };
 
+// Lines are the same on all ranks, and so is an error in them.
 void AddedLines::Read()
 {
   this->AllRanks.Agree([&]() {
@@ -105,6 +106,7 @@ void AddedLines::ListNear(std::vector<Message>& warnings)
       }
       const std::vector<Index> near =
         ListNearLines(ViewOf(rows).View, this->Lines, ofPart.Between(0.5, 1.0));
+      // By packing and unpacking, as rows of a part that is read go with it.
       const Bytes packed = rows.Pack(std::vector<vtkIdType>(near.begin(), near.end()));
       this->Near.Unpack(&packed, 1);
       std::transform(
@@ -125,6 +127,7 @@ void AddedLines::ShareNear()
   this->AllRanks.Agree([&]() {
     std::vector<vtkIdType> all(this->Near.Count());
     std::iota(all.begin(), all.end(), vtkIdType(0));
+    // The same to each rank, this one included.
     std::generate(packed.begin(), packed.end(), [&]() { return this->Near.Pack(all); });
     for (const PlaceInPart& at : this->NearPlaces)
     {
@@ -192,6 +195,7 @@ void AddedLines::AddPoints()
   this->AllRanks.Agree([&]() {
     const Progress watched = this->AllRanks.Watched(this->Fraction(0.9, 1.0));
     vtkNew<vtkPolyData> near, extended;
+    // Values at crossings are interpolated between points near lines, and points added before.
     this->PassNear(near);
     PassPoints(near, this->Source, this->Pieces.Added, watched, extended);
     const vtkIdType ofNear = static_cast<vtkIdType>(this->Near.Count());
@@ -211,6 +215,7 @@ void AddedLines::AddPoints()
       added[owner].push_back(ofNear + static_cast<vtkIdType>(this->AddedPlaces.size()));
       this->AddedPlaces.push_back({ owner, counts[owner]++ });
     }
+    // All ranks know the points of all parts; each keeps those of its own.
     for (const auto& ofPart : added)
     {
       if (crew.IsOwn(ofPart.first))
@@ -288,6 +293,7 @@ std::vector<std::size_t> ListMissing(
   store.Crew.AllRanks().Agree([&]() {
     for (std::size_t i = 0; i < lines.Pieces.size(); ++i)
     {
+      // Pieces that overlap are one by now, so each pair of ends is there once.
       pieces[lines.Pieces[i]] = i;
       ends.push_back(lines.Pieces[i][0]);
     }
@@ -385,6 +391,7 @@ ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
     numbers.push_back(corner.first);
     mesh.Points.push_back(corner.second);
   }
+  // An end of a piece is a corner of a triangle sent, as that meets the piece.
   const auto idOf = [&](GlobalId number) {
     return static_cast<Index>(
       std::lower_bound(numbers.begin(), numbers.end(), number) - numbers.begin());
@@ -403,6 +410,7 @@ ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
   std::vector<char> flags;
   RecoverSegments(mesh, segments, flags, progress);
   ValuesForParts<ChangedTriangle> changed;
+  // Most triangles sent only touch a piece, and are as they were: these are not sent back.
   for (std::size_t t = 0; t < sent.size(); ++t)
   {
     const auto corners = mesh.Triangles.begin() + 3 * static_cast<std::ptrdiff_t>(t);

@@ -295,6 +295,7 @@ void FilledPart::NumberNewPoints(
   }
 }
 
+// The same two steps as on one rank: points and their data, then the surface with its patches.
 void FilledPart::Write(const SharedHoles& all, bool areMarked, vtkIdType largestId,
   const Progress& progress, vtkPolyData* output) const
 {
@@ -321,6 +322,7 @@ vtkSmartPointer<vtkPolyData> FilledPart::PointsOnBorder() const
   return chosen.empty() ? nullptr : ChosenPoints(this->Input, chosen);
 }
 
+// All ranks know the holes; this one also has their points, with data.
 void WriteRims(
   const SharedHoles& all, const Parts& points, const Progress& progress, vtkPolyData* output)
 {

@@ -93,6 +93,7 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
     }
     catch (const Error& error)
     {
+      // The error is reported by rank 0, to whom "the input" would be its own.
       throw Error("On rank " + std::to_string(ranks.OwnRank()) + ": " + error.what());
     }
     // What is at home already stays as it is, without a copy.
@@ -115,6 +116,7 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
       }
       for (Bytes& bytes : packed[rank])
       {
+        // Each message goes as soon as it is unpacked, as both together take twice the memory.
         all.push_back(UnpackData(bytes.data(), bytes.size()));
         bytes = Bytes();
       }
@@ -127,6 +129,7 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
   return joined;
 }
 
+// Without a meeting: partitions of one rank. None gives an empty data set, never nullptr.
 vtkSmartPointer<vtkPointSet> JoinHere(
   const std::vector<vtkPointSet*>& parts, PartKind kind, std::vector<Message>& warnings)
 {

@@ -22,6 +22,7 @@
 namespace elevation
 {
 
+// By the edges of rim and islands: more is not known of a hole yet.
 std::vector<HoleExtent> ExtentsOf(const Holes& holes, const PointView& points)
 {
   std::vector<HoleExtent> extents;
@@ -198,6 +199,7 @@ std::vector<Index> TrianglesIn(const std::vector<Box>& boxes, const Mesh& mesh)
     {
       box.Add(mesh.PointOf(mesh.Origin(3 * t + k)));
     }
+    // By the box of the triangle: a thin one across a corner may come along without meeting a box.
     if (marked.Meet(box))
     {
       near.push_back(t);

@@ -285,6 +285,10 @@ void WarnOfLeftOut(
   }
 }
 
+/*
+ * The progress is that of finding common points: copying moves on at its end, and only hears
+ * aborts.
+ */
 vtkSmartPointer<vtkPolyData> Join(
   const Parts& parts, PartKind kind, const Progress& progress, std::vector<Message>& warnings)
 {
@@ -306,6 +310,7 @@ vtkSmartPointer<vtkPolyData> Join(
   {
     return joined;
   }
+  // From here on of cells, which JoinCells() adds kind by kind.
   rows.assign(parts.size(), Rows());
   data.clear();
   // The cells of a kind, and the first of them, of each part.

@@ -40,6 +40,7 @@ PointKey PointKeys::Of(vtkIdType point) const
   return key;
 }
 
+// In the order of the points, or of those chosen.
 std::vector<PointKey> KeysOf(vtkPolyData* data, bool byIds, const std::vector<Index>* chosen)
 {
   const PointKeys keys(data, byIds);

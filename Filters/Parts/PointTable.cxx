@@ -110,6 +110,8 @@ std::vector<ArrayKind> CommonArrays(
   }
   ofRanks = ranks.Collect(ofRanks);
   std::vector<ArrayKind> all; // each name once
+  // Kinds of one name that differ are one entry, the first: what is compared below is by name and
+  // type.
   for (const std::vector<ArrayKind>& kinds : ofRanks)
   {
     for (const ArrayKind& kind : kinds)
@@ -122,6 +124,8 @@ std::vector<ArrayKind> CommonArrays(
     }
   }
   std::vector<ArrayKind> common;
+  // An array is common if each rank with points has one of its kind. A rank without points has no
+  // say.
   for (ArrayKind& kind : all)
   {
     // A rank without flags of ghosts has none.
@@ -148,7 +152,11 @@ std::vector<ArrayKind> CommonArrays(
 
 namespace
 {
-/** Whether arrays are scalars, global ids and so on where they are on other ranks. */
+/**
+ * Whether arrays are scalars, global ids and so on where they are on other ranks. Arrays of the
+ * same names alone are not enough where each rank passes its own on: the parts of one surface would
+ * have different scalars.
+ */
 bool HasSame(vtkDataSetAttributes* data, const std::vector<ArrayKind>& kinds)
 {
   return std::all_of(kinds.begin(), kinds.end(), [data](const ArrayKind& kind) {
@@ -273,6 +281,7 @@ void PackArray(const ArrayKind& kind, vtkAbstractArray* array, const std::vector
     const std::size_t size = bytes.size();
     bytes.Resize(size + row * places.size());
     char* to = bytes.data() + size;
+    // Rows may be anywhere in the array.
     const char* const from = BytesOf(array);
     for (const vtkIdType place : places)
     {
@@ -281,6 +290,7 @@ void PackArray(const ArrayKind& kind, vtkAbstractArray* array, const std::vector
     }
     return;
   }
+  // Texts, or else bits.
   auto* const texts = vtkArrayDownCast<vtkStringArray>(array);
   for (const vtkIdType place : places)
   {
@@ -301,6 +311,7 @@ void PackArray(const ArrayKind& kind, vtkAbstractArray* array, const std::vector
 void UnpackArray(const ArrayKind& kind, vtkIdType first, vtkIdType count, const char*& from,
   vtkAbstractArray* array)
 {
+  // All tuples of a message are together here, so one copy does it.
   if (const std::size_t row = RowSize(kind))
   {
     TakeFrom(from, BytesOf(array) + row * first, row * count);
@@ -373,6 +384,7 @@ void PointTable::Unpack(const Bytes* packed, std::size_t count)
   }
   this->Coordinates.Resize(3 * static_cast<std::size_t>(all));
   this->Ids.Resize(static_cast<std::size_t>(all));
+  // With the rows that are there already, which keep their values.
   for (const auto& array : this->Arrays)
   {
     ReserveTuples(array, all); // keeps the values, unlike the next
@@ -431,6 +443,7 @@ DataSetPoints ViewOf(const PointTable& rows)
 {
   vtkNew<vtkDoubleArray> coordinates;
   coordinates->SetNumberOfComponents(3);
+  // Saved: VTK must not free the memory of the table.
   coordinates->SetArray(const_cast<double*>(rows.Coordinates.data()),
     static_cast<vtkIdType>(rows.Coordinates.size()), /*save=*/1);
   DataSetPoints points;

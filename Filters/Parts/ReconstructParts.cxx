@@ -116,6 +116,7 @@ void ReconstructParts::Close()
   this->IsLost = this->IsOnAllRanks = false;
 }
 
+// After a failure it is not known how far the work has come.
 void ReconstructParts::CheckIsComplete() const
 {
   if (this->IsLost)
@@ -328,6 +329,7 @@ void ReconstructParts::WorkOnAll(const Progress& progress)
   }
 }
 
+// The first step of 3. Points leave their source here; the parts are in files then.
 void ReconstructParts::Triangulate(const Progress& progress)
 {
   std::vector<Message> warnings;
@@ -347,6 +349,7 @@ void ReconstructParts::Triangulate(const Progress& progress)
   this->ReportWarnings(warnings);
 }
 
+// Trims the parts that MakePart() makes. What TrimParts keeps is what has come back, in files too.
 void ReconstructParts::Trim(const Progress& progress)
 {
   if (this->Work->GetTotals().Triangles == 0)
@@ -370,6 +373,7 @@ void ReconstructParts::Trim(const Progress& progress)
   this->ReportWarnings(warnings);
 }
 
+// Fills the parts that MakeTrimmed() makes. Rank 0 has part 0, and so the outlines.
 void ReconstructParts::Fill(const Progress& progress)
 {
   std::vector<Message> warnings;
@@ -507,6 +511,7 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
   return 1;
 }
 
+// Of the steps that are done; of those that were not asked for, 0.
 ReconstructParts::Counts ReconstructParts::GetCounts() const
 {
   Counts counts;
@@ -531,6 +536,8 @@ ReconstructParts::Counts ReconstructParts::GetCounts() const
   {
     counts.Holes = this->Filled->Result().Found.Count();
     counts.FilledHoles = CountFilled(this->Filled->Result());
+    // NewTriangleCount() may be below 0, where patches have fewer triangles than the regions that
+    // they replace.
     counts.FilledTriangles = this->Filled->NewTriangleCount() +
       (this->Trimmed ? counts.TrimmedTriangles : counts.Triangles);
   }

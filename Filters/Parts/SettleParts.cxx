@@ -291,11 +291,13 @@ bool Settling::JoinSeams(const SharedLattice* lattice)
     };
     this->Crew.ForEach(Progress(), [&](int part, const Progress&) {
       const Node node = Node::Of(part, level, count);
+      // The first part of the upper half, which has its seam.
       if (isJoined(node) && part == node.Middle())
       {
         Bytes bytes;
         AnyValue::Append(bytes, this->Seams[part]);
         this->Crew.Send(node.Begin, FromSeams, std::move(bytes));
+        // A seam is in memory at one place only.
         this->Seams.erase(part);
       }
     });

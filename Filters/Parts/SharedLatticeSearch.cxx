@@ -116,6 +116,8 @@ NodeBox AllNodes(const Ranks& ranks, const PointSlices& points, const Box& all,
   const Lattice& steps, const Progress& progress)
 {
   const NodeFinder nodeOf(steps);
+  // The look at all points is made only if the box of the points would be too large for the nodes:
+  // on all ranks or on none, as the box is the same.
   return FindNodeBox(nodeOf, all, steps, [&]() {
     NodeBox own;
     ranks.Agree([&]() {
@@ -127,6 +129,7 @@ NodeBox AllNodes(const Ranks& ranks, const PointSlices& points, const Box& all,
 }
 } // namespace
 
+// For points in memory.
 PointSlices InOneSlice(const PointView& points)
 {
   return { static_cast<double>(points.Count), [points](const auto& visit) { visit(points); } };
@@ -251,6 +254,7 @@ Lattice FromLowestNode(const Ranks& ranks, const PointSlices& points, const Shar
   ranks.Agree([&]() {
     ForEachFinite(points, Progress(), [&](const Point2& p) {
       const LatticeNode node = lattice.NodeOf(p);
+      // Row first: pairs are compared in this order.
       own = std::max(own, { -static_cast<double>(node.J), -static_cast<double>(node.I) });
     });
   });

@@ -58,7 +58,9 @@ SpoolFile::~SpoolFile()
 
 void SpoolFile::Append(const void* stretch, std::size_t size)
 {
+  // The first stretch also replaces a file that an earlier run has left behind.
   OpenFile file = Open(this->Path, this->Count > 0 ? "ab" : "wb", "written");
+  // Also where writing fails next: what has been written goes with the object.
   this->IsThere = true;
   const bool isWritten = std::fwrite(&size, sizeof(size), 1, file.get()) == 1 &&
     std::fwrite(stretch, 1, size, file.get()) == size;
@@ -92,6 +94,7 @@ void SpoolFile::ForEach(const std::function<void(Bytes&&)>& visit) const
 
 void SpoolFile::Remove()
 {
+  // Only what this object has made: a file of this name may be anybody's.
   if (this->IsThere)
   {
     std::remove(this->Path.c_str());

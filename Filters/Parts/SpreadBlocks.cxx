@@ -26,6 +26,10 @@ bool HasPoints(const Place& place)
   return points && points->GetNumberOfPoints() > 0;
 }
 
+/*
+ * One meeting: each rank says how much it has of which block. The size decides where a block is
+ * gathered, so that least is sent.
+ */
 std::map<vtkIdType, int> FindSpread(
   const std::vector<Place>& places, const Ranks& ranks, std::vector<vtkIdType>& occupied)
 {

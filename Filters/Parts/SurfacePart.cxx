@@ -94,6 +94,7 @@ void SortOwn(SurfacePart& part)
   own.Choose(places);
 }
 
+// A corner is listed once, in however many triangles it is.
 std::vector<GlobalId> ListOthers(
   const std::vector<GlobalTriangle>& triangles, GlobalId first, GlobalId end)
 {
@@ -108,6 +109,7 @@ std::vector<GlobalId> ListOthers(
   return others;
 }
 
+// Each corner takes a search among the others' numbers, unless it is an own point.
 void AppendTriangles(const std::vector<GlobalTriangle>& triangles, GlobalId first,
   const Progress& progress, SurfacePart& part)
 {
@@ -277,6 +279,7 @@ void TakeOver(Buffer<Value>& own, const Buffer<Value>& others, Array* array)
 }
 } // namespace
 
+// Points of others follow the own ones, so places are the output's ids as they are.
 void PassPart(SurfacePart& part, int threads, vtkPolyData* output)
 {
   const vtkIdType ownCount = static_cast<vtkIdType>(part.OwnPoints.Count());

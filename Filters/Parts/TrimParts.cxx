@@ -62,6 +62,7 @@ bool TrimParts::Trim()
   }
 }
 
+// All of it but the last pass. What it throws, it throws on all ranks.
 void TrimParts::TrimAll()
 {
   CheckOptions(this->Options);
@@ -278,6 +279,7 @@ void TrimParts::AddUp()
   this->Crew.ForEach(this->Fraction(0.97, 1.0), [&](int part, const Progress& progress) {
     Report(progress, 0.0);
     this->Crew.At(part, Back).ForEach([&](const Bytes& bytes) {
+      // Unpacked for its counts alone; Write() takes it.
       const TrimmedZone back(bytes);
       const vtkIdType owned = std::count(back.IsOwned.begin(), back.IsOwned.end(), char(1));
       kept += static_cast<vtkIdType>(back.Parents[0].size());
@@ -290,6 +292,7 @@ void TrimParts::AddUp()
   std::vector<vtkIdType> sums = { this->RankCounts.OutwardTriangles,
     this->RankCounts.RecoveredEdges, this->RankCounts.PointsLeftOut,
     this->RankCounts.InsertedPoints, kept, marked, this->Outline->GetNumberOfLines() };
+  // The rank that has trimmed knows it; on the others it is 0.
   std::vector<double> tolerance = { this->RankCounts.GapTolerance };
   all.Sum(sums);
   all.Maximum(tolerance);

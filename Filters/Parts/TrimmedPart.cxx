@@ -80,6 +80,7 @@ void TrimmedPart::LeaveOutCopies()
   this->List.Count = static_cast<Index>(this->Sources.size());
 }
 
+// The sweep's flags have no meaning for near triangles; they get the mark that says so.
 bool TrimmedPart::Sweep(const std::vector<Point2>& points, const Rings& rings, double numberOfAll,
   int threads, const Progress& progress)
 {
@@ -177,6 +178,7 @@ void TrimmedPart::Take(TrimmedZone&& back, const Progress& progress)
   this->FindOwn(progress);
 }
 
+// By the flags: after a sweep, without what comes back.
 vtkIdType TrimmedPart::SideCount(int side) const
 {
   const std::vector<char>& flags = this->Swept.IsOutward;
