@@ -133,7 +133,7 @@ elevation::TrimCounts TrimBlock(elevation::TrimOptions options, elevation::Block
   {
     lines = elevation::ToLines(given, progress.Between(0.0, 0.02));
   }
-  // Cell data take time to pass, all else is shared.
+  // Without cell data parents are not needed. Cell data take time to pass, all else is shared.
   options.ReturnParents = input->GetCellData()->GetNumberOfArrays() > 0;
   const double trimmedAt = options.ReturnParents ? 0.85 : 0.95;
   options.Monitor = progress.Between(0.02, trimmedAt);

@@ -122,7 +122,7 @@ std::string ChildName(vtkDataObjectTree* tree, unsigned int i)
 }
 
 /**
- * Adds the places of a tree.
+ * Adds the places of a tree, depth first: the order of the input's leaves.
  * @param[in] name,path  those of the tree; empty for the whole input
  */
 void AddPlaces(vtkDataObjectTree* input, const std::vector<vtkDataObjectTree*>& outputs,

@@ -107,7 +107,8 @@ void SetNewTuples(vtkAbstractArray* input, const NewValues& values, bool areNorm
 }
 
 /**
- * Numbers the new tuples of an array of global ids after its largest.
+ * Numbers the new tuples of an array of global ids after its largest. Of a part of a surface this
+ * is not the largest of all: FilledPart numbers them again.
  * @return whether the type has numbers for them
  */
 bool NumberNewTuples(vtkIdType numberOfNew, vtkAbstractArray* output)
@@ -171,6 +172,7 @@ vtkSmartPointer<vtkPolyData> ChosenPoints(
   points->SetDataType(source->GetPoints()->GetDataType());
   vtkNew<vtkIdList> ids;
   ids->SetNumberOfIds(static_cast<vtkIdType>(chosen.size()));
+  // From 32 to 64 bits.
   std::copy(chosen.begin(), chosen.end(), ids->begin());
   // Memory first: GetPoints() would not say that there is none.
   SetTuples(ids->GetNumberOfIds(), points->GetData());

@@ -77,6 +77,7 @@ vtkSmartPointer<vtkPolyData> WithoutHiddenCells(vtkPolyData* input)
   shown->EditableOn();
   shown->DeleteCells(); // the map of cells, which may be the input's
   shown->BuildCells();
+  // Of any kind of cell, strips included: VTK looks up its points.
   vtkNew<vtkIdList> corners;
   bool isAny = false;
   for (vtkIdType cell = 0; cell < shown->GetNumberOfCells(); ++cell)

@@ -116,7 +116,7 @@ bool AreMultiplesOfThree(vtkDataArray* offsets, vtkIdType count)
   return i > count;
 }
 
-/** What a message about a corner that is not a point says. */
+/** What a message about a corner that is not a point says. Apart from the loops that find it. */
 struct NoPoint
 {
   vtkIdType FirstCell;

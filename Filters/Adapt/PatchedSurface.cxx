@@ -132,7 +132,10 @@ void PassPoints(vtkPolyData* input, const FillResult& patches, bool interpolate,
     });
 }
 
-/** The triangles of the input that no patch replaces, in order. */
+/**
+ * The triangles of the input that no patch replaces, in order: all, but those of regions that are
+ * replaced. A region that failed keeps its triangles.
+ */
 std::vector<Index> ListKept(const Mesh& mesh, const FillResult& patches)
 {
   const std::vector<Index>& regionOf = patches.Found.RegionOf;

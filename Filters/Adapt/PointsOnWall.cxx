@@ -78,6 +78,7 @@ void WarnOfWall(std::vector<Sampled> sample, std::vector<Message>& warnings)
     return;
   }
   RemoveBlunders(sample);
+  // The scatter is that about the mean.
   Sampled middle = {};
   double unit = 0.0; // squares of large coordinates would be infinite
   for (const Sampled& p : sample)

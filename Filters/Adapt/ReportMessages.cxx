@@ -38,6 +38,7 @@ std::string Joined(const std::vector<Message>& messages)
 }
 
 /** Adds rows, name and value in turn. */
+// The row that begins a message has its kind as the name, and its code as the value.
 void AddRows(const char* kind, const std::vector<Message>& messages, std::vector<std::string>& rows)
 {
   for (const Message& message : messages)

@@ -243,6 +243,7 @@ vtkUnsignedCharArray* BoundaryMarksOf(vtkPointData* data)
   return marks && marks->GetNumberOfComponents() == 1 ? marks : nullptr;
 }
 
+// Values of added points were found where they were made; nothing is interpolated here.
 void PassTrimmedPoints(
   vtkPolyData* input, const TrimmedPoints& points, const Progress& progress, vtkPolyData* output)
 {
@@ -293,6 +294,7 @@ TrimCounts::TrimCounts(const Trimmed& trimmed)
 {
 }
 
+// On several ranks each output has the counts of its rank; their sums are the filter's.
 void AddCounts(const TrimCounts& counts, const std::vector<vtkPolyData*>& outputs)
 {
   for (vtkPolyData* output : outputs)

@@ -157,6 +157,8 @@ bool BoundaryZone::TrimOutline(
   this->IsOutline = true;
   this->JoinAll(options.Monitor.Between(0.0, 0.3));
   const TriangleList& list = this->Triangles.View;
+  // What the parts know, put together by joined triangles and points. Triangles of the joined list
+  // come part after part, and so do their states.
   std::vector<Known> states;
   std::vector<double> spacings(list.Points.Count, std::numeric_limits<double>::quiet_NaN());
   for (std::size_t part = 0; part < this->GivenParts.size(); ++part)
@@ -178,6 +180,7 @@ bool BoundaryZone::TrimOutline(
   }
   std::optional<std::vector<BorderEdge>> border =
     this->ProvenBorder(list.Points, options.Monitor.Between(0.3, 0.4));
+  // No sweep here: TrimNearOutline() makes one.
   if (!border || !this->AreSamePlaces())
   {
     return false;
@@ -412,6 +415,7 @@ void BoundaryZone::PlaceCorners(std::size_t part, std::vector<Index>& places,
       corner = place;
     }
   }
+  // Each part gets those of the boundary's points that it has, near or new; the list is sorted.
   const std::vector<Index>& onBoundary = this->Sides.OnBoundary;
   const auto isOnBoundary = [&](Index point) {
     return std::binary_search(onBoundary.begin(), onBoundary.end(), point);
@@ -432,6 +436,7 @@ void BoundaryZone::PlaceCorners(std::size_t part, std::vector<Index>& places,
       split.OnBoundary.push_back(static_cast<Index>(count) + static_cast<Index>(i));
     }
   }
+  // Clean again for the next part.
   for (const Index point : added)
   {
     places[point] = None;

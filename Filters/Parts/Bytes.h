@@ -137,6 +137,7 @@ struct AnyValue
         values.begin(), values.end(), [&bytes](const Value& value) { Append(bytes, value); });
     }
   }
+  /** A text and a message; the compiler prefers these to the template above. */
   static void Append(Bytes& bytes, const std::string& text) { AppendList(bytes, text); }
   static void Append(Bytes& bytes, const Message& message) { Append(bytes, message.Pack()); }
 

@@ -106,6 +106,7 @@ std::vector<vtkIdType> CommonPoints::Sorted(const Progress& progress) const
 {
   const auto isMarked = [this](
                           vtkIdType i) { return !this->IsMarked.empty() && this->IsMarked[i]; };
+  // All numbers: so far each point stands for itself.
   std::vector<vtkIdType> order = this->First;
   elevation::Sort(
     order.begin(), order.end(),
@@ -117,6 +118,7 @@ std::vector<vtkIdType> CommonPoints::Sorted(const Progress& progress) const
   return order;
 }
 
+// In the order of Sorted(), so that the first of a run is an owner's, if any is.
 void CommonPoints::Match(const vtkIdType* begin, const vtkIdType* end, PartKind kind, bool haveIds)
 {
   if (haveIds || kind == PartKind::Points)

@@ -438,6 +438,7 @@ ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
 SharedLines AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
   const DelaunayOptions& options, const Progress& progress, std::vector<Message>& warnings)
 {
+  // Its lists are only needed until the pieces have numbers of all points.
   AddedLines lines(store, source, plane, options, progress);
   lines.Read();
   lines.ListNear(warnings);
@@ -459,6 +460,7 @@ bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& pr
   {
     return false;
   }
+  // By their places, which every part can look for.
   std::vector<Ends> pieces;
   crew.AllRanks().Agree([&]() {
     for (const std::size_t i : missing)
@@ -482,6 +484,7 @@ bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& pr
   });
   crew.Deliver();
   crew.ForEach(progress.Between(0.6, 1.0), [&](int part, const Progress& ofPart) {
+    // One part alone recovers: pieces run through several parts, and are few.
     if (part == 0)
     {
       const auto sent = ValuesIn<SentTriangle>(crew.At(part, Meeting));

@@ -107,6 +107,10 @@ std::vector<char> FilledPart::AreOthers() const
   return areOthers;
 }
 
+/*
+ * All points, used by a triangle or not: the lattice is that of all, and the limit of new points
+ * too.
+ */
 vtkIdType FilledPart::OwnCount() const
 {
   const std::vector<char> areOthers = this->AreOthers();
@@ -129,11 +133,13 @@ PointView FilledPart::OwnPoints(Buffer<double>& kept) const
     }
   }
   PointView some;
+  // In double whatever the input has: rows are put together from those that count.
   some.Double = kept.data();
   some.Count = static_cast<Index>(kept.size() / 3);
   return some;
 }
 
+// Of all corners of patches, and of the points nearest to new ones, whose values these get.
 void FilledPart::FindCorners()
 {
   const Index first = static_cast<Index>(this->Filled.Keys.size());

@@ -47,7 +47,7 @@ bool IsOtherType(const Place& place)
   return !vtkPointSet::SafeDownCast(place.Input);
 }
 
-/** The type of the first input, in any block. */
+/** The type of the first input, in any block: what the filter named first in FillInput(). */
 const char* RequiredType(vtkAlgorithm* filter)
 {
   return filter->GetInputPortInformation(0)->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), 0);
@@ -94,6 +94,7 @@ void KeepUsed(vtkPolyData* surface, const Ranks& ranks, const Progress& progress
   std::vector<char> areUsed;
   std::vector<PointKey> keys; // of points of others that are used here
   const bool hasPoints = surface && surface->GetNumberOfPoints() > 0;
+  // Either all ranks go by ids or none does: keys of both kinds would not meet.
   const bool byIds = !IsOnAny(ranks, hasPoints && !surface->GetPointData()->GetGlobalIds());
   // With areCopies: ghosts that are used here. Without: own points that are not.
   const auto forEach = [&](bool areCopies, const auto& visit) {
@@ -112,6 +113,7 @@ void KeepUsed(vtkPolyData* surface, const Ranks& ranks, const Progress& progress
   });
   keys = ranks.Collect(keys);
   ranks.Agree([&] {
+    // Only now is it known which of the own points another rank uses.
     std::sort(keys.begin(), keys.end());
     forEach(false, [&keys](char& isUsed, const PointKey& key) {
       isUsed = std::binary_search(keys.begin(), keys.end(), key);
@@ -399,6 +401,7 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
   }
   // The parts of a block on this rank in one, even if it has none: all ranks take part.
   Block block{ nullptr, second, {}, progress, {} };
+  // Kept alive here: a block only points to its input.
   vtkSmartPointer<vtkPointSet> own;
   ranks.Agree([&] { own = JoinHere(PartsOf(places), this->InputKind(), block.Warnings); });
   block.Input = own;
@@ -424,6 +427,7 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
     return false;
   }
   this->AddMessages(places, block.Warnings, this->Warnings);
+  // The other places of the block have nothing to work on any more.
   Empty(places);
   if (home)
   {

@@ -31,6 +31,7 @@ void CheckCorners(vtkPolyData* part)
 {
   const vtkIdType count = part->GetNumberOfPoints();
   vtkIdType cell = 0;
+  // In this order, by which cells are numbered; strips have been refused.
   for (vtkCellArray* cells : { part->GetVerts(), part->GetLines(), part->GetPolys() })
   {
     auto each = vtk::TakeSmartPointer(cells->NewIterator());

@@ -108,6 +108,7 @@ public:
     : Bounds(all)
     , Counts(static_cast<std::size_t>(Side + 1) * (Side + 1), 0)
   {
+    // One row and column more than there are cells: a difference may stand just beyond the last.
     std::vector<Index> marks(this->Counts.size(), 0); // differences
     for (const Box& box : boxes)
     {
@@ -127,6 +128,7 @@ public:
         const auto at = [&](std::vector<Index>& from, int di, int dj) {
           return i >= di && j >= dj ? from[Place(i - di, j - dj)] : 0;
         };
+        // Then each is the number of boxes over the cell.
         marks[Place(i, j)] += at(marks, 1, 0) + at(marks, 0, 1) - at(marks, 1, 1);
       }
     }
@@ -134,6 +136,7 @@ public:
     {
       for (int i = 0; i < Side; ++i)
       {
+        // Each marked cell counts once, however many boxes touch it.
         this->Counts[Place(i + 1, j + 1)] = (marks[Place(i, j)] > 0 ? 1 : 0) +
           this->Counts[Place(i, j + 1)] + this->Counts[Place(i + 1, j)] - this->Counts[Place(i, j)];
       }

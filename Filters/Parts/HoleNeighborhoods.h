@@ -3,6 +3,9 @@
 /**
  * @file
  * Which triangles of a surface a hole needs to be filled, and on which rank. Private to the module.
+ *
+ * SharedHoles asks for extents and boxes, FillParts for ranks and triangles. All of it is by the
+ * holes and the mesh alone: no rank is asked here.
  */
 #ifndef HoleNeighborhoods_h
 #define HoleNeighborhoods_h

@@ -33,7 +33,7 @@ namespace elevation
 
 namespace
 {
-/** Copies some tuples; copy(to, from) does. */
+/** Copies some tuples; copy(to, from) does, for two lists of the same length. */
 template <typename Copy>
 void CopyRows(const Rows& rows, const Progress& progress, const Copy& copy)
 {

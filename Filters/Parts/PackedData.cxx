@@ -155,6 +155,7 @@ vtkSmartPointer<vtkPolyData> UnpackData(const char* from, std::size_t size)
   const char* const end = from + size;
   std::size_t marksSize = 0;
   TakeFrom(from, &marksSize, 1);
+  // The bytes stay the caller's; neither the marks nor VTK's buffer is copied.
   const char* const marks = from;
   from += marksSize;
   vtkNew<vtkCharArray> buffer;

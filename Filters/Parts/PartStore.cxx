@@ -277,6 +277,7 @@ void PartStore::Forget(int part)
   }
 }
 
+// In memory the part leaves the store, which has none then.
 SurfacePart PartStore::TakeWhole(int part, const Progress& progress)
 {
   if (!this->Crew.IsInFiles())
@@ -285,11 +286,13 @@ SurfacePart PartStore::TakeWhole(int part, const Progress& progress)
   }
   SurfacePart taken =
     this->Crew.IsInFiles() ? this->ReadWhole(part, progress) : std::move(this->Part);
+  // No other id is as high: FirstLineId is above the largest of all that were given.
   taken.AddedPoints = static_cast<Index>(std::count_if(taken.OwnPoints.Ids.begin(),
     taken.OwnPoints.Ids.end(), [this](vtkIdType id) { return id >= this->FirstLineId; }));
   return taken;
 }
 
+// From files without sorting: stretches as they came, each in the order of ids.
 void PartStore::ForEachRows(const std::function<void(const PointTable&)>& visit) const
 {
   for (int part = this->Crew.FirstOwn(); part < this->Crew.EndOwn(); ++part)

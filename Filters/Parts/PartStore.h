@@ -128,7 +128,11 @@ public:
     return this->Part.Bases[this->Crew.EndOwn()] - this->Part.Bases[this->Crew.FirstOwn()];
   }
 
-  /** No part may have more points than an Index counts. @throws Error */
+  /**
+   * No part may have more points than an Index counts. CheckCounts() looks at all parts, on all
+   * ranks.
+   * @throws Error naming more parts as the way out
+   */
   void CheckCount(std::size_t count) const;
   void CheckCounts() const;
 
@@ -197,7 +201,10 @@ public:
   /** The same part; from memory it can be taken once. */
   SurfacePart TakeWhole(int part, const Progress& progress);
 
-  /** Visits the points of this rank, part after part; from files, stretch after stretch. */
+  /**
+   * Visits the points of this rank, part after part; from files, stretch after stretch. Each visit
+   * of all of them is in the same order, on which the search for a lattice relies.
+   */
   void ForEachRows(const std::function<void(const PointTable&)>& visit) const;
   PointSlices Slices() const;
 

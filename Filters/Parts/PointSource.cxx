@@ -221,7 +221,7 @@ void PointSource::SampleStretch(const std::vector<vtkIdType>& places)
   }
 }
 
-/** What the mask admits. */
+/** Keeps what the mask admits; the order stays. */
 void PointSource::KeepSample()
 {
   const auto out =
@@ -356,6 +356,7 @@ Cuts PointSource::CutPlane(int parts)
   {
     coordinates = this->SampleAtOnce(parts);
   }
+  // Rank after rank: the same list on all of them, from which each cuts in the same way.
   coordinates = this->AllRanks.Collect(coordinates);
   std::unique_ptr<Cuts> plane;
   this->AllRanks.Agree([&]() {

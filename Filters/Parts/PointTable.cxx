@@ -264,6 +264,7 @@ namespace
 /** The numbers of a table's array, which lie as View() and MakeArray() leave them: one after another. */
 char* BytesOf(vtkAbstractArray* array)
 {
+  // The macro makes a case of each type of numbers, in which VTK_TT is that type.
   switch (array->GetDataType())
   {
     vtkTemplateMacro(return reinterpret_cast<char*>(

@@ -114,6 +114,8 @@ void RankNotes::Meet(
   Sent arrival(this->Ranks, ArrivalTag);
   std::vector<int> missing;
   arrival.ForEachOther([&missing](int rank) { missing.push_back(rank); });
+  // Asked for rank by rank, as messages of one rank come in the order of sending: a note of the
+  // next meeting cannot overtake that of this one.
   const auto hasCome = [this](int rank) {
     int isThere = 0, source = 0, note = 0;
     this->Ranks->Iprobe(rank, ArrivalTag, &isThere, &source);

@@ -447,6 +447,7 @@ bool IsOnAny(const Ranks& ranks, bool isOnThis)
   return count[0] > 0;
 }
 
+// In the order of ranks. What concerns a block that is spread has been said by all of them alike.
 std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& ranks)
 {
   std::vector<Message> all;

@@ -57,7 +57,9 @@ public:
   Ranks(vtkMultiProcessController* controller, vtkInformation* request,
     vtkInformationVector* outputs, const std::function<void(const Message&)>& waiting);
 
-  /** A minute, but in tests. */
+  /**
+   * How long a rank waits for others before it says so: a minute, but in tests. The wait goes on.
+   */
   static std::chrono::milliseconds Patience;
 
   int OwnRank() const;

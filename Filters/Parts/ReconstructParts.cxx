@@ -31,7 +31,10 @@ namespace elevation
 {
 namespace
 {
-/** Input 1 of a filter, brought up to date; nullptr: there is none. */
+/**
+ * Input 1 of a filter, brought up to date; nullptr: there is none. The filters that hold the
+ * settings are not run themselves, so nobody else updates what is connected to them.
+ */
 vtkDataObject* UpdatedLines(vtkAlgorithm* filter)
 {
   if (filter->GetNumberOfInputConnections(1) == 0)
@@ -102,7 +105,7 @@ void ReconstructParts::Open(vtkMultiProcessController* controller)
   }
 }
 
-// Each step uses those before it.
+// Each step uses those before it, and goes first. Files go with their boxes.
 void ReconstructParts::Close()
 {
   this->Filled.reset();
@@ -284,6 +287,7 @@ void ReconstructParts::Check() const
   {
     CheckedSteps(options.GivenLattice);
   }
+  // From here on, what can only be done with all points, or all of the surface, in memory.
   if (options.MaximumElevationError > 0.0)
   {
     throw MakeError<sentences::ErrorNotInPieces>();

@@ -110,6 +110,7 @@ private:
   const Ranks& AllRanks;
   const Cuts& Plane;
   const DelaunayOptions& Options;
+  // Of the nodes that wait for their other half.
   std::map<int, Piece> Seams; // of nodes, by their first parts
   bool IsOffLattice = false;  // a point of this rank is
   SettledParts Found;         // sums of this rank until the end

@@ -129,6 +129,7 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
   ranks.Agree([&]() {
     for (std::size_t i = 0; i < points.Places.size(); ++i)
     {
+      // All points that may be shared go, also those that no rank has marked.
       const MetPoint met{ points.Keys[i], points.AreCopies[i], ranks.OwnRank(),
         static_cast<vtkIdType>(i) };
       AppendTo(packed[RankOf(BitsOf(met.Key), ranks)], &met, 1);
@@ -136,6 +137,7 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
   });
   packed = ranks.Exchange(std::move(packed));
   ranks.Agree([&]() {
+    // This rank answers for the keys that the hash gives to it.
     std::vector<MetPoint> met = Unpacked<MetPoint>(packed);
     packed = std::vector<Bytes>(ranks.Count());
     const auto keyOf = [](const MetPoint& p) {
@@ -239,9 +241,11 @@ void KeepSingleEdges(PartEdges& all)
   std::vector<PartEdge> single;
   for (std::size_t i = 0; i < edges.size(); ++i)
   {
+    // The second runs from where the first ends to where it begins.
     const bool isPair = i + 1 < edges.size() && edges[i].Ends[0] == edges[i + 1].Ends[1] &&
       edges[i].Ends[1] == edges[i + 1].Ends[0];
     const std::size_t next = i + (isPair ? 2 : 1);
+    // What follows a pair, or a single edge, has to be another edge.
     if (next < edges.size() &&
       std::minmax(edges[i].Ends[0], edges[i].Ends[1]) ==
         std::minmax(edges[next].Ends[0], edges[next].Ends[1]))
@@ -271,6 +275,7 @@ SharedBorder::SharedBorder(PartEdges&& edges)
   std::copy_if(border.begin(), border.end(), std::back_inserter(edges.OfRegions), isOfRegion);
   for (std::vector<PartEdge>* some : { &border, &edges.OfRegions })
   {
+    // Holes are numbered by this order (FindBorderHoles), and so must be the same on all ranks.
     std::sort(some->begin(), some->end(), [](const PartEdge& a, const PartEdge& b) {
       return std::tie(a.Part, a.HalfEdge) < std::tie(b.Part, b.HalfEdge);
     });

@@ -115,7 +115,8 @@ private:
 };
 
 /**
- * Appends the border of a part, and the edges around its regions.
+ * Appends the border of a part, and the edges around its regions. All their ends have to be among
+ * the shared points, whose keys they get. log(points) steps for each.
  * @param[in] mesh      with Twins
  * @param[in] regionOf  from NumberRegions()
  */

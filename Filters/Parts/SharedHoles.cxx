@@ -105,6 +105,7 @@ void SharedHoles::DropRegionsWithoutRoom()
   KeepRegions({ this->HaveRoom.begin(), this->HaveRoom.end() }, this->Result.Found);
 }
 
+// From the region of a part to that of all, to its number as a hole, to the number that is left.
 Index SharedHoles::NumberOf(int part, Index region) const
 {
   return this->NewNumbers[this->FirstRegion + this->Border.Regions.at({ part, region })];
@@ -119,6 +120,10 @@ void SharedHoles::NumberNewPoints()
   }
 }
 
+/*
+ * A surface of its own of what parts have sent: points that are one are joined, and triangles
+ * between parts become neighbours again.
+ */
 void SurroundedHoles::Surround(const Parts& parts, const SharedHoles& all, const Progress& progress)
 {
   std::vector<Message> warnings; // none: all have the same arrays

@@ -28,7 +28,10 @@
 namespace elevation
 {
 
-/** As it goes to other ranks. */
+/**
+ * As it goes to other ranks. The structured binding names all members: with one more in the report,
+ * this does not compile until it is sent, too.
+ */
 template <>
 struct FieldsOf<HoleReport>
 {

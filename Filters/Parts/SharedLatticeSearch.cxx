@@ -182,6 +182,7 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
   return isFound;
 }
 
+// Whether each point is on it is not known yet: that is found while cells are triangulated.
 bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
   const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice)
 {
@@ -233,6 +234,7 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
       throw BesideGivenLattice(beside[0], place, steps, tolerance);
     }
   });
+  // Empty if no rank has a finite point.
   const Box box = JoinBoxes(ranks, own);
   if (box.Low.X > box.High.X)
   {

@@ -40,6 +40,7 @@ int OwnerOf(GlobalId number, const std::vector<vtkIdType>& bases)
   return static_cast<int>(next - bases.begin()) - 1;
 }
 
+// Most corners are own ones, and need no search.
 std::size_t SurfacePart::PlaceOf(GlobalId number, GlobalId first) const
 {
   const std::size_t ownCount = this->OwnPoints.Count();

@@ -75,7 +75,7 @@ struct SurfacePart
 
 /**
  * Brings the own points into the order of their ids, which decides among duplicates. Points of the
- * same id are the same, and count once.
+ * same id are the same, and count once. Linear where they are in order already, else n log n.
  * @throws Error if they are in different places
  */
 void SortOwn(SurfacePart& part);

@@ -276,7 +276,8 @@ void TriangulateParts::WarnOfMissing(std::vector<Message>& warnings) const
   }
 }
 
-// The limit of edges is applied again, which is faster than writing what it leaves.
+// The limit of edges is applied again, which is faster than writing what it leaves. Corners of
+// others that only long triangles had go with these (KeepCorners).
 SurfacePart TriangulateParts::Take(int part, const Progress& progress)
 {
   SurfacePart taken = this->Store->TakeWhole(part, progress.Between(0.0, 0.7));

@@ -181,6 +181,8 @@ void TrimParts::FindNear(int margin)
       this->Sweep(own, progress.Between(0.5, 1.0));
       // The 1 prefers a part with triangles as the home, even if none is near.
       near.back() = own.NearCount() + (own.TriangleCount() > 0 ? 1 : 0);
+      // Packed at once, as the part in files goes; near triangles and borders of all own parts are
+      // kept.
       this->NearParts.back() = PackData(own.NearPart());
       this->Near += own.NearCount();
       this->RankCounts.OutwardTriangles += own.SideCount(1);

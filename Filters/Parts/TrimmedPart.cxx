@@ -247,6 +247,7 @@ void TrimmedPart::FindOwn(const Progress& progress)
 TrimmedSide TrimmedPart::SideOf(int side, const Progress& progress) const
 {
   TrimmedSide written;
+  // Corners by points of the output; parents by triangles of the input, copies of others included.
   const auto add = [this, &written](const auto& cornerOf, Index triangle) {
     for (int k = 0; k < 3; ++k)
     {
@@ -268,6 +269,7 @@ TrimmedSide TrimmedPart::SideOf(int side, const Progress& progress) const
   for (std::size_t i = 0; i < parents.size(); ++i)
   {
     const Index triangle = this->Swept.Near[parents[i]];
+    // An outline cuts no triangle, so none but their numbers came back.
     if (this->Back.Corners[side].empty())
     {
       add([&](int k) { return this->List.CornersOf(triangle)[k]; }, triangle);
@@ -290,6 +292,8 @@ void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* b
   PassTrimmedPoints(this->Input, this->Points, progress.Between(0.0, 0.2), kept);
   if (boundary)
   {
+    // The owner's points that only ghosts elsewhere have shown to be on the boundary, then all
+    // others.
     std::vector<Index> onBoundary = this->FarOnBoundary;
     const Index sent = static_cast<Index>(this->Sent.size());
     for (const Index point : this->Back.OnBoundary)
@@ -306,6 +310,7 @@ void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* b
     outward->SetPoints(kept->GetPoints());
     outward->GetPointData()->PassData(kept->GetPointData());
   }
+  // Vertices and lines come first in the numbers of cells, but on the kept side alone.
   for (const int side : { 0, 1 })
   {
     if (vtkPolyData* const output = side == 0 ? kept : outward)
