@@ -4,10 +4,10 @@
  * @file
  * The ranks (processes) on which a filter runs at the same time. Private to the module.
  *
- * Every function below that is a meeting says "all ranks" or is listed in the class comment. The
- * rule for whoever calls them: what decides whether a meeting takes place has to be the same on all
- * ranks. A value that only this rank knows must go through Sum(), Collect() or IsOnAny() first. And
- * nothing between two meetings may throw on one rank alone: work that may fail stands in Agree().
+ * All functions but OwnRank(), Count(), Watched(), GetTraffic(), Send() and Receive() are meetings
+ * of all ranks. What decides whether a meeting takes place has to be the same on all of them. A
+ * value that only this rank knows must go through Sum(), Collect() or IsOnAny() first. And nothing
+ * between two meetings may throw on one rank alone: work that may fail stands in Agree().
  */
 #ifndef Ranks_h
 #define Ranks_h

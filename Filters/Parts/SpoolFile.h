@@ -22,8 +22,8 @@ namespace elevation
  *
  *   | size | bytes ... | size | bytes ... | ...      size is a std::size_t; no stretch is empty
  *
- * The number of stretches stays in memory. So a file that has been cut off, or replaced, is noticed
- * when it is read.
+ * The number of stretches stays in memory. So a file that has been cut off is noticed when it is
+ * read.
  */
 class SpoolFile
 {

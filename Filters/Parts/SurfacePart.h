@@ -108,7 +108,8 @@ void KeepCorners(SurfacePart& part);
 
 /**
  * Hands over points, arrays, marks of ghosts, global ids and triangles; they leave the part. Memory
- * of coordinates, ids and corners becomes that of the data set, without a copy of all but Others.
+ * of ids, corners and double coordinates becomes that of the data set; only Others are copied
+ * behind it.
  */
 void PassPart(SurfacePart& part, int threads, vtkPolyData* output);
 
