@@ -1,5 +1,15 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * RequestData() hands two functions to FilterRun (Parts/FilterRun.h): FillBlock(), the way of a
+ * block on one rank, and FillOnRanks() (Parts/FillParts.h), that of a block on several.
+ * FillBlock():
+ *
+ * 1. Check properties and arrays; convert to a mesh with twins.
+ * 2. Find the holes, which also proves that the mesh is an elevation surface; open long triangles.
+ * 3. Fill the holes by the kernel.
+ * 4. Make outputs 0 and 1 of the patches (Adapt/PatchedSurface.h); count and warn.
+ */
 #include "vtkFillElevationHoles.h"
 
 #include "Adapt/Adapt.h"
@@ -35,6 +45,7 @@ FillOptions OptionsOf(vtkFillElevationHoles* filter)
   options.MaximumHoleEdges = toIndex(filter->GetMaximumHoleEdges(), VTK_INT_MAX);
   options.Spacing = filter->GetSpacing();
   options.FillCutOuts = filter->GetFillCutOuts();
+  // The assertions below hold the numbers of both together.
   options.Method = static_cast<Interpolation>(filter->GetInterpolation());
   const vtkIdType most = filter->GetMaximumNumberOfInsertedPoints();
   options.MaximumInsertedPoints =
@@ -51,6 +62,7 @@ VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkFillElevationHoles);
 vtkCxxSetObjectMacro(vtkFillElevationHoles, Controller, vtkMultiProcessController);
 
+// Users see these numbers: those of a property, and those of arrays in the output.
 static_assert(vtkFillElevationHoles::NEIGHBOR_MEAN == int(elevation::Interpolation::NeighborMean) &&
     vtkFillElevationHoles::MEMBRANE == int(elevation::Interpolation::Membrane) &&
     vtkFillElevationHoles::THIN_PLATE == int(elevation::Interpolation::ThinPlate) &&
@@ -83,9 +95,12 @@ FillResult FillBlock(
   const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
   Mesh mesh;
   elevation::ToMesh(input, mesh, progress.Between(0.0, 0.15));
+  // Cells are named with their numbers among all cells of the input, vertices and lines included.
   mesh.ConnectTwins(firstPolygon, progress.Between(0.15, 0.4));
   Holes found = elevation::FindHoles(mesh, firstPolygon, progress.Between(0.4, 0.5));
   Mesh opened;
+  // The mesh without long triangles is the surface that is known; `mesh` keeps all triangles, as
+  // those of regions that are not filled stay in the output.
   const bool isOpened = openEdgeLength > 0.0 &&
     elevation::OpenLongTriangles(mesh, openEdgeLength, found, opened, progress.Between(0.5, 0.55));
 
@@ -93,17 +108,21 @@ FillResult FillBlock(
   {
     options.Attributes = elevation::AttributesOf(input->GetPointData());
   }
+  // New points are rounded before they are triangulated: rounding afterwards could turn triangles
+  // over.
   options.SinglePrecision = elevation::HasFloatPoints(input);
   if (vtkUnsignedCharArray* const marks = elevation::BoundaryMarksOf(input->GetPointData()))
   {
     options.OnBoundary.assign(
       marks->GetPointer(0), marks->GetPointer(0) + marks->GetNumberOfTuples());
   }
+  // Without a hole, filling takes no time.
   const double filledAt = found.Count() > 0 ? 0.85 : 0.55;
   const elevation::Progress filling = progress.Between(0.55, filledAt);
   options.Monitor = filling;
   FillResult patches =
     elevation::FillHoles(isOpened ? opened : mesh, points.View, std::move(found), options);
+  // After filling: the kernel numbers holes from 0.
   patches.FirstNumber = elevation::NextHole(input);
 
   MakeSurface(
@@ -111,6 +130,7 @@ FillResult FillBlock(
   MakeReport(input, patches, progress.Between(0.97, 1.0), block.Outputs[1]);
   AddHoleCounts(patches, block.Outputs);
   block.Warnings = WarningsOf(patches);
+  // Instead of others: there can be none. A filter before this one may have warned already.
   if (mesh.NumberOfTriangles() == 0 && elevation::NeedsWarning(input))
   {
     block.Warnings = { elevation::MakeMessage<elevation::sentences::NothingToFill>() };
@@ -165,12 +185,14 @@ int vtkFillElevationHoles::RequestData(
     this->NumberOfHoles += patches.Found.Count();
     this->NumberOfFilledHoles += CountFilled(patches);
   };
+  // A block on several ranks: without gathering it, if that can be done.
   call.Spread = [&](elevation::Block& block, const elevation::Ranks& ranks) {
     FillResult patches;
     if (!elevation::FillOnRanks(ranks, options, interpolates, this->OpenEdgeLength, block, patches))
     {
       return false;
     }
+    // FillBlock() does these two for a block on one rank.
     AddHoleCounts(patches, block.Outputs);
     block.Warnings = WarningsOf(patches);
     if (ranks.OwnRank() == 0) // all ranks know them
@@ -184,6 +206,7 @@ int vtkFillElevationHoles::RequestData(
   });
 }
 
+// The old name of a property, kept for scripts; it warns, and does what it did.
 void vtkFillElevationHoles::SetMaximumEdgeLength(double length)
 {
   elevation::ReportMessages(this, {},

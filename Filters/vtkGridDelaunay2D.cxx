@@ -1,5 +1,21 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * RequestData() hands two functions to FilterRun (Parts/FilterRun.h): TriangulateBlock(), the way
+ * of a block on one rank, and TriangulateSpread(), that of a block on several, which leaves the
+ * work to TriangulateParts (Parts/TriangulateParts.h). TriangulateBlock():
+ *
+ * 1. Check properties and arrays; view the points.
+ * 2. Triangulate by the kernel, with the constraints as edges, unless they are draped.
+ * 3. Warn where the points are a wall, where there is no triangle, or a limit leaves few.
+ * 4. Pass points, those that constraints add, and triangles.
+ * 5. Drape: split the triangles where the constraints cross them.
+ * 6. Report in field data.
+ *
+ * Warnings on what a user has probably not meant cost little where there is nothing to warn of. The
+ * one that costs much, WarnOfLimit(), triangulates again without the limit, and only where most
+ * points have lost their triangles.
+ */
 #include "vtkGridDelaunay2D.h"
 
 #include "Adapt/Adapt.h"
@@ -72,6 +88,7 @@ ConstraintLines LinesOf(vtkPolyData* source, const elevation::DataSetPoints& own
   std::vector<elevation::Message>& warnings)
 {
   const ConstraintLines lines = elevation::ToLines(source, own, progress.Between(0.0, 0.5));
+  // By all finite points, not only those that become vertices.
   const elevation::Box box =
     elevation::FindExtent(points, elevation::ResolveNumberOfThreads(threads),
       progress.Between(0.5, 1.0), [](Index, const elevation::Point2&) {});
@@ -84,6 +101,7 @@ elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
   const elevation::PointView& points, elevation::DelaunayOptions options, const Progress& progress,
   std::vector<elevation::Message>& warnings)
 {
+  // Without lines the points may be triangulated as a lattice.
   if (!source)
   {
     options.Monitor = progress;
@@ -118,6 +136,7 @@ double Quantile(std::vector<double>& values, double part)
 {
   const auto at =
     values.begin() + elevation::QuantilePlace(part, static_cast<vtkIdType>(values.size()));
+  // Linear: one value is looked for, and the rest needs no order.
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -132,6 +151,8 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   {
     return;
   }
+  // Vertices are input points and added ones, but for unused points; those of no triangle are
+  // missing.
   const std::size_t ids = points.Count + constrained.Added.size();
   elevation::LimitEffect effect;
   effect.Vertices = static_cast<vtkIdType>(ids - found.UnusedPoints.size());
@@ -141,9 +162,12 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   {
     return;
   }
+  // First without the lengths, which may take too much memory to find; then that warning is
+  // replaced.
   warnings.push_back(elevation::AdviceOnLimit(options.MaximumEdgeLength, effect));
   const double limit = options.MaximumEdgeLength;
   options.MaximumEdgeLength = 0.0;
+  // Warnings on the constraints, which have been given once.
   std::vector<elevation::Message> again;
   const elevation::ConstrainedTriangulation full =
     TriangulateWith(source, points, options, progress.Between(0.05, 0.7), again);
@@ -153,6 +177,7 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   elevation::EdgeMeasures lengths =
     elevation::MeasureEdges(full.Result.Triangles, ids, placeOf, progress.Between(0.7, 1.0));
   std::vector<double>& limits = lengths.Limits;
+  // Unused points, which no limit gives a triangle.
   limits.erase(std::remove(limits.begin(), limits.end(), std::numeric_limits<double>::infinity()),
     limits.end());
   effect.HasLengths = true;
@@ -167,6 +192,7 @@ void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
   const elevation::DelaunayOptions& options, const elevation::ConstrainedTriangulation& constrained,
   const Progress& progress, std::vector<elevation::Message>& warnings)
 {
+  // No hull: the points are none, one, or on one line, and no limit has to do with it.
   if (constrained.Result.NumberOfHullPoints == 0)
   {
     elevation::WarnOfNoTriangle(points.Count, constrained.Result.NumberOfHidden, warnings);
@@ -187,6 +213,8 @@ vtkIdType Drape(vtkPolyData* lines, const elevation::PointView& points, int thre
   const Progress& progress, std::vector<elevation::Message>& warnings, vtkPolyData* surface)
 {
   elevation::CheckPointArrays(lines, "The constraints'");
+  // The same checks as for constraints that become edges; but what lies outside of the surface is
+  // not draped, and that is another sentence.
   std::vector<elevation::Message> found;
   LinesOf(lines, elevation::ViewPoints(lines), points, threads, progress.Between(0.0, 0.0), found);
   for (const elevation::Message& message : found)
@@ -209,6 +237,7 @@ elevation::ConstrainedTriangulation TriangulateBlock(
   elevation::CheckOptions(options);
   elevation::CheckPointArrays(block.Input);
   const elevation::DataSetPoints points = elevation::ViewPoints(block.Input);
+  // Of the second input, one or the other.
   vtkPolyData* const draped = drapes ? block.Second : nullptr;
   vtkPolyData* const source = draped ? nullptr : block.Second;
   const double split = draped ? 0.7 : 1.0;
@@ -217,6 +246,7 @@ elevation::ConstrainedTriangulation TriangulateBlock(
   const double triangulated = options.MaximumEdgeLength > 0.0 ? advised - 0.09 : advised;
   elevation::ConstrainedTriangulation made = TriangulateWith(
     source, points.View, options, progress.Between(0.0, triangulated), block.Warnings);
+  // Before warnings, which count hidden points apart.
   elevation::NameHidden(elevation::GhostsOf(block.Input->GetPointData()), made.Result);
   elevation::WarnOfWall(elevation::SampleOf(points.View), block.Warnings);
   WarnOfMissing(
@@ -227,6 +257,8 @@ elevation::ConstrainedTriangulation TriangulateBlock(
     std::move(made.Result.Triangles), elevation::ResolveNumberOfThreads(options.NumberOfThreads)));
   if (draped)
   {
+    // AddReport() looks at the number of points added alone; draped lines add theirs after the
+    // kernel.
     made.Added.resize(static_cast<std::size_t>(Drape(draped, points.View, options.NumberOfThreads,
       progress.Between(split, 1.0), block.Warnings, output)));
   }
@@ -250,6 +282,7 @@ elevation::ConstrainedTriangulation TriangulateSpread(
   options.Monitor = block.Progress;
   elevation::TriangulateParts parts(ranks);
   parts.Add(block.Input, options.Monitor);
+  // A rank without a place for the block holds no part of it, and has none of its points.
   parts.Triangulate(block.Outputs.empty() ? 0 : 1, block.Second, options, block.Warnings);
   const elevation::TriangulateParts::Totals& all = parts.GetTotals();
   elevation::WarnOfLeftOut("point", parts.LeftOut(), block.Warnings);
@@ -260,6 +293,7 @@ elevation::ConstrainedTriangulation TriangulateSpread(
       sample = elevation::SampleOf(elevation::ViewPoints(block.Input).View);
     }
   });
+  // All ranks get the whole sample, and so the same warning, which is reported once.
   elevation::WarnOfWall(ranks.Collect(sample), block.Warnings);
   parts.WarnOfMissing(block.Warnings);
   elevation::ConstrainedTriangulation counts;
@@ -269,6 +303,7 @@ elevation::ConstrainedTriangulation TriangulateSpread(
     {
       return;
     }
+    // The end of the progress: passing the part on takes little of the whole.
     const Progress progress = ranks.Watched(options.Monitor.Between(1.0, 1.0));
     vtkPolyData* const output = block.Outputs.front();
     elevation::SurfacePart part = parts.Take(parts.FirstOwn(), progress);
@@ -343,10 +378,12 @@ int vtkGridDelaunay2D::RequestData(
   call.Second = "constraints";
   call.CleanedOutputs = this->RemoveUnusedPoints ? 1 : 0;
   call.Precision = this->OutputPointsPrecision;
+  // UnusedPointIds then name original ids where unused points are removed.
   call.ListsUnused = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
     &this->NumberOfRedundantPoints, &this->NumberOfConstraintCrossings, &this->NumberOfAddedPoints,
     &this->NumberOfLattices };
+  // Over blocks and ranks the largest error counts, all else is added up.
   call.Maxima = { &this->LargestElevationError };
   const elevation::DelaunayOptions options = elevation::OptionsOf(this);
   const auto addCounts = [this](const elevation::ConstrainedTriangulation& made) {
@@ -359,7 +396,10 @@ int vtkGridDelaunay2D::RequestData(
     this->NumberOfAddedPoints += static_cast<vtkIdType>(made.Added.size());
     this->NumberOfLattices += made.Result.LatticeFound ? 1 : 0;
   };
+  // A block on several ranks: its surface stays spread, unless what is asked for needs all points.
   call.Spread = [&](elevation::Block& block, const elevation::Ranks& ranks) {
+    // Both need the whole surface: the least set of points for an error, and the triangles along a
+    // line.
     const bool isDraped = this->DrapeConstraints && block.Second;
     if (options.MaximumElevationError != 0.0 || isDraped)
     {

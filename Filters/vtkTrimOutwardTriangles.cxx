@@ -1,5 +1,15 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * RequestData() hands two functions to FilterRun (Parts/FilterRun.h): TrimBlock(), the way of a
+ * block on one rank, and TrimSpread(), that of a block on several, which leaves the work to
+ * TrimParts (Parts/TrimParts.h). TrimBlock():
+ *
+ * 1. Check arrays and properties; view the triangles, and read the lines of the boundary, if given.
+ * 2. Trim by the kernel.
+ * 3. Pass the two sides, which share their points, and the rings of the boundary.
+ * 4. Report the counts in field data.
+ */
 #include "vtkTrimOutwardTriangles.h"
 
 #include "Adapt/Adapt.h"
@@ -63,6 +73,7 @@ using elevation::TrimmedSide;
 void PassTriangles(vtkPolyData* input, elevation::DataSetTriangles& triangles, TrimmedSide& side,
   int threads, vtkPolyData* output)
 {
+  // Nothing was trimmed and nothing converted: the input's cells are the output's.
   if (side.IsWholeList && triangles.Converted.empty())
   {
     output->SetPolys(input->GetPolys());
@@ -78,12 +89,15 @@ void PassSides(vtkPolyData* input, elevation::DataSetTriangles& triangles,
   const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
 {
   const int threads = elevation::ResolveNumberOfThreads(options.NumberOfThreads);
+  // Without an inserted point no triangle was cut.
   const bool arePieces = !trimmed.Inserted.empty();
   elevation::PassPoints(input, trimmed, progress.Between(0.0, 0.25), kept);
   if (lines)
   {
     elevation::PassBoundary(*lines, trimmed.OnBoundary, options, kept);
   }
+  // Both outputs have all points: a triangle that is cut has points on both sides.
+  // RemoveUnusedPoints leaves each what it needs.
   outward->SetPoints(kept->GetPoints());
   outward->GetPointData()->PassData(kept->GetPointData());
   kept->SetVerts(input->GetVerts());
@@ -112,13 +126,14 @@ elevation::TrimCounts TrimBlock(elevation::TrimOptions options, elevation::Block
     elevation::CheckArrays(given, "The boundary's");
   }
   elevation::DataSetTriangles triangles = elevation::ViewTriangles(input);
+  // Without triangles, lines are not read: Trim() returns nothing for them.
   const bool isGiven = given && triangles.View.Count > 0;
   elevation::BoundaryLines lines;
   if (isGiven)
   {
     lines = elevation::ToLines(given, progress.Between(0.0, 0.02));
   }
-  // Cell data take time to pass, all else is shared.
+  // Without cell data parents are not needed. Cell data take time to pass, all else is shared.
   options.ReturnParents = input->GetCellData()->GetNumberOfArrays() > 0;
   const double trimmedAt = options.ReturnParents ? 0.85 : 0.95;
   options.Monitor = progress.Between(0.02, trimmedAt);
@@ -134,6 +149,7 @@ elevation::TrimCounts TrimBlock(elevation::TrimOptions options, elevation::Block
 
   PassSides(input, triangles, isGiven ? &lines : nullptr, options, trimmed,
     progress.Between(trimmedAt, 0.98), block.Outputs[0], block.Outputs[1]);
+  // Also ids, which name the points of the boundary.
   block.Outputs[2]->GetPointData()->CopyAllOn();
   elevation::PassRings(
     trimmed.Boundary, isGiven ? given : input, progress.Between(0.98, 1.0), block.Outputs[2]);
@@ -154,12 +170,14 @@ bool TrimSpread(const elevation::Ranks& ranks, elevation::TrimOptions options,
   const auto isFit = [](vtkPolyData*) { return true; };
   options.Monitor = block.Progress.Between(0.0, 0.88);
   return elevation::WorkOnParts(block, ranks, isFit, [&](const elevation::SurfaceParts& surface) {
+    // In memory TrimParts counts the triangles itself.
     elevation::TrimParts parts(surface, 0, block.Second, options);
     if (!parts.Trim())
     {
       return false;
     }
     const Progress writing = block.Progress.Between(0.88, 1.0);
+    // At most one part on this rank. Where it has none, it has no outputs either.
     surface.Crew.ForEach(writing, [&](int part, const Progress& progress) {
       parts.Write(part, progress, block.Outputs[0], block.Outputs[1]);
       block.Outputs[2]->ShallowCopy(parts.Boundary());
@@ -235,6 +253,7 @@ int vtkTrimOutwardTriangles::RequestData(
   elevation::FilterRun call(
     this, this->Controller, request, inputVector, outputVector, this->Messages);
   call.Second = "boundary";
+  // Outputs 0 and 1; output 2 has points of its own rings.
   call.CleanedOutputs = this->RemoveUnusedPoints ? 2 : 0;
   call.Precision = this->OutputPointsPrecision;
   call.Sums = { &this->NumberOfOutwardTriangles, &this->NumberOfRecoveredEdges,
@@ -248,7 +267,9 @@ int vtkTrimOutwardTriangles::RequestData(
     this->NumberOfPointsLeftOut += counts.PointsLeftOut;
     this->NumberOfInsertedPoints += counts.InsertedPoints;
   };
+  // A block on several ranks: near triangles go to one rank and back, the others stay.
   call.Spread = [&](elevation::Block& block, const elevation::Ranks& ranks) {
+    // Said before it is tried: TrimParts refuses it, and FilterRun then gathers with this reason.
     if (options.Test != elevation::OutwardTest::Exact)
     {
       block.WhyGathered = elevation::MakeMessage<elevation::sentences::NormalsNeedAll>();

@@ -3,6 +3,14 @@
 /**
  * @file
  * VTK's data as the kernel reads and writes them, in one process. Private to the module.
+ *
+ * In: VTK's data sets and the properties of a filter. Out: arrays that the kernel reads in place
+ * where it can (ViewPoints, ViewTriangles), and data sets made of its results. By filter:
+ *
+ *     vtkGridDelaunay2D         Constraints, DelaunayReport, LimitAdvice, PointsOnWall
+ *     vtkTrimOutwardTriangles   TrimmedSurface, which also drapes constraints
+ *     vtkFillElevationHoles     PatchedSurface
+ *     all of them               the rest
  */
 #ifndef Adapt_h
 #define Adapt_h

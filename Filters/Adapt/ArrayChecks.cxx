@@ -1,5 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * VTK takes any array into point and cell data, and any offsets into a cell array. What relies on
+ * their lengths then reads beyond their ends. So filters check all of it first, where a check is
+ * cheap, and look for the cell to name only after it has failed.
+ */
 #include "ArrayChecks.h"
 
 #include "Kernel/Base/Base.h"
@@ -41,6 +46,7 @@ void CheckPointArrays(vtkPointSet* input, const std::string& owner)
     owner + (owner.empty() ? "Point" : " point"), "points");
 }
 
+// What reads plain values would take the components of tuples for them.
 bool HasSingleComponents(vtkCellArray* cells)
 {
   return cells->GetOffsetsArray()->GetNumberOfComponents() == 1 &&
@@ -52,6 +58,7 @@ void CheckCells(vtkPolyData* input, const std::string& owner, bool polygonsToo)
   const std::pair<vtkCellArray*, const char*> kinds[] = { { input->GetVerts(), "vertices" },
     { input->GetLines(), "lines" }, { input->GetPolys(), "polygons" },
     { input->GetStrips(), "triangle strips" } };
+  // VTK numbers cells by kind in this order: messages name a cell by that number.
   vtkIdType firstCell = 0;
   for (const auto& kind : kinds)
   {
@@ -67,10 +74,13 @@ void CheckCells(vtkPolyData* input, const std::string& owner, bool polygonsToo)
     {
       throw Error(name + " have offsets or point ids of several components.");
     }
+    // By variants, as offsets may be of any type here; one cell is looked for, once.
     const auto offset = [cells](vtkIdType i) {
       return cells->GetOffsetsArray()->GetVariantValue(i).ToTypeInt64();
     };
     const vtkIdType ids = cells->GetNumberOfConnectivityIds();
+    // The first cell with a wrong begin or end; if there is none, the last one, whose end is not
+    // that of the ids.
     vtkIdType i = 0;
     while (i + 1 < count && offset(0) == 0 && offset(i) <= offset(i + 1) && offset(i + 1) <= ids)
     {

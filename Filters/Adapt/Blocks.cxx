@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * AddPlaces() goes down the trees of the input and of all outputs at the same time, which have the
+ * same structure. VTK's iterators go through one tree, and name no blocks.
+ */
 #include "Blocks.h"
 
 #include "ArrayChecks.h"
@@ -24,6 +28,8 @@ namespace elevation
 int FillInput(int port, const char* typeOfInput0, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? typeOfInput0 : "vtkPolyData");
+  // Else the executive would take a composite apart and call the filter for each data set, and
+  // ranks with different numbers of them would not meet.
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
   if (port == 1)
   {
@@ -38,6 +44,7 @@ int FillOutput(vtkInformation* info)
   return 1;
 }
 
+// The executive has asked for a vtkDataObject (FillOutput), so what it is gets decided here.
 int MakeOutputs(vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   auto* const tree = vtkDataObjectTree::GetData(inputs[0]);
@@ -46,6 +53,7 @@ int MakeOutputs(vtkInformationVector** inputs, vtkInformationVector* outputs)
     vtkInformation* const info = outputs->GetInformationObject(port);
     vtkDataObject* const old = vtkDataObject::GetData(info);
     const char* const wanted = tree ? tree->GetClassName() : "vtkPolyData";
+    // An output of the right class stays, as consumers may hold it.
     if (!old || wanted != std::string(old->GetClassName()))
     {
       const auto made = tree ? vtkSmartPointer<vtkDataObject>::Take(tree->NewInstance())
@@ -70,6 +78,7 @@ unsigned int NumberOfChildren(vtkDataObjectTree* tree)
     return pieces->GetNumberOfPartitions();
   }
   auto* const collection = vtkPartitionedDataSetCollection::SafeDownCast(tree);
+  // Another kind of tree has no children here: its output is empty.
   return collection ? collection->GetNumberOfPartitionedDataSets() : 0;
 }
 
@@ -113,7 +122,7 @@ std::string ChildName(vtkDataObjectTree* tree, unsigned int i)
 }
 
 /**
- * Adds the places of a tree.
+ * Adds the places of a tree, depth first: the order of the input's leaves.
  * @param[in] name,path  those of the tree; empty for the whole input
  */
 void AddPlaces(vtkDataObjectTree* input, const std::vector<vtkDataObjectTree*>& outputs,
@@ -132,6 +141,7 @@ void AddPlaces(vtkDataObjectTree* input, const std::vector<vtkDataObjectTree*>& 
     std::string childName = "Block " + childPath + ChildName(input, i);
     if (arePartitions)
     {
+      // "Partition 1" where it begins the name, ", partition 1" after that of the block.
       const std::string which = "artition " + std::to_string(i) + ChildName(input, i);
       childName = name.empty() ? "P" + which : count == 1 ? name : name + ", p" + which;
     }
@@ -145,6 +155,7 @@ void AddPlaces(vtkDataObjectTree* input, const std::vector<vtkDataObjectTree*>& 
       AddPlaces(tree, ofChild, childName, childPath, places);
       continue;
     }
+    // Partitions share the path of what they are partitions of.
     Place place{ child, {}, childName, arePartitions ? path : childPath,
       arePartitions ? name : childName };
     for (vtkDataObjectTree* output : outputs)
@@ -163,6 +174,7 @@ std::vector<Place> ListPlaces(vtkDataObject* input, vtkInformationVector* output
   auto* const tree = vtkDataObjectTree::SafeDownCast(input);
   if (!tree)
   {
+    // Not a composite: one place without a name, since messages need none.
     Place whole{ input, {}, "", "", "" };
     for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
     {
@@ -174,6 +186,7 @@ std::vector<Place> ListPlaces(vtkDataObject* input, vtkInformationVector* output
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     trees.push_back(vtkDataObjectTree::GetData(outputs, port));
+    // The structure has the names, and no data sets: these come as places are found.
     trees.back()->CopyStructure(tree);
     trees.back()->GetFieldData()->PassData(tree->GetFieldData());
   }
@@ -182,6 +195,10 @@ std::vector<Place> ListPlaces(vtkDataObject* input, vtkInformationVector* output
   return places;
 }
 
+/*
+ * Boundary and constraints hold for all blocks of the first input, so their own blocks do not
+ * matter.
+ */
 vtkSmartPointer<vtkPolyData> JoinBlocks(vtkDataObject* input, const std::string& name)
 {
   auto* const tree = vtkDataObjectTree::SafeDownCast(input);
@@ -195,12 +212,14 @@ vtkSmartPointer<vtkPolyData> JoinBlocks(vtkDataObject* input, const std::string&
   for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem())
   {
     vtkDataObject* const part = each->GetCurrentDataObject();
+    // The iterator skips what is empty.
     parts.emplace_back(vtkPolyData::SafeDownCast(part));
     if (!parts.back())
     {
       throw Error("A block of the " + name + " is a " + part->GetClassName() +
         "; lines and polygons are in a vtkPolyData.");
     }
+    // Before they are appended, so that the message can name the cell.
     CheckArrays(parts.back(), "The " + name + (name.back() == 's' ? "'" : "'s"));
     parts.back() = WithoutHiddenCells(parts.back());
   }

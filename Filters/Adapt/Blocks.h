@@ -3,6 +3,14 @@
 /**
  * @file
  * The blocks of a composite input and their places in the outputs. Private to the module.
+ *
+ *     input                                         Path   Name in messages
+ *     [0] "north"  vtkPartitionedDataSet  [0]       0      Block 0 ("north"), partition 0
+ *                                         [1]       0      Block 0 ("north"), partition 1
+ *     [1] vtkPartitionedDataSet, one partition      1      Block 1
+ *     [2] vtkMultiBlockDataSet            [0]       2.0    Block 2.0
+ *
+ * Numbers are places in the tree, empty ones included: so a block has the same path on all ranks.
  */
 #ifndef Blocks_h
 #define Blocks_h

@@ -1,5 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * A point that lines add gets its values in one of two ways. A point of the constraints has values
+ * of its own, where these have an array of the same name that fits. A crossing is interpolated
+ * between two points of the output that come before it: AddedPoint::From and To.
+ */
 #include "Constraints.h"
 
 #include "DataArrays.h"
@@ -38,12 +43,14 @@ void WarnOfLattice(const DelaunayOptions& options, std::vector<Message>& warning
   }
 }
 
+// Lines that lie elsewhere are found by boxes alone; by points only how many are far out.
 void CheckLines(const ConstraintLines& lines, const Box& box, std::vector<Message>& warnings)
 {
   if (lines.Vertices.empty())
   {
     throw MakeError<sentences::NoLines>("constraints");
   }
+  // The user may have meant to cut the surface along them.
   const auto polygons = std::count(lines.IsClosed.begin(), lines.IsClosed.end(), true);
   if (polygons > 0)
   {
@@ -64,6 +71,7 @@ void CheckLines(const ConstraintLines& lines, const Box& box, std::vector<Messag
     ofLines.Add(p);
     outside += wide.Contains(p) ? 0 : 1;
   }
+  // Most often another coordinate system: an error, as the surface would be one of lines alone.
   if (!ofLines.Intersects(box))
   {
     throw MakeError<sentences::LinesElsewhere>("constraints", NameOf(ofLines), NameOf(box));
@@ -85,6 +93,7 @@ vtkAbstractArray* FindGiven(vtkPointData* source, vtkAbstractArray* array)
   {
     return nullptr;
   }
+  // Floating-point values of any precision go into each other; ids and classes must not be rounded.
   const bool canConvert = IsFloatingPoint(array) && vtkArrayDownCast<vtkDataArray>(given);
   return given->GetDataType() == array->GetDataType() || canConvert ? given : nullptr;
 }
@@ -128,9 +137,12 @@ void PassPoints(vtkPointSet* input, vtkPolyData* source, const std::vector<Added
   PassExtended(input->GetPointData(), count, output->GetPointData(), progress.Between(0.4, 1.0),
     [&](vtkAbstractArray* before, vtkAbstractArray* after, const Progress& ofArray) {
       NewValues values;
+      // Points of the constraints are done with then, also those without a value, which is NaN or
+      // 0.
       values.First = CopyGiven(FindGiven(source->GetPointData(), before), added, ofArray, after);
       values.Interpolated = [&added, numbers = vtkArrayDownCast<vtkDataArray>(after)](
                               vtkIdType i, int c) {
+        // From the output: the ends may be points that lines have added themselves.
         const double from = numbers->GetComponent(added[i].From, c);
         const double to = numbers->GetComponent(added[i].To, c);
         return from + added[i].Fraction * (to - from);

@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Copies are made in stretches of tuples, as an abort must be heard within them, and memory for the
+ * whole is taken at once by SetTuples(), as VTK's own growth does not throw.
+ */
 #include "DataArrays.h"
 
 #include "UsedPoints.h"
@@ -57,6 +61,7 @@ vtkSmartPointer<vtkAbstractArray> Extend(
     for (vtkIdType i = components * count; i < components * (count + numberOfNew); ++i)
     {
       ReportStep(progress, static_cast<std::size_t>(i / components), all);
+      // Slow, but for any type; new points are few beside those of the input.
       output->SetVariantValue(i, value);
     }
   }
@@ -69,6 +74,7 @@ void SetNewTuples(vtkAbstractArray* input, const NewValues& values, bool areNorm
 {
   vtkDataArray* const numbers =
     IsFloatingPoint(input) ? vtkArrayDownCast<vtkDataArray>(output) : nullptr;
+  // Extend() has set what stands for no value.
   if (numbers ? !values.Interpolated : !values.Nearest)
   {
     return;
@@ -80,6 +86,7 @@ void SetNewTuples(vtkAbstractArray* input, const NewValues& values, bool areNorm
     ReportStep(progress, static_cast<std::size_t>(i), static_cast<std::size_t>(numberOfNew));
     if (!numbers)
     {
+      // From the input: the nearest point is one of its own.
       output->SetTuple(count + i, values.Nearest(i), input);
       continue;
     }
@@ -90,6 +97,8 @@ void SetNewTuples(vtkAbstractArray* input, const NewValues& values, bool areNorm
       numbers->SetComponent(count + i, c, value);
       squares += value * value;
     }
+    // A mean of unit vectors is shorter than 1; one of opposite vectors has no direction and stays
+    // 0.
     for (int c = 0; areNormals && squares > 0.0 && c < 3; ++c)
     {
       numbers->SetComponent(count + i, c, numbers->GetComponent(count + i, c) / std::sqrt(squares));
@@ -98,7 +107,8 @@ void SetNewTuples(vtkAbstractArray* input, const NewValues& values, bool areNorm
 }
 
 /**
- * Numbers the new tuples of an array of global ids after its largest.
+ * Numbers the new tuples of an array of global ids after its largest. Of a part of a surface this
+ * is not the largest of all: FilledPart numbers them again.
  * @return whether the type has numbers for them
  */
 bool NumberNewTuples(vtkIdType numberOfNew, vtkAbstractArray* output)
@@ -109,12 +119,14 @@ bool NumberNewTuples(vtkIdType numberOfNew, vtkAbstractArray* output)
     return false;
   }
   const vtkIdType count = ids->GetNumberOfTuples() - numberOfNew;
+  // Ids below 0 count for nothing.
   double first = 0.0;
   for (vtkIdType i = 0; i < count; ++i)
   {
     first = std::max(first, ids->GetComponent(i, 0) + 1.0);
   }
   constexpr double largest = 9007199254740992.0; // up to which doubles are exact
+  // As an array of bytes has no number after 255.
   if (first + static_cast<double>(numberOfNew) > std::min(largest, ids->GetDataTypeMax()))
   {
     return false;
@@ -127,10 +139,12 @@ bool NumberNewTuples(vtkIdType numberOfNew, vtkAbstractArray* output)
 }
 } // namespace
 
+// Lists of ids for VTK, a stretch at a time; a list for all would take 16 bytes a tuple.
 void CopyTuples(vtkDataSetAttributes* input, vtkIdType count,
   const std::function<vtkIdType(vtkIdType i)>& sourceOf, const Progress& progress,
   vtkDataSetAttributes* output)
 {
+  // Also global and pedigree ids, which VTK leaves out unless it is asked.
   output->CopyAllOn();
   output->CopyAllocate(input, count);
   vtkNew<vtkIdList> from;
@@ -158,7 +172,9 @@ vtkSmartPointer<vtkPolyData> ChosenPoints(
   points->SetDataType(source->GetPoints()->GetDataType());
   vtkNew<vtkIdList> ids;
   ids->SetNumberOfIds(static_cast<vtkIdType>(chosen.size()));
+  // From 32 to 64 bits.
   std::copy(chosen.begin(), chosen.end(), ids->begin());
+  // Memory first: GetPoints() would not say that there is none.
   SetTuples(ids->GetNumberOfIds(), points->GetData());
   source->GetPoints()->GetPoints(ids, points);
   data->SetPoints(points);
@@ -178,6 +194,7 @@ bool IsGhostArray(vtkAbstractArray* array)
   return array->GetName() && !std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName());
 }
 
+// By name, as VTK knows it; an array of the name and of another type has no flags.
 vtkUnsignedCharArray* GhostsOf(vtkDataSetAttributes* data)
 {
   return vtkUnsignedCharArray::SafeDownCast(
@@ -223,6 +240,7 @@ vtkSmartPointer<vtkPoints> AppendPoints(vtkPoints* input, vtkIdType numberOfNew,
   const vtkIdType count = input ? input->GetNumberOfPoints() : 0;
   const std::size_t all = static_cast<std::size_t>(count + numberOfNew);
   auto points = vtkSmartPointer<vtkPoints>::New();
+  // An input without points may have none whose type could be taken.
   points->SetDataType(input ? input->GetDataType() : VTK_DOUBLE);
   points->SetNumberOfPoints(count + numberOfNew);
   if (input)
@@ -253,6 +271,7 @@ void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSet
     vtkAbstractArray* before = input->GetAbstractArray(i);
     const double count = input->GetNumberOfArrays();
     const Progress ofArray = progress.Between(i / count, (i + 1) / count);
+    // A new point is none of the first input.
     const bool areOriginalIds = IsOriginalIds(before);
     const vtkSmartPointer<vtkAbstractArray> after = Extend(
       before, numberOfNew, areOriginalIds || IsIdArray(input, before), ofArray.Between(0.0, 0.5));

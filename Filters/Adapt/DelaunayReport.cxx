@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Field data are a report on this surface: arrays of the same names that came with the input, of a
+ * surface before, are replaced or removed.
+ */
 #include "DelaunayReport.h"
 
 #include "Kernel/Messages/Messages.h"
@@ -19,8 +23,10 @@ namespace elevation
 
 void CheckOptions(const DelaunayOptions& options)
 {
+  // Of a step. At a half, a point would be as near to the next node as to its own.
   constexpr double mostPerStep = 0.25;
   CheckThreads(options.NumberOfThreads);
+  // Written so that NaN fails, as all tests below.
   if (!(options.LatticeTolerance >= 0.0 && options.LatticeTolerance <= mostPerStep))
   {
     throw MakeError<sentences::InvalidLatticeTolerance>(options.LatticeTolerance, mostPerStep);
@@ -65,6 +71,10 @@ void AddUnusedPoints(
 
 } // namespace
 
+/*
+ * A hidden point goes to the kernel with coordinates that are NaN (WithoutHidden), so it comes back
+ * as one that is not finite. The mark says which it is.
+ */
 void NameHidden(vtkUnsignedCharArray* marks, Triangulation& triangulation)
 {
   for (std::size_t i = 0; marks && i < triangulation.UnusedPoints.size(); ++i)
@@ -96,6 +106,8 @@ void AddReport(
   {
     fieldData->RemoveArray(name); // passed from the input, of other points
   }
+  // Six numbers, as the property Lattice of the filter takes them: a lattice found can be given
+  // again.
   if (triangulation.LatticeFound)
   {
     const Lattice& lattice = triangulation.Steps;

@@ -1,5 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * VTK neither draws nor works on what is marked as hidden: cells with HIDDENCELL, and cells with a
+ * point that has HIDDENPOINT. The kernel knows no marks; so hidden points become NaN, and hidden
+ * cells go, before it sees them.
+ */
 #include "HiddenCells.h"
 
 #include "ArrayChecks.h"
@@ -24,6 +29,7 @@ namespace
 /** Which tuples have a mark of vtkDataSetAttributes. */
 bool IsMarked(vtkUnsignedCharArray* marks, vtkIdType tuple, int mark)
 {
+  // There may be fewer marks than tuples where nobody has checked.
   return marks && tuple < marks->GetNumberOfTuples() && (marks->GetValue(tuple) & mark) != 0;
 }
 
@@ -63,6 +69,7 @@ vtkSmartPointer<vtkPolyData> WithoutHiddenCells(vtkPolyData* input)
   {
     return input;
   }
+  // Cells are about to be read by VTK, which checks nothing. The second call also checks polygons.
   CheckArrays(input);
   CheckCells(input);
   auto shown = vtkSmartPointer<vtkPolyData>::New();
@@ -70,6 +77,7 @@ vtkSmartPointer<vtkPolyData> WithoutHiddenCells(vtkPolyData* input)
   shown->EditableOn();
   shown->DeleteCells(); // the map of cells, which may be the input's
   shown->BuildCells();
+  // Of any kind of cell, strips included: VTK looks up its points.
   vtkNew<vtkIdList> corners;
   bool isAny = false;
   for (vtkIdType cell = 0; cell < shown->GetNumberOfCells(); ++cell)
@@ -84,6 +92,7 @@ vtkSmartPointer<vtkPolyData> WithoutHiddenCells(vtkPolyData* input)
       isAny = true;
     }
   }
+  // Hidden points without a cell.
   if (!isAny)
   {
     return input;

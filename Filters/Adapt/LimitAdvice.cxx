@@ -10,6 +10,7 @@ namespace
 /** Rounded up to three digits. */
 double RoundedUp(double length)
 {
+  // Up, so that the limit that is advised does keep what it promises.
   const double unit = std::pow(10.0, std::floor(std::log10(length)) - 2.0);
   return unit > 0.0 && std::isfinite(unit) ? std::ceil(length / unit) * unit : length;
 }
@@ -24,6 +25,10 @@ void WarnOfNoTriangle(vtkIdType points, vtkIdType hidden, std::vector<Message>& 
   }
 }
 
+/*
+ * What was left out, and, if lengths are known, the shortest and the median edge with a better
+ * limit.
+ */
 Message AdviceOnLimit(double limit, const LimitEffect& effect)
 {
   const Message what = MakeMessage<sentences::FewTriangles>(limit, effect.Missing, effect.Vertices);

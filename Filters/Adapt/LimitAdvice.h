@@ -21,7 +21,11 @@
 namespace elevation
 {
 
-/** What a limit leaves, and how long edges are without it. */
+/**
+ * What a limit leaves, and how long edges are without it. Lengths in x,y, in the units of the
+ * points. Who has found that most vertices are missing measures again without a limit; else the
+ * lengths stay 0.
+ */
 struct LimitEffect
 {
   vtkIdType Vertices = 0;
@@ -38,7 +42,10 @@ struct LimitEffect
 /** The quantiles that ForMost and Median are. */
 constexpr double MostShare = 0.95, MedianShare = 0.5;
 
-/** The place of a quantile among some sorted values. */
+/**
+ * The place of a quantile among some sorted values: 0 is the least, 1 the largest. One formula for
+ * one rank, which sorts its values, and for several, which count them.
+ */
 inline vtkIdType QuantilePlace(double part, vtkIdType count)
 {
   return static_cast<vtkIdType>(part * static_cast<double>(count - 1));
@@ -57,7 +64,12 @@ struct EdgeMeasures
   std::vector<double> Limits; ///< of each vertex, the least that keeps a triangle; maybe infinite
 };
 
-/** @param[in] placeOf  the place of a vertex */
+/**
+ * Measures triangles. A vertex keeps a triangle if the limit is at least the longest edge of one of
+ * its triangles: the least of these is its limit. An edge counts once in each of its triangles.
+ * Linear.
+ * @param[in] placeOf  the place of a vertex
+ */
 template <typename PlaceOf>
 EdgeMeasures MeasureEdges(const Buffer<Index>& triangles, std::size_t numberOfVertices,
   const PlaceOf& placeOf, const Progress& progress)

@@ -1,5 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * The kernel reads x, y, z in turn as float or double, and corners as 32-bit numbers, three a
+ * triangle. A vtkPolyData has just that in its usual arrays; then nothing is copied. Everything
+ * else is converted: coordinates of other types or layouts, ids of 64 bits, offsets that are
+ * computed.
+ */
 #include "MeshConversion.h"
 
 #include "ArrayChecks.h"
@@ -28,6 +34,7 @@
 namespace elevation
 {
 
+// No copy of float and double points in their usual layout: they may be most of what is in memory.
 DataSetPoints ViewPoints(vtkPointSet* input)
 {
   DataSetPoints points;
@@ -50,6 +57,7 @@ DataSetPoints ViewPoints(vtkPointSet* input)
     converted->DeepCopy(points.Owner);
     points.Owner = converted;
   }
+  // A copy with NaN, if any is hidden; else the array itself.
   points.Owner = WithoutHidden(points.Owner, GhostsOf(input->GetPointData()));
   if (isFloat)
   {
@@ -77,7 +85,10 @@ const Value* ValuesOf(vtkDataArray* array)
   return plain ? plain->GetPointer(0) : nullptr;
 }
 
-/** Whether offsets are 0, 3, 6, ...: those of @a count triangles. */
+/**
+ * Whether offsets are 0, 3, 6, ...: those of @a count triangles. The loop has no branch, and
+ * collects differing bits instead, so that compilers can use wide instructions.
+ */
 bool AreMultiplesOfThree(vtkDataArray* offsets, vtkIdType count)
 {
   const auto areTriples = [count](const auto* begins) {
@@ -105,7 +116,7 @@ bool AreMultiplesOfThree(vtkDataArray* offsets, vtkIdType count)
   return i > count;
 }
 
-/** What a message about a corner that is not a point says. */
+/** What a message about a corner that is not a point says. Apart from the loops that find it. */
 struct NoPoint
 {
   vtkIdType FirstCell;
@@ -118,7 +129,11 @@ struct NoPoint
   }
 };
 
-/** Copies corners. @throws Error naming the first that no id of the kernel can hold */
+/**
+ * Copies corners. A number beyond 32 bits loses its upper ones, and then differs from what it was.
+ * Ids that are too large only for this mesh are left to the kernel.
+ * @throws Error naming the first that no id of the kernel can hold
+ */
 void ConvertIds(const vtkTypeInt64* ids, Buffer<Index>& corners, const NoPoint& toBlame)
 {
   std::copy_n(ids, corners.size(), corners.begin());
@@ -154,6 +169,7 @@ DataSetTriangles ViewTriangles(vtkPolyData* input)
   vtkCellArray* polygons = input->GetPolys();
   const vtkIdType count = polygons->GetNumberOfCells();
   const vtkIdType firstCell = FirstPolygon(input);
+  // Half-edges are numbered by an Index, three a triangle.
   if (count > std::numeric_limits<Index>::max() / 3)
   {
     throw Error("The input has " + std::to_string(count) + " triangles; at most " +
@@ -164,6 +180,7 @@ DataSetTriangles ViewTriangles(vtkPolyData* input)
     polygons->GetNumberOfConnectivityIds() != 3 * count ||
     !AreMultiplesOfThree(polygons->GetOffsetsArray(), count))
   {
+    // Slowly, to name the cell; valid cells of three ids in an unusual array come through.
     CheckCells(input);
     for (vtkIdType i = 0; i < count; ++i)
     {
@@ -182,6 +199,7 @@ DataSetTriangles ViewTriangles(vtkPolyData* input)
   triangles.View.Count = static_cast<Index>(count);
   triangles.View.FirstCell = static_cast<Index>(firstCell);
   vtkDataArray* const corners = polygons->GetConnectivityArray();
+  // What this module makes has 32 bits (ToCellArray): one filter after another converts nothing.
   triangles.View.Corners = count > 0 ? ValuesOf<vtkTypeInt32>(corners) : nullptr;
   if (count > 0 && !triangles.View.Corners)
   {
@@ -200,6 +218,7 @@ void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress, int thread
   mesh = MeshOf(ViewTriangles(input).View, threads, progress);
 }
 
+// Each cell is checked before it is visited, so a visitor may use its ids.
 void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& progress,
   const std::function<void(const DataSetLine&)>& visit)
 {
@@ -222,6 +241,7 @@ void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& pr
       ReportStep(progress, static_cast<std::size_t>(line.Cell), count);
       each->GetCurrentCell(line.Size, line.Ids);
       sum += line.Size;
+      // Vertices of lines are counted by an Index; a point may be in many lines.
       if (sum > MaximumNumberOfPoints)
       {
         throw MakeError<sentences::TooManyPointsInLines>(name, MaximumNumberOfPoints);
@@ -269,6 +289,7 @@ void OrderArrays(vtkDataSetAttributes* wanted, vtkDataSetAttributes* data)
 
 vtkSmartPointer<vtkPolyData> Append(const std::vector<vtkSmartPointer<vtkPolyData>>& parts)
 {
+  // Itself, as the filter would copy it.
   if (parts.size() == 1)
   {
     return parts.front();
@@ -276,6 +297,7 @@ vtkSmartPointer<vtkPolyData> Append(const std::vector<vtkSmartPointer<vtkPolyDat
   vtkNew<vtkAppendPolyData> append;
   for (const auto& part : parts)
   {
+    // The filter reads cells without checking them.
     CheckCells(part);
     append->AddInputData(part);
   }
@@ -288,6 +310,7 @@ vtkSmartPointer<vtkPolyData> Append(const std::vector<vtkSmartPointer<vtkPolyDat
 
 vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads)
 {
+  // The memory becomes VTK's as it is, with what is unused.
   triangles.Shrink();
   const vtkIdType size = static_cast<vtkIdType>(triangles.size());
   vtkNew<vtkTypeInt32Array> connectivity;
@@ -295,6 +318,7 @@ vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads
   Buffer<Index> begins; // of the cells, then the end of the last
   const Index count = static_cast<Index>(size / 3) + 1;
   begins.Resize(static_cast<std::size_t>(count));
+  // A megabyte of offsets for each call.
   constexpr Index pieceCells = 1 << 18;
   ForEachPiece((count - 1) / pieceCells + 1, threads, [&](Index piece) {
     const Index first = piece * pieceCells, last = first + std::min(pieceCells, count - first);
@@ -313,6 +337,7 @@ vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads
 void PassRings(
   const Rings& rings, vtkPolyData* source, const Progress& progress, vtkPolyData* output)
 {
+  // Without a ring there may be no points.
   vtkPoints* from = source->GetPoints();
   vtkNew<vtkPoints> points;
   points->SetDataType(from ? from->GetDataType() : VTK_FLOAT);
@@ -330,6 +355,7 @@ void PassRings(
       pointData->CopyData(source->GetPointData(), rings.Vertices[i], id);
       lines->InsertCellPoint(id);
     }
+    // A closed line ends with its first point, which it has once.
     lines->InsertCellPoint(first);
   }
   output->SetPoints(points);

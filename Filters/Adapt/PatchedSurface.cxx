@@ -1,5 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Output 0 is the input with patches: points, then new points; vertices and lines, then the
+ * triangles that are kept, then those of patches, hole by hole. Output 1 has a closed line for each
+ * hole, and what there is to say of it as cell data. On several ranks, MakeSurface() gets the part
+ * of a rank with the patches that belong there, and MakeReport() the rims of all holes on one rank.
+ *
+ * Three arrays of output 0 say what was filled: FilledPoint, FilledError, HoleId. A surface that
+ * has been filled before has them already; what they say of its points and cells is passed on.
+ */
 #include "PatchedSurface.h"
 
 #include "DataArrays.h"
@@ -38,6 +47,7 @@ constexpr const char* InterpolationNames[] = { "neighbor mean", "membrane", "thi
 void CheckOptions(const FillOptions& options, double openEdgeLength)
 {
   CheckThreads(options.NumberOfThreads);
+  // Written so that NaN is refused; infinity is no limit.
   if (!(openEdgeLength >= 0.0))
   {
     throw MakeError<sentences::InvalidOpenEdgeLength>(openEdgeLength);
@@ -69,6 +79,10 @@ bool IsInterpolated(vtkPointData* pointData, vtkAbstractArray* array)
   return IsFloatingPoint(array) && !IsGhostArray(array) && !IsIdArray(pointData, array);
 }
 
+/*
+ * In the order of the arrays, and of the components in each: PassPoints() counts them in the same
+ * way.
+ */
 std::vector<Values> AttributesOf(vtkPointData* pointData)
 {
   std::vector<Values> attributes;
@@ -104,19 +118,24 @@ void PassPoints(vtkPolyData* input, const FillResult& patches, bool interpolate,
   PassExtended(pointData, patches.NumberOfPoints(), output->GetPointData(),
     progress.Between(0.3, 1.0), [&](vtkAbstractArray* array, vtkAbstractArray*, const Progress&) {
       NewValues values;
+      // New points are on no boundary, and have no id of a point that was measured.
       if (!interpolate || IsIdArray(pointData, array) || array == BoundaryMarksOf(pointData))
       {
         return values;
       }
       values.Interpolated = [&patches, first = next](
                               vtkIdType i, int c) { return patches.Attributes[first + c][i]; };
+      // For classes, texts and other values that have no mean.
       values.Nearest = [&patches](vtkIdType i) { return patches.NearestBoundaryPoints[i]; };
       next += IsInterpolated(pointData, array) ? array->GetNumberOfComponents() : 0;
       return values;
     });
 }
 
-/** The triangles of the input that no patch replaces, in order. */
+/**
+ * The triangles of the input that no patch replaces, in order: all, but those of regions that are
+ * replaced. A region that failed keeps its triangles.
+ */
 std::vector<Index> ListKept(const Mesh& mesh, const FillResult& patches)
 {
   const std::vector<Index>& regionOf = patches.Found.RegionOf;
@@ -152,6 +171,7 @@ void PassCells(vtkPolyData* input, const Mesh& mesh, const std::vector<Index>& k
   vtkCellData* cellData = input->GetCellData();
   vtkNew<vtkCellData> ofKept;
   const vtkIdType first = FirstPolygon(input);
+  // Only where patches replace triangles do cell data have to be copied.
   if (static_cast<Index>(kept.size()) < mesh.NumberOfTriangles())
   {
     const auto sourceOf = [&](vtkIdType cell) {
@@ -173,6 +193,7 @@ Index NextHole(vtkPolyData* input)
   Index next = 0;
   for (vtkIdType i = 0; holes && i < holes->GetNumberOfValues(); ++i)
   {
+    // The array may be anybody's; -1 is a cell of no hole.
     const vtkIdType hole = std::clamp<vtkIdType>(holes->GetValue(i), -1, MaximumNumberOfPoints);
     next = std::max(next, static_cast<Index>(hole + 1));
   }
@@ -203,6 +224,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   const Progress& progress, vtkPolyData* output)
 {
   Report(progress, 0.0);
+  // Without new points their arrays take no time.
   const bool isExtended = patches.NumberOfPoints() > 0;
   PassPoints(input, patches, interpolate, progress.Between(0.0, isExtended ? 0.6 : 0.0), output);
   Report(progress, isExtended ? 0.6 : 0.15);
@@ -240,6 +262,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   vtkIdType* holeId = holeIds->GetPointer(0) + ofInput;
   for (std::size_t hole = 0; hole < patches.Reports.size(); ++hole)
   {
+    // Triangles of patches are in the order of the holes, as ids are.
     holeId = std::fill_n(holeId, patches.TriangleOffsets[hole + 1] - patches.TriangleOffsets[hole],
       patches.FirstNumber + static_cast<vtkIdType>(hole));
   }
@@ -248,6 +271,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   output->GetFieldData()->PassData(input->GetFieldData());
 }
 
+// One entry a hole, filled or not: the report says why one was not.
 void MakeReport(
   vtkPolyData* input, const FillResult& patches, const Progress& progress, vtkPolyData* output)
 {
@@ -276,6 +300,7 @@ void MakeReport(
   add("Interpolation", vtkNew<vtkUnsignedCharArray>().Get(),
     [](const HoleReport& report) { return static_cast<unsigned char>(report.Method); });
   add("InterpolationName", vtkNew<vtkStringArray>().Get(), [](const HoleReport& report) {
+    // A patch without new points has nothing that was interpolated.
     return report.NumberOfInsertedPoints ? InterpolationNames[static_cast<int>(report.Method)] : "";
   });
 
@@ -310,6 +335,10 @@ void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& o
   }
 }
 
+/*
+ * The first few holes that failed, each with its reason; then how many more. Holes that a limit of
+ * the user leaves out are no warning.
+ */
 std::vector<Message> WarningsOf(const FillResult& patches)
 {
   const Holes& holes = patches.Found;
@@ -321,6 +350,7 @@ std::vector<Message> WarningsOf(const FillResult& patches)
     const HoleReport& report = patches.Reports[hole];
     if (report.Status == FillStatus::Failed && ++failed <= listed)
     {
+      // Both sentences take the same values.
       const auto make = holes.IsRegion(hole)
         ? MakeMessage<sentences::RegionNotFilled, Index, Index, Message>
         : MakeMessage<sentences::HoleNotFilled, Index, Index, Message>;

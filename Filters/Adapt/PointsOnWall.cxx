@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * The directions are the eigenvectors of the 3 by 3 matrix of scatter, and the roots of its
+ * eigenvalues the scatter along them: least off the plane, then across and along in it.
+ */
 #include "PointsOnWall.h"
 
 #include "vtkMath.h"
@@ -33,6 +37,8 @@ void RemoveBlunders(std::vector<Sampled>& sample)
         [c](const Sampled& p, const Sampled& q) { return p[c] < q[c]; });
       return (*at)[c];
     };
+    // At least two fifths of the points stay: what is between the two, in each of three
+    // coordinates.
     const double first = quantile(0.1), last = quantile(0.9);
     low[c] = first - Outlying * (last - first);
     high[c] = last + Outlying * (last - first);
@@ -72,6 +78,7 @@ void WarnOfWall(std::vector<Sampled> sample, std::vector<Message>& warnings)
     return;
   }
   RemoveBlunders(sample);
+  // The scatter is that about the mean.
   Sampled middle = {};
   double unit = 0.0; // squares of large coordinates would be infinite
   for (const Sampled& p : sample)
@@ -87,11 +94,13 @@ void WarnOfWall(std::vector<Sampled> sample, std::vector<Message>& warnings)
   {
     for (int c = 0; c < 9 && unit > 0.0; ++c)
     {
+      // Both factors are divided before they are multiplied, for the same reason.
       squares[c / 3][c % 3] += (p[c / 3] - middle[c / 3]) / unit * ((p[c % 3] - middle[c % 3]) / unit);
     }
   }
   double scatter[3], directions[3][3];
   vtkMath::Diagonalize3x3(squares, scatter, directions);
+  // The plane's normal; the closer it is to the vertical, the flatter the plane.
   const auto normal = std::min_element(scatter, scatter + 3) - scatter;
   const double upright = std::min(1.0, std::fabs(directions[2][normal]));
   for (double& value : scatter)

@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Rounding comes last, so a triangle may turn over by it that was right: that is checked for each,
+ * by the exact predicate on the coordinates before and after.
+ */
 #include "PointsPrecision.h"
 
 #include "DataArrays.h"
@@ -21,6 +25,7 @@ namespace elevation
 
 namespace
 {
+// SetTuples() throws where memory ends; after it, DeepCopy() has room and converts.
 vtkSmartPointer<vtkPoints> Converted(vtkPoints* points, int type)
 {
   auto converted = vtkSmartPointer<vtkPoints>::New();
@@ -40,6 +45,7 @@ void CheckTurns(vtkPolyData* rounded, const PointView& before)
     return std::isfinite(p.X) && std::isfinite(p.Y) && std::isfinite(after.Elevation(corner));
   };
   const auto turnIn = [](const PointView& points, const Index* corners) {
+    // A triangle that was flat before may stay so: what it is must not change.
     return Orientation(points.At(corners[0]), points.At(corners[1]), points.At(corners[2]));
   };
   for (Index t = 0; t < triangles.View.Count; ++t)
@@ -70,6 +76,7 @@ bool NeedsDouble(int precision, bool hasLines)
 vtkSmartPointer<vtkPointSet> WithPointsFor(bool needsDouble, vtkPointSet* input)
 {
   const int type = input->GetNumberOfPoints() > 0 ? input->GetPoints()->GetDataType() : VTK_DOUBLE;
+  // Integers become double, too: float would not hold them all.
   if (type == VTK_DOUBLE || (type == VTK_FLOAT && !needsDouble))
   {
     return input;
@@ -82,6 +89,7 @@ vtkSmartPointer<vtkPointSet> WithPointsFor(bool needsDouble, vtkPointSet* input)
 
 void RoundPoints(const std::vector<vtkPolyData*>& outputs)
 {
+  // By the points before; outputs 0 and 1 of trimming share theirs.
   std::map<vtkPoints*, vtkSmartPointer<vtkPoints>> rounded;
   for (vtkPolyData* const output : outputs)
   {

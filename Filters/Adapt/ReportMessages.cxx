@@ -19,12 +19,15 @@ namespace
 /** Messages as one, those of the first blocks where these are many. A block is named once. */
 std::string Joined(const std::vector<Message>& messages)
 {
+  // Of a composite with hundreds of blocks, each with its warning, a window of text should stay
+  // legible.
   constexpr int listed = 5;
   std::string text;
   int blocks = 0;
   for (std::size_t i = 0; i < messages.size(); ++i)
   {
     Message message = messages[i];
+    // Messages of a block come one after another.
     const bool isSame = i > 0 && message.GetBlock() == messages[i - 1].GetBlock();
     blocks += isSame ? 0 : 1;
     message.SetBlock(isSame ? "" : message.GetBlock());
@@ -35,6 +38,7 @@ std::string Joined(const std::vector<Message>& messages)
 }
 
 /** Adds rows, name and value in turn. */
+// The row that begins a message has its kind as the name, and its code as the value.
 void AddRows(const char* kind, const std::vector<Message>& messages, std::vector<std::string>& rows)
 {
   for (const Message& message : messages)

@@ -22,6 +22,10 @@
 namespace elevation
 {
 
+/*
+ * VTK's progress must not fall; an abort is asked for at each report, the observer is called as
+ * ReportPace admits.
+ */
 Progress ProgressOf(vtkAlgorithm* filter)
 {
   return [filter, last = 0.0, pace = ReportPace()](double fraction) mutable {
@@ -51,11 +55,13 @@ namespace
 {
 vtkInformationIntegerKey* IsReportedKey()
 {
+  // Made once and never freed: VTK keeps keys until the program ends.
   static auto* const key = vtkInformationIntegerKey::MakeKey("IS_REPORTED", "ElevationSurface");
   return key;
 }
 } // namespace
 
+// The line is "Algorithm ... returned failure for request", with all of the request.
 int AfterError(vtkAlgorithm* filter)
 {
   vtkExecutive* const executive = filter->GetExecutive();
@@ -68,6 +74,7 @@ int AfterError(vtkAlgorithm* filter)
   if (vtkObject::GetGlobalWarningDisplay())
   {
     vtkNew<vtkCallbackCommand> once;
+    // The observer goes with the one line that it has kept from the window.
     once->SetCallback([](vtkObject* caller, unsigned long, void* self, void*) {
       caller->RemoveObserver(static_cast<vtkCommand*>(self));
     });
@@ -87,6 +94,10 @@ void CopyMark(vtkDataObject* original, vtkDataObject* copy)
   copy->GetInformation()->CopyEntry(original->GetInformation(), IsReportedKey());
 }
 
+/*
+ * Points without triangles are most often those of a file that was meant to go through
+ * vtkGridDelaunay2D first.
+ */
 bool NeedsWarning(vtkPolyData* meshWithoutTriangles)
 {
   return meshWithoutTriangles->GetNumberOfPoints() > 0 &&
@@ -102,6 +113,7 @@ void CheckThreads(int threads)
   }
 }
 
+// An array of this name that came with the input is replaced.
 void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count)
 {
   vtkNew<vtkIdTypeArray> array;
@@ -118,6 +130,7 @@ void AddTuple(vtkFieldData* fieldData, const char* name,
   array->SetNumberOfComponents(static_cast<int>(counts.size()));
   for (const auto& [component, count] : counts)
   {
+    // The number of values so far is the component that comes next.
     array->SetComponentName(array->GetNumberOfValues(), component);
     array->InsertNextValue(count);
   }

@@ -19,6 +19,11 @@ int AvailableThreads()
   return std::max(1, vtkSMPTools::GetEstimatedNumberOfThreads());
 }
 
+/*
+ * So many workers as threads were asked for, each of which takes the next call when it is done with
+ * one. VTK would cut the calls into ranges beforehand, and calls differ much in work. The grain of
+ * 1 lets each worker have a thread of its own, if there are as many.
+ */
 void CallOnThreads(Index count, int threads, const std::function<void(Index)>& call)
 {
   std::atomic<Index> next{ 0 };

@@ -1,5 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Points of outputs 0 and 1 are the same: those of the input, then inserted ones, whose elevation
+ * and data come from the triangle they lie in, by the weights of its corners. On one rank
+ * PassPoints() makes them; on several, PassTrimmedPoints() adds to a part's points those that came
+ * back from the rank that has trimmed (Parts/TrimmedPart.h), with all values.
+ */
 #include "TrimmedSurface.h"
 
 #include "DataArrays.h"
@@ -32,6 +38,7 @@ void CheckOptions(const TrimOptions& options)
   {
     throw MakeError<sentences::InvalidGapTolerance>(std::to_string(options.GapTolerance));
   }
+  // Steps that are parallel or infinite make no grid.
   const double cell = std::fabs(options.Grid.Area());
   if (options.Grid.IsSet() && !(cell > 0.0 && cell < std::numeric_limits<double>::infinity()))
   {
@@ -39,6 +46,10 @@ void CheckOptions(const TrimOptions& options)
   }
 }
 
+/*
+ * Lines by ids of the data set first; TakePoints() then copies the points that they use, so that a
+ * boundary inside of a large data set does not keep all of it.
+ */
 BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress, const std::string& name)
 {
   const DataSetPoints points = ViewPoints(boundary);
@@ -47,6 +58,8 @@ BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress, const std
     for (vtkIdType i = 0; i < line.Size; ++i)
     {
       const Index id = static_cast<Index>(line.Ids[i]);
+      // Only points that lines use: others of the data set may be what they like. The kernel checks
+      // x,y.
       if (!std::isfinite(points.View.Elevation(id)))
       {
         throw Error("Point " + std::to_string(id) + " of the " + name +
@@ -63,6 +76,10 @@ BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress, const std
   return lines;
 }
 
+/*
+ * Splitting looks at the surface as it was, and writes into the same data set: hence the shallow
+ * copy.
+ */
 vtkIdType SplitSurface(
   vtkPolyData* surface, vtkPolyData* constraints, int threads, const Progress& progress)
 {
@@ -75,9 +92,11 @@ vtkIdType SplitSurface(
   options.Monitor = progress.Between(0.05, 0.9);
   Trimmed split = SplitAlong(
     triangles.View, ToLines(constraints, progress.Between(0.0, 0.05), "constraints"), options);
+  // Else no line meets a triangle, and the surface stays as it is.
   if (!split.Kept.IsWholeList)
   {
     surface->SetPolys(ToCellArray(std::move(split.Kept.Corners), ResolveNumberOfThreads(threads)));
+    // PassPoints() adds arrays to those that are there, of the old points.
     surface->GetPointData()->Initialize();
     PassPoints(before, split, progress.Between(0.9, 1.0), surface);
   }
@@ -138,6 +157,7 @@ vtkSmartPointer<vtkAbstractArray> Extended(vtkAbstractArray* array, const Trimme
   const vtkSmartPointer<vtkAbstractArray> extended = NewLike(array);
   SetTuples(own + added, extended);
   extended->InsertTuples(0, own, 0, array);
+  // All ranks have the same arrays, so New has one of this name.
   vtkNew<vtkIdList> from, to;
   for (vtkIdType i = 0; i < added; ++i)
   {
@@ -149,6 +169,7 @@ vtkSmartPointer<vtkAbstractArray> Extended(vtkAbstractArray* array, const Trimme
 }
 
 /** The flags of ghosts of the input, and of the points that another rank owns. */
+// Flags of the input stay; those of added points are known by OfOthers alone.
 vtkSmartPointer<vtkUnsignedCharArray> MarksOf(vtkPolyData* input, const TrimmedPoints& points)
 {
   const vtkIdType own = input->GetNumberOfPoints();
@@ -177,6 +198,7 @@ void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBounda
   SetTuples(count, marks);
   marks->FillValue(0);
   vtkPointData* const data = output->GetPointData();
+  // A surface may be trimmed along one boundary after another; holes look at the marks of all.
   if (vtkUnsignedCharArray* const before = BoundaryMarksOf(data))
   {
     std::copy_n(before->GetPointer(0), count, marks->GetPointer(0));
@@ -190,13 +212,17 @@ void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBounda
   {
     return;
   }
+  // By x,y to the last bit: where the boundary's point was no vertex, trimming has inserted it
+  // there.
   std::unordered_map<Point2, double, PointHash> elevations;
   for (std::size_t i = 0; i < lines.Elevations.size(); ++i)
   {
+    // Of line points at one place, the first counts.
     elevations.emplace(lines.Points.Places[i], lines.Elevations[i]);
   }
   vtkNew<vtkPoints> moved;
   moved->SetDataType(output->GetPoints()->GetDataType());
+  // The points may be the input's own.
   moved->DeepCopy(output->GetPoints());
   for (const Index point : onBoundary)
   {
@@ -217,6 +243,7 @@ vtkUnsignedCharArray* BoundaryMarksOf(vtkPointData* data)
   return marks && marks->GetNumberOfComponents() == 1 ? marks : nullptr;
 }
 
+// Values of added points were found where they were made; nothing is interpolated here.
 void PassTrimmedPoints(
   vtkPolyData* input, const TrimmedPoints& points, const Progress& progress, vtkPolyData* output)
 {
@@ -225,6 +252,7 @@ void PassTrimmedPoints(
     [&points](vtkIdType i, double* xyz) { points.New->GetPoint(points.Added[i], xyz); }));
   vtkPointData* const before = input->GetPointData();
   vtkPointData* const after = output->GetPointData();
+  // Attributes are set by this; arrays of the same names then take the places of the input's.
   after->PassData(before);
   for (int i = 0; i < before->GetNumberOfArrays() && added > 0; ++i)
   {
@@ -240,6 +268,7 @@ void PassTrimmedPoints(
   }
 }
 
+// Vertices and lines go with the kept side (firstCells), pieces of a triangle with its values.
 void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool arePieces,
   const Progress& progress, vtkPolyData* output)
 {
@@ -265,6 +294,7 @@ TrimCounts::TrimCounts(const Trimmed& trimmed)
 {
 }
 
+// On several ranks each output has the counts of its rank; their sums are the filter's.
 void AddCounts(const TrimCounts& counts, const std::vector<vtkPolyData*>& outputs)
 {
   for (vtkPolyData* output : outputs)

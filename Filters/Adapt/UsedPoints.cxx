@@ -1,5 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * FilterRun calls WithOriginalIds() before a body works, and the other functions after it. In
+ * between, the array OriginalPointIds is an array like others, and comes through by itself; new
+ * points have -1 in it (PassExtended).
+ */
 #include "UsedPoints.h"
 
 #include "DataArrays.h"
@@ -76,11 +81,14 @@ vtkSmartPointer<vtkPointSet> WithOriginalIds(
   }
   auto numbered = vtk::TakeSmartPointer(input->NewInstance());
   numbered->ShallowCopy(input);
+  // Of another integer type: they are converted to vtkIdType, which the calls after it look for.
   vtkDataArray* source = vtkDataArray::SafeDownCast(OriginalIdsOf(input));
   if (!source && input->GetPointData()->HasArray(OriginalIdsName))
   {
     warnings.push_back(MakeMessage<sentences::OriginalIdsReplaced>());
   }
+  // Without ids at all, points are named by their places; @a first makes these places among all
+  // ranks.
   source = source ? source : input->GetPointData()->GetGlobalIds();
   vtkNew<vtkIdTypeArray> ids;
   if (source)
@@ -97,6 +105,7 @@ vtkSmartPointer<vtkPointSet> WithOriginalIds(
   return numbered;
 }
 
+// Vertices and lines count as cells, too: their points stay.
 std::vector<char> FlagUsed(vtkPolyData* surface)
 {
   std::vector<char> areUsed(static_cast<std::size_t>(surface->GetNumberOfPoints()), 0);
@@ -112,6 +121,7 @@ std::vector<char> FlagUsed(vtkPolyData* surface)
   return areUsed;
 }
 
+// The list has places among the points; these go, and original ids stay.
 void NameUnusedByOriginalIds(vtkPolyData* surface)
 {
   auto* const unused =
@@ -141,6 +151,7 @@ void KeepFlagged(
     return;
   }
   const vtkSmartPointer<vtkPolyData> points = ChosenPoints(surface, kept, progress);
+  // Order of cells and cell data stay, as all cells do.
   const DataSetTriangles triangles = ViewTriangles(surface);
   Buffer<Index> corners;
   corners.Resize(3 * static_cast<std::size_t>(triangles.View.Count));

@@ -43,7 +43,10 @@ std::vector<char> FlagUsed(vtkPolyData* surface);
  */
 void NameUnusedByOriginalIds(vtkPolyData* surface);
 
-/** Leaves only the points with a flag, in their order; cells have no others. */
+/**
+ * Leaves only the points with a flag, in their order; cells have no others, which is not checked. A
+ * surface that keeps all its points is not copied.
+ */
 void KeepFlagged(
   const std::vector<char>& areKept, const Progress& progress, vtkPolyData* surface);
 

@@ -1,5 +1,23 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * The passes of Trim() and TrimOutline(), then Split():
+ * 1. Join the near parts: points of common edges become one (Joining.h).
+ * 2. Prove that the parts are one mesh that covers nothing twice (ProvenBorder).
+ * 3. Trim the joined triangles by the kernel, which returns the parent of each triangle.
+ * 4. Split: by its parent, each triangle goes back to the part that had it; of its corners, those
+ *    that this part has get their places there, and the others are new points of the part.
+ *
+ * Why the border is enough for 2: the near triangles are not the whole mesh, and those that are not
+ * near are on other ranks. But all triangles are counter-clockwise, which each part has checked of
+ * its own; so the number of triangles over a place is the winding number of the border (Holes.h).
+ *
+ *     part 0 | part 1
+ *     +------b------+        Part 0 has the edge from a to b on its border, part 1 that from b
+ *     |      |      |        to a. The two cancel. What is left of the borders of all parts is
+ *     |      |      |        the border of the mesh.
+ *     +------a------+
+ */
 #include "BoundaryZone.h"
 
 #include "Adapt/Adapt.h"
@@ -43,6 +61,7 @@ Bytes TrimmedZone::Pack() const
 {
   Bytes bytes;
   AnyValue::Append(bytes, *this);
+  // Without a new point there may be no NewPoints, and there is nothing to unpack.
   if (!this->IsInserted.empty())
   {
     const Bytes points = PackData(this->NewPoints);
@@ -61,6 +80,7 @@ TrimmedZone::TrimmedZone(const Bytes& bytes)
   }
 }
 
+// The same CommonPoints are found twice, here and in Join(), which does not hand them out.
 void BoundaryZone::JoinAll(const Progress& progress)
 {
   std::vector<Message> warnings; // none: all have the same arrays
@@ -76,6 +96,7 @@ void BoundaryZone::JoinAll(const Progress& progress)
   this->Triangles = ViewTriangles(this->JoinedParts);
 }
 
+// Along a given boundary. Whether the zone is proven is decided before anything is trimmed.
 bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& options)
 {
   this->JoinAll(options.Monitor.Between(0.0, 0.3));
@@ -85,8 +106,10 @@ bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& option
     return false;
   }
   TrimOptions ofNear = options;
+  // Split() needs the parents, whether or not there are cell data.
   ofNear.ReturnParents = true;
   ofNear.Monitor = options.Monitor.Between(0.4, 0.9);
+  // Messages then name points as the user numbers them, inserted ones as they will be numbered.
   if (vtkDataArray* const ids = this->JoinedParts->GetPointData()->GetGlobalIds())
   {
     const Index count = list.Points.Count;
@@ -106,10 +129,12 @@ bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& option
 
 namespace
 {
+// Names in field data, which Join() takes from the first part alone: read from the parts given.
 constexpr const char* StatesName = "States";
 constexpr const char* SpacingsName = "Spacings";
 } // namespace
 
+// Field data carry the two lists, since the near part travels as a data set anyway.
 void BoundaryZone::AddKnown(
   const std::vector<Known>& states, const std::vector<double>& spacings, vtkPolyData* part)
 {
@@ -132,6 +157,8 @@ bool BoundaryZone::TrimOutline(
   this->IsOutline = true;
   this->JoinAll(options.Monitor.Between(0.0, 0.3));
   const TriangleList& list = this->Triangles.View;
+  // What the parts know, put together by joined triangles and points. Triangles of the joined list
+  // come part after part, and so do their states.
   std::vector<Known> states;
   std::vector<double> spacings(list.Points.Count, std::numeric_limits<double>::quiet_NaN());
   for (std::size_t part = 0; part < this->GivenParts.size(); ++part)
@@ -145,6 +172,7 @@ bool BoundaryZone::TrimOutline(
     vtkDataArray* const ofPoints = known->GetArray(SpacingsName);
     for (vtkIdType i = 0; ofPoints && i < ofPoints->GetNumberOfTuples(); ++i)
     {
+      // At most one part knows the spacing of a point, that in which it is away from the border.
       const double spacing = ofPoints->GetComponent(i, 0);
       double& joined = spacings[this->Common->Place(part, i)];
       joined = std::isnan(spacing) ? joined : spacing;
@@ -152,10 +180,13 @@ bool BoundaryZone::TrimOutline(
   }
   std::optional<std::vector<BorderEdge>> border =
     this->ProvenBorder(list.Points, options.Monitor.Between(0.3, 0.4));
+  // No sweep here: TrimNearOutline() makes one.
   if (!border || !this->AreSamePlaces())
   {
     return false;
   }
+  // Each point of the mesh once: inner points are counted by their part, those at borders of parts
+  // here.
   IdSet atBorders(list.Points.Count);
   for (const BorderEdge& edge : this->PartBorders())
   {
@@ -178,6 +209,8 @@ bool BoundaryZone::IsProven(
   const TriangleList& list, const BoundaryLines& boundary, const Progress& progress)
 {
   // Joined points may have other places than the points had.
+  // What the sweep finds is not used: it shows that the joined triangles are counter-clockwise, and
+  // fit together at their edges.
   if (!this->AreSamePlaces() ||
     !SweepAlongRings(
       list, boundary.Points.Places, JoinLines(boundary), list.Count, 1, progress.Between(0.0, 0.5)))
@@ -211,6 +244,7 @@ bool BoundaryZone::AreSamePlaces() const
   return true;
 }
 
+// Joined lines, as Join() keeps lines of all parts: they are no lines of the user.
 std::vector<BorderEdge> BoundaryZone::PartBorders() const
 {
   std::vector<BorderEdge> all;
@@ -238,6 +272,7 @@ std::optional<std::vector<BorderEdge>> BoundaryZone::ProvenBorder(
   {
     ReportStep(progress, i, 2 * all.size());
     const BorderEdge twin{ all[i].Destination, all[i].Origin };
+    // An edge from a point to itself, where points of one triangle were joined, is no better.
     if (twin.Origin == twin.Destination || (i > 0 && !(all[i - 1] < all[i])))
     {
       return std::nullopt; // two triangles on one side of an edge
@@ -252,9 +287,11 @@ std::optional<std::vector<BorderEdge>> BoundaryZone::ProvenBorder(
     : std::nullopt;
 }
 
+// First the triangles, by their parents; then who owns which point; last, corners by parts' places.
 std::vector<TrimmedZone> BoundaryZone::Split(const Progress& progress) const
 {
   std::vector<TrimmedZone> splits(this->GivenParts.size());
+  // One an inserted point: whether a part before has become its owner.
   std::vector<char> areOwned(this->Sides.Inserted.size(), 0);
   for (const int side : { 0, 1 })
   {
@@ -265,6 +302,7 @@ std::vector<TrimmedZone> BoundaryZone::Split(const Progress& progress) const
     {
       ReportStep(progress, i, all.Parents.size());
       const Index parent = all.Parents[i];
+      // The last part whose first triangle is not beyond the parent.
       const auto next =
         std::upper_bound(this->FirstTriangles.begin(), this->FirstTriangles.end(), parent);
       const std::size_t part = static_cast<std::size_t>(next - this->FirstTriangles.begin()) - 1;
@@ -276,6 +314,8 @@ std::vector<TrimmedZone> BoundaryZone::Split(const Progress& progress) const
       }
     }
   }
+  // A point on the boundary may have been sent by parts that have it as a ghost alone. Its owner
+  // has no near triangle there, and is not known here; so all parts get the key.
   std::vector<Index> far = this->FindOwners(splits);
   const auto isInside = [this](Index point) {
     return !std::binary_search(this->Sides.OnBoundary.begin(), this->Sides.OnBoundary.end(), point);
@@ -314,6 +354,7 @@ std::vector<Index> BoundaryZone::FindOwners(std::vector<TrimmedZone>& splits) co
         const bool isMarked = marks && (marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT);
         if (isLooking)
         {
+          // First the owners of all, then, in the second round, who has a point of another owner.
           owner = owner == nobody && !isMarked ? part : owner;
         }
         else if (owner != nobody && owner != part)
@@ -334,11 +375,17 @@ std::vector<Index> BoundaryZone::FindOwners(std::vector<TrimmedZone>& splits) co
   return ofNobody;
 }
 
-/** @param[in,out] places  of the points in a part; None for all */
+/**
+ * The corners of a part's triangles, from joined points to places in the part; and its new points,
+ * in the order in which triangles have them.
+ * @param[in,out] places  of all joined points, in this part: None for all, as before so after it.
+ *        One list serves all parts, so that each costs what it has and not what all have.
+ */
 void BoundaryZone::PlaceCorners(std::size_t part, std::vector<Index>& places,
   std::vector<char>& areOwned, TrimmedZone& split) const
 {
   const vtkIdType count = this->GivenParts[part]->GetNumberOfPoints();
+  // Of points of the part that are one joined point, the first is left: it is written last.
   for (vtkIdType i = count - 1; i >= 0; --i)
   {
     places[this->Common->Place(part, i)] = static_cast<Index>(i);
@@ -354,8 +401,11 @@ void BoundaryZone::PlaceCorners(std::size_t part, std::vector<Index>& places,
       {
         place = static_cast<Index>(count) + static_cast<Index>(added.size());
         added.push_back(corner);
+        // Else the corner is another part's, which an edge cut or recovered has brought here.
         const bool isInserted = corner >= inserted;
         split.IsInserted.push_back(isInserted);
+        // The first part that has an inserted point owns it. A point of another part keeps its
+        // owner.
         split.IsOwned.push_back(isInserted && !areOwned[corner - inserted]);
         if (isInserted)
         {
@@ -365,6 +415,7 @@ void BoundaryZone::PlaceCorners(std::size_t part, std::vector<Index>& places,
       corner = place;
     }
   }
+  // Each part gets those of the boundary's points that it has, near or new; the list is sorted.
   const std::vector<Index>& onBoundary = this->Sides.OnBoundary;
   const auto isOnBoundary = [&](Index point) {
     return std::binary_search(onBoundary.begin(), onBoundary.end(), point);
@@ -385,6 +436,7 @@ void BoundaryZone::PlaceCorners(std::size_t part, std::vector<Index>& places,
       split.OnBoundary.push_back(static_cast<Index>(count) + static_cast<Index>(i));
     }
   }
+  // Clean again for the next part.
   for (const Index point : added)
   {
     places[point] = None;

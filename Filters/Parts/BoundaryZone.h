@@ -3,6 +3,16 @@
 /**
  * @file
  * The triangles of all parts of a surface near a boundary, trimmed together. Private to the module.
+ *
+ *     part 0: near triangles, border --\                       /--> TrimmedZone of part 0
+ *     part 1: near triangles, border ----> joined, trimmed ---+---> TrimmedZone of part 1
+ *     part 2: ...                    --/                       \--> ...
+ *
+ * All of this happens on one rank. A point has three numbers here: its place in a near part, that
+ * in the joined parts (CommonPoints::Place), and, if trimming has inserted it, one after all joined
+ * ones.
+ *
+ * Cost: n log n in the near triangles and the borders of all parts, which are in memory at once.
  */
 #ifndef BoundaryZone_h
 #define BoundaryZone_h
@@ -25,7 +35,10 @@
 namespace elevation
 {
 
-/** What of the near triangles goes back to the part that had them. */
+/**
+ * What of the near triangles goes back to the part that had them. Triangles and points have their
+ * numbers in the near part; what a part keeps inside or outside without asking is not here.
+ */
 struct TrimmedZone
 {
   /** The sides, kept and outward: near triangles of the rank (by number) that they are parts of. */
@@ -78,18 +91,24 @@ public:
   static void AddKnown(
     const std::vector<Known>& states, const std::vector<double>& spacings, vtkPolyData* part);
 
-  /** What goes back to each part. */
+  /** What goes back to each part, in the order of the parts given. */
   std::vector<TrimmedZone> Split(const Progress& progress) const;
 
   const Trimmed& Result() const { return this->Sides; }
   vtkPolyData* Joined() const { return this->JoinedParts; }
 
 private:
+  /**
+   * Whether the near triangles may be trimmed as parts of one mesh; then Border is that of the
+   * mesh.
+   */
   bool IsProven(const TriangleList& list, const BoundaryLines& boundary, const Progress& progress);
   void JoinAll(const Progress& progress);
+  /** Whether each point is where the joined one is, which has one place for all parts. */
   bool AreSamePlaces() const;
   std::optional<std::vector<BorderEdge>> ProvenBorder(
     const PointView& points, const Progress& progress) const;
+  /** The border edges of all parts, by joined points. */
   std::vector<BorderEdge> PartBorders() const;
   std::vector<Index> FindOwners(std::vector<TrimmedZone>& splits) const;
   void PlaceCorners(std::size_t part, std::vector<Index>& places, std::vector<char>& areOwned,

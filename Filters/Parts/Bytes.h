@@ -6,6 +6,16 @@
  *
  * Plain values go as they are in memory. A struct with lists or texts goes field by field: its
  * FieldsOf lists them, once for both ways.
+ *
+ * The layout, in the byte order and with the padding of this machine:
+ *
+ *   plain value   | value |                        any type that can be copied bit by bit
+ *   list, text    | count | value | value | ...    count is a std::size_t
+ *   struct        | field | field | ...            in the order of its FieldsOf
+ *   message       | count | text of Pack() |
+ *
+ * No byte says what comes next: the reader has to ask for the same types in the same order as the
+ * writer gave them. Values need not be aligned, so they are copied and never viewed in place.
  */
 #ifndef Bytes_h
 #define Bytes_h
@@ -30,6 +40,8 @@ template <typename Value>
 void AppendTo(Bytes& bytes, const Value* values, std::size_t count)
 {
   const std::size_t size = bytes.size(), all = size + count * sizeof(Value);
+  // A Buffer grows to what it is asked for and no further: without the half on top, a series of
+  // short appends would copy all bytes each time.
   if (all > bytes.capacity())
   {
     bytes.Reserve(std::max(all, size + size / 2));
@@ -44,10 +56,12 @@ void AppendTo(Bytes& bytes, const std::vector<Value>& values)
   AppendTo(bytes, values.data(), values.size());
 }
 
-/** Takes values and moves on. */
+/** Takes values and moves on. Nobody checks that so many bytes are left. */
 template <typename Value>
 void TakeFrom(const char*& from, Value* values, std::size_t count)
 {
+  // An empty list may have a null pointer, which memcpy() must not get. The cast silences a warning
+  // about plain structs whose members have initial values.
   if (count > 0)
   {
     std::memcpy(static_cast<void*>(values), from, count * sizeof(Value));
@@ -80,7 +94,12 @@ void TakeList(const char*& from, List& values)
   TakeFrom(from, values.data(), count);
 }
 
-/** FieldsOf<Struct>::In(value) is a tuple of references to what there is in a struct. */
+/**
+ * FieldsOf<Struct>::In(value) is a tuple of references to what there is in a struct. It is
+ * specialised where the struct is packed. In() is a template, as it serves a constant value, which
+ * is packed, and one that is being filled. A member that it leaves out keeps its initial value on
+ * the other side.
+ */
 template <typename Struct>
 struct FieldsOf;
 
@@ -106,6 +125,7 @@ struct AnyValue
   template <typename Value>
   static void Append(Bytes& bytes, const std::vector<Value>& values)
   {
+    // Plain values go in one copy; std::vector itself is never a plain value.
     if constexpr (std::is_trivially_copyable_v<Value>)
     {
       AppendList(bytes, values);
@@ -117,6 +137,7 @@ struct AnyValue
         values.begin(), values.end(), [&bytes](const Value& value) { Append(bytes, value); });
     }
   }
+  /** A text and a message; the compiler prefers these to the template above. */
   static void Append(Bytes& bytes, const std::string& text) { AppendList(bytes, text); }
   static void Append(Bytes& bytes, const Message& message) { Append(bytes, message.Pack()); }
 

@@ -1,5 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Points of all parts have numbers, part after part. The passes:
+ * 1. A key for each point, if any two may be one.
+ * 2. Sort the points by key. Of one key, the owner's comes first, then the order of the parts
+ *    counts.
+ * 3. In each run of one key, decide which are the same: First[i] is the one that i stands for.
+ * 4. Number those that stand for themselves: by their ids, or else in the order of the points.
+ */
 #include "CommonPoints.h"
 
 #include "Adapt/Adapt.h"
@@ -44,6 +52,7 @@ CommonPoints::CommonPoints(const Parts& parts, PartKind kind, const Progress& pr
     }
     this->Match(order.data() + begin, order.data() + end, kind, haveIds);
   }
+  // Sorted by key so far, which for ids is the order wanted.
   if (!haveIds)
   {
     std::sort(order.begin(), order.end());
@@ -55,6 +64,7 @@ CommonPoints::CommonPoints(const Parts& parts, PartKind kind, const Progress& pr
       this->Places[i] = this->NumberOfJoined++;
     }
   }
+  // One step leads to the end: First of a First is itself.
   for (std::size_t i = 0; i < count; ++i)
   {
     this->Places[i] = this->Places[this->First[i]];
@@ -70,6 +80,7 @@ void CommonPoints::ReadMarks(const Parts& parts)
     {
       if (ghosts->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT)
       {
+        // Only now: without any mark the list stays empty.
         this->IsMarked.resize(this->First.size(), 0);
         this->IsMarked[this->Offsets[part] + i] = 1;
       }
@@ -77,6 +88,7 @@ void CommonPoints::ReadMarks(const Parts& parts)
   }
 }
 
+// In the order of the numbers of points.
 void CommonPoints::ReadKeys(const Parts& parts, bool byIds)
 {
   this->Keys.reserve(this->First.size());
@@ -94,6 +106,7 @@ std::vector<vtkIdType> CommonPoints::Sorted(const Progress& progress) const
 {
   const auto isMarked = [this](
                           vtkIdType i) { return !this->IsMarked.empty() && this->IsMarked[i]; };
+  // All numbers: so far each point stands for itself.
   std::vector<vtkIdType> order = this->First;
   elevation::Sort(
     order.begin(), order.end(),
@@ -105,6 +118,7 @@ std::vector<vtkIdType> CommonPoints::Sorted(const Progress& progress) const
   return order;
 }
 
+// In the order of Sorted(), so that the first of a run is an owner's, if any is.
 void CommonPoints::Match(const vtkIdType* begin, const vtkIdType* end, PartKind kind, bool haveIds)
 {
   if (haveIds || kind == PartKind::Points)
@@ -118,7 +132,10 @@ void CommonPoints::Match(const vtkIdType* begin, const vtkIdType* end, PartKind 
     }
     return;
   }
-  // The first of one part is the first of any other, the second the second, and so on.
+  // A part may have several points at one place: duplicates, which have no triangle, or those of
+  // two sheets. The first of one part is the first of any other, the second the second, and so on:
+  //
+  //     part 0: p q    part 1: r s t    joined: p = r, q = s, t
   std::vector<vtkIdType> different;
   std::map<std::ptrdiff_t, std::size_t> found; // so far, in each part
   for (const vtkIdType* i = begin; i < end && end - begin > 1; ++i)
@@ -133,6 +150,7 @@ void CommonPoints::Match(const vtkIdType* begin, const vtkIdType* end, PartKind 
   }
 }
 
+// Of points that are one, the values of the first count: those of the owner, or of the first part.
 std::vector<Rows> CommonPoints::Sources() const
 {
   std::vector<Rows> sources(this->Offsets.size() - 1);

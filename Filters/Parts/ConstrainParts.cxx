@@ -1,5 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Step 1 is the class AddedLines, which all ranks go through function by function; then come steps
+ * 2 and 3 as functions. Points near lines, and those that lines add, are numbered together:
+ *
+ *     0 ... n - 1      Near, by ids, the same list on all ranks
+ *     n, n + 1, ...    Pieces.Added, as CutLines() has made them, the same on all ranks
+ *
+ * As the lists are the same, no rank asks another what a number of a piece means.
+ */
 #include "ConstrainParts.h"
 
 #include "Adapt/Adapt.h"
@@ -20,7 +29,7 @@ namespace elevation
 
 namespace
 {
-/** A point of some part. */
+/** A point of some part: how a number of the two lists above becomes a number of all points. */
 struct PlaceInPart
 {
   int Part;
@@ -68,6 +77,7 @@ private:
   LinePieces Pieces;
 };
 
+// Lines are the same on all ranks, and so is an error in them.
 void AddedLines::Read()
 {
   this->AllRanks.Agree([&]() {
@@ -80,6 +90,7 @@ void AddedLines::Read()
 /** Looks at each part once: where points are, and which are near lines. */
 void AddedLines::ListNear(std::vector<Message>& warnings)
 {
+  // Of all points of this rank; lines that are nowhere near are an error, or a warning.
   Box box;
   this->Store.Crew.ForEach(this->Fraction(0.0, 0.5), [&](int part, const Progress& ofPart) {
     const Progress reading = ofPart.Between(0.0, 0.5);
@@ -95,6 +106,7 @@ void AddedLines::ListNear(std::vector<Message>& warnings)
       }
       const std::vector<Index> near =
         ListNearLines(ViewOf(rows).View, this->Lines, ofPart.Between(0.5, 1.0));
+      // By packing and unpacking, as rows of a part that is read go with it.
       const Bytes packed = rows.Pack(std::vector<vtkIdType>(near.begin(), near.end()));
       this->Near.Unpack(&packed, 1);
       std::transform(
@@ -115,6 +127,7 @@ void AddedLines::ShareNear()
   this->AllRanks.Agree([&]() {
     std::vector<vtkIdType> all(this->Near.Count());
     std::iota(all.begin(), all.end(), vtkIdType(0));
+    // The same to each rank, this one included.
     std::generate(packed.begin(), packed.end(), [&]() { return this->Near.Pack(all); });
     for (const PlaceInPart& at : this->NearPlaces)
     {
@@ -131,6 +144,7 @@ void AddedLines::ShareNear()
     this->Near.Unpack(packed); // rank by rank, as the places
     std::vector<vtkIdType> order(this->Near.Count());
     std::iota(order.begin(), order.end(), vtkIdType(0));
+    // By ids, as DuplicatePolicy chooses by the order of points: the same point as on one rank.
     std::sort(order.begin(), order.end(),
       [this](vtkIdType a, vtkIdType b) { return this->Near.Ids[a] < this->Near.Ids[b]; });
     this->Near.Choose(order);
@@ -144,6 +158,7 @@ void AddedLines::ShareNear()
 
 void AddedLines::Cut()
 {
+  // Each rank does the same work, and so has the same pieces without a message.
   this->AllRanks.Agree([&]() {
     this->Pieces = CutLines(ViewOf(this->Near).View, this->Lines, this->Options.Duplicates,
       this->AllRanks.Watched(this->Fraction(0.5, 0.9)));
@@ -180,15 +195,18 @@ void AddedLines::AddPoints()
   this->AllRanks.Agree([&]() {
     const Progress watched = this->AllRanks.Watched(this->Fraction(0.9, 1.0));
     vtkNew<vtkPolyData> near, extended;
+    // Values at crossings are interpolated between points near lines, and points added before.
     this->PassNear(near);
     PassPoints(near, this->Source, this->Pieces.Added, watched, extended);
     const vtkIdType ofNear = static_cast<vtkIdType>(this->Near.Count());
     PointTable rows(common.Kinds);
+    // Numbered such that the first added point gets the id after the largest.
     rows.Read(extended, this->LargestId + 1 - ofNear, watched);
     std::vector<vtkIdType> counts;
     std::map<int, std::vector<vtkIdType>> added; // rows, for each part
     for (int part = 0; part < crew.PartCount(); ++part)
     {
+      // How many each part has by now: the place of the next point that is added.
       counts.push_back(this->Store.EndOf(part) - this->Store.FirstOf(part));
     }
     for (const AddedPoint& point : this->Pieces.Added)
@@ -197,6 +215,7 @@ void AddedLines::AddPoints()
       added[owner].push_back(ofNear + static_cast<vtkIdType>(this->AddedPlaces.size()));
       this->AddedPlaces.push_back({ owner, counts[owner]++ });
     }
+    // All ranks know the points of all parts; each keeps those of its own.
     for (const auto& ofPart : added)
     {
       if (crew.IsOwn(ofPart.first))
@@ -204,11 +223,14 @@ void AddedLines::AddPoints()
         this->Store.AddOwn(ofPart.first, rows.Pack(ofPart.second));
       }
     }
+    // Numbers of later parts move up by what parts before them have got. Nothing has been kept by
+    // numbers so far.
     std::partial_sum(counts.begin(), counts.end(), common.Bases.begin() + 1);
     this->Store.FirstLineId = this->LargestId + 1;
   });
 }
 
+// After AddPoints(), by the new numbers: ends of a piece are found again among those of triangles.
 SharedLines AddedLines::Result() const
 {
   SharedLines lines;
@@ -258,7 +280,8 @@ void ForEachTriangle(
 }
 
 /**
- * The pieces that are edges of no part's triangles; the same on all ranks.
+ * The pieces that are edges of no part's triangles; the same on all ranks. Where lines have points
+ * as densely as the surface around them, these are few.
  * @param[out] extents  of the triangles of the parts of this rank
  */
 std::vector<std::size_t> ListMissing(
@@ -270,6 +293,7 @@ std::vector<std::size_t> ListMissing(
   store.Crew.AllRanks().Agree([&]() {
     for (std::size_t i = 0; i < lines.Pieces.size(); ++i)
     {
+      // Pieces that overlap are one by now, so each pair of ends is there once.
       pieces[lines.Pieces[i]] = i;
       ends.push_back(lines.Pieces[i][0]);
     }
@@ -285,6 +309,8 @@ std::vector<std::size_t> ListMissing(
             extent.Add(whole.PointAt(corners[k]));
             const GlobalId a = triangle[k], b = triangle[(k + 1) % 3];
             const GlobalId low = std::min(a, b);
+            // Nearly all edges end here: few points are the lower end of a piece, and a sorted list
+            // is faster to search than a map.
             const auto found = std::binary_search(ends.begin(), ends.end(), low)
               ? pieces.find({ low, std::max(a, b) })
               : pieces.end();
@@ -296,6 +322,7 @@ std::vector<std::size_t> ListMissing(
         });
     });
   });
+  // An edge between two parts counts on each of them, so a sum, and not a flag.
   store.Crew.AllRanks().Sum(isEdge);
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < isEdge.size(); ++i)
@@ -319,6 +346,7 @@ void SendMeeting(
     std::vector<vtkIdType> corners; // own ones
     ForEachTriangle(whole, store.FirstOf(part), progress.Between(0.5, 1.0),
       [&](std::size_t t, const Index* c, const GlobalTriangle& triangle) {
+        // With the coordinates, as the first part has not these points.
         const SentTriangle sent{ part, t, triangle,
           { whole.PointAt(c[0]), whole.PointAt(c[1]), whole.PointAt(c[2]) } };
         bool meets = false;
@@ -332,13 +360,19 @@ void SendMeeting(
       });
     if (!bytes.empty())
     {
+      // What becomes of these triangles may get corners in parts that had none of them.
       store.KeepForOthers(part, whole, std::move(corners));
       store.Crew.Send(0, Meeting, std::move(bytes));
     }
   });
 }
 
-/** Recovers the pieces. @return what has become of the triangles of each part */
+/**
+ * Recovers the pieces in the mesh of the triangles sent. Its vertices are their corners, by number,
+ * as the map sorts them. Recovery writes new triangles into the slots of old ones (Recovery.h):
+ * triangle t stays that of the part that sent it, whatever corners it has then.
+ * @return what has become of the triangles of each part
+ */
 ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
   const SharedLines& lines, const std::vector<std::size_t>& missing, const Progress& progress)
 {
@@ -357,6 +391,7 @@ ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
     numbers.push_back(corner.first);
     mesh.Points.push_back(corner.second);
   }
+  // An end of a piece is a corner of a triangle sent, as that meets the piece.
   const auto idOf = [&](GlobalId number) {
     return static_cast<Index>(
       std::lower_bound(numbers.begin(), numbers.end(), number) - numbers.begin());
@@ -375,6 +410,7 @@ ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
   std::vector<char> flags;
   RecoverSegments(mesh, segments, flags, progress);
   ValuesForParts<ChangedTriangle> changed;
+  // Most triangles sent only touch a piece, and are as they were: these are not sent back.
   for (std::size_t t = 0; t < sent.size(); ++t)
   {
     const auto corners = mesh.Triangles.begin() + 3 * static_cast<std::ptrdiff_t>(t);
@@ -402,6 +438,7 @@ ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
 SharedLines AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
   const DelaunayOptions& options, const Progress& progress, std::vector<Message>& warnings)
 {
+  // Its lists are only needed until the pieces have numbers of all points.
   AddedLines lines(store, source, plane, options, progress);
   lines.Read();
   lines.ListNear(warnings);
@@ -423,6 +460,7 @@ bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& pr
   {
     return false;
   }
+  // By their places, which every part can look for.
   std::vector<Ends> pieces;
   crew.AllRanks().Agree([&]() {
     for (const std::size_t i : missing)
@@ -432,6 +470,7 @@ bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& pr
   });
   crew.ForEach(progress.Between(0.4, 0.6), [&](int part, const Progress& ofPart) {
     const Box& extent = extents[part];
+    // A part that no piece comes near is not read again.
     const auto isThere = [&extent](const Ends& piece) {
       Box box;
       box.Add(piece[0]);
@@ -445,6 +484,7 @@ bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& pr
   });
   crew.Deliver();
   crew.ForEach(progress.Between(0.6, 1.0), [&](int part, const Progress& ofPart) {
+    // One part alone recovers: pieces run through several parts, and are few.
     if (part == 0)
     {
       const auto sent = ValuesIn<SentTriangle>(crew.At(part, Meeting));

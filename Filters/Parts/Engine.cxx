@@ -1,5 +1,16 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * What is sent goes three ways. A message to a part of this rank is moved from the outbox into the
+ * box. One to another rank is sent as it is. Where the box is a file, it is then appended to that
+ * and leaves memory. All three pass through Deliver(), which therefore alone decides the order.
+ *
+ * Who holds which part is one list of first parts, made once:
+ *
+ *     ranks 0 to 3 with 3, 0, 2 and 1 parts:  Firsts = { 0, 3, 3, 5, 6 }
+ *
+ * so that a rank's parts, the rank of a part and the number of all follow without a message.
+ */
 #include "Engine.h"
 
 #include <algorithm>
@@ -63,6 +74,7 @@ std::vector<Bytes> Inbox::Copy(const Progress& progress) const
   if (this->File)
   {
     this->File->ForEach([&](Bytes&& stretch) {
+      // How far this is nobody knows; but an abort is heard.
       Report(progress, 0.0);
       copies.push_back(std::move(stretch));
     });
@@ -141,6 +153,7 @@ void Engine::ForEach(
   this->Crew.Agree([&]() {
     const Progress watched = this->Crew.Watched(progress);
     const int first = this->FirstOwn();
+    // A rank without parts takes part in Agree(), and divides by 1.
     const double width = 1.0 / std::max(1, this->EndOwn() - first);
     for (int part = first; part < this->EndOwn(); ++part)
     {
@@ -162,6 +175,7 @@ void Engine::ForEachInTurn(const Progress& progress, Engine& receiving,
   {
     const double begin = turn, end = turn + 1;
     const Progress ofTurn = progress.Between(begin / turns, end / turns);
+    // Not an own one where this rank has fewer parts than there are turns.
     const int part = this->FirstOwn() + turn;
     this->Crew.Agree([&]() {
       if (this->IsOwn(part))
@@ -197,6 +211,7 @@ void Engine::Deliver(const Progress& progress)
   this->Crew.Agree([&]() {
     for (std::size_t rank = 0; rank < toEach.size(); ++rank)
     {
+      // An empty list: no labels and no bytes, so a rank that sends nothing costs a length of 0.
       if (this->Labels[rank].empty())
       {
         continue;
@@ -215,6 +230,7 @@ void Engine::Deliver(const Progress& progress)
     const Progress watched = this->Crew.Watched(progress);
     for (std::vector<Bytes>& list : fromEach)
     {
+      // Element 0 of a list has the labels, element i + 1 message i.
       std::vector<Label> labels;
       const char* from = list.empty() ? nullptr : list.front().data();
       TakeFrom(from, list.empty() ? 0 : list.front().size() / sizeof(Label), labels);
@@ -228,6 +244,7 @@ void Engine::Deliver(const Progress& progress)
   });
 }
 
+// Boxes lie part after part, and within a part in the order of their names.
 Inbox& Engine::At(int part, int box)
 {
   return this->Boxes[static_cast<std::size_t>(part - this->FirstOwn()) * this->PartBoxes + box];

@@ -14,6 +14,24 @@
  *   - many for each of several ranks, in files.
  * A rank holds parts with successive numbers, maybe none.
  *
+ *     rank 0                    rank 1
+ *     part 0   part 1           part 2   part 3   part 4
+ *     ForEach: step(0), step(1) | step(2), step(3), step(4)      no rank waits
+ *         |  Send()                 |  Send()
+ *         v                         v
+ *     ======================= Deliver(): all ranks meet ===================
+ *     box of 0   box of 1       box of 2   box of 3   box of 4
+ *
+ * So a pass of a program looks like this:
+ *
+ *     engine.ForEach(progress, [&](int part, const Progress&) {
+ *       engine.Send(OtherPart(part), Box, Pack(part));
+ *     });
+ *     engine.Deliver();
+ *     engine.ForEach(progress, [&](int part, const Progress&) {
+ *       Use(part, engine.At(part, Box).Take());
+ *     });
+ *
  * What is sent to a part lies in one of its boxes until it is taken. Boxes are numbered, as the
  * program wants; those that have a name are files where parts are in files, the others are small
  * and always in memory. In a box, what ranks have sent is in their order, and what one rank has
@@ -54,6 +72,7 @@ class Inbox
 {
 public:
   Inbox() = default; ///< in memory
+  /** In a file of this name. */
   explicit Inbox(const std::string& path);
 
   /** An empty stretch is nothing. @throws Error, as where the disk is full */
@@ -62,9 +81,13 @@ public:
   void Append(const void* stretch, std::size_t size);
 
   bool IsEmpty() const;
+  /** Visits the stretches in their order; from a file, one of them is in memory at a time. */
   void ForEach(const std::function<void(const Bytes&)>& visit) const;
 
-  /** All stretches; with Take() they leave the box. */
+  /**
+   * All stretches; with Take() they leave the box. In memory Copy() copies them and Take() does
+   * not. From a file both read all of them at once.
+   */
   std::vector<Bytes> Copy(const Progress& progress = Progress()) const;
   std::vector<Bytes> Take();
 
@@ -75,6 +98,12 @@ private:
   std::unique_ptr<SpoolFile> File; // nullptr: in memory
 };
 
+/**
+ * Who holds which part, and the post between parts. The constructor, ForEach(), ForEachInTurn() and
+ * Deliver() are meetings of all ranks; Send() and At() are not. Several engines may stand over the
+ * same ranks, each with parts and boxes of its own, as FillParts has one of parts and one of groups
+ * of holes.
+ */
 class Engine
 {
 public:
@@ -118,7 +147,10 @@ public:
   void Send(int part, int box, Bytes&& stretch);
   void Deliver(const Progress& progress = Progress());
 
-  /** A box of a part of this rank. */
+  /**
+   * A box of a part of this rank. Boxes are numbered as their names are in the constructor; a part
+   * of another rank has none here.
+   */
   Inbox& At(int part, int box);
 
 private:
@@ -137,7 +169,10 @@ private:
   std::vector<std::vector<Label>> Labels;
 };
 
-/** All values in a box, to which they have been sent as lists of them. */
+/**
+ * All values in a box, to which they have been sent as lists of them (SendTo()). Plain values
+ * alone: a stretch is as many of them as fit into its bytes.
+ */
 template <typename Value>
 std::vector<Value> ValuesIn(const Inbox& box)
 {

@@ -31,6 +31,8 @@ namespace
 // The boxes of a part, and that of a group; see Engine.h.
 constexpr int Patches = 0, Rims = 1, Surrounding = 0;
 
+// Small groups cost more than they save: each has a file, and its surroundings overlap those of
+// others.
 constexpr double LeastGroupPoints = 1000.0;
 constexpr double PartGroups = 8.0; // so many groups together take the memory of a part
 } // namespace
@@ -57,6 +59,8 @@ void FillParts::WithPart(int part, const Progress& progress, const Visit& visit)
 {
   FilledPart made;
   FilledPart& one = this->Crew.IsInFiles() ? made : this->InMemory;
+  // In files one is new each time. In memory this is so at the first visit alone, but where Make()
+  // returns nothing it is asked again.
   if (!one.Input)
   {
     one.Number = part;
@@ -113,12 +117,14 @@ void FillParts::FindHoles(int rimsPart)
   });
   if (!this->Crew.IsInFiles())
   {
+    // All ranks meet here. A rank without points takes part with an empty list.
     FindCopies(this->AllRanks, this->AllHoles.ByIds, this->InMemory.Shared);
     if (this->InMemory.Input)
     {
       own[0].OwnPoints = this->InMemory.OwnCount();
     }
   }
+  // Rank after rank, so by the numbers of parts.
   this->KnownParts = this->AllRanks.Collect(own);
   for (int part = 0; part < this->Crew.PartCount(); ++part)
   {
@@ -139,6 +145,7 @@ void FillParts::FindHoles(int rimsPart)
   });
   for (const KnownPart& known : this->KnownParts)
   {
+    // Holes that were filled before keep their numbers (NextHole), wherever they are.
     Index& first = this->AllHoles.Result.FirstNumber;
     first = std::max(first, known.NextHole);
   }
@@ -156,6 +163,8 @@ void FillParts::FindReaches()
     const Box& rim = this->AllHoles.Extents[hole].OfRim;
     for (const KnownPart& known : this->KnownParts)
     {
+      // A gap falls by twice the way from a long triangle (Holes::Gaps), so that half of the height
+      // away nothing is left of it: a part further away has no say in this hole.
       const double reach = 0.5 * known.LargestHeight;
       const Box within{ { rim.Low.X - reach, rim.Low.Y - reach },
         { rim.High.X + reach, rim.High.Y + reach } };
@@ -178,6 +187,8 @@ void FillParts::SendRims(Parts&& borders)
       std::vector<Index> chosen;
       for (std::size_t i = 0; i < keys.size(); ++i)
       {
+        // Of points on the border of the part: those on that of the surface alone are needed for
+        // outlines.
         if (this->AllHoles.Border.Find(keys[i]) != None)
         {
           chosen.push_back(static_cast<Index>(i));
@@ -206,6 +217,8 @@ void FillParts::Fill()
   }
   this->GroupHoles();
   this->FillAll();
+  // Each rank knows the reports of its own groups alone. From DropRegionsWithoutRoom() on, holes
+  // have other numbers; so all that is shared by the old ones is shared before.
   this->ShareHoleValues(this->AllHoles.Result.Reports);
   this->ShareHoleValues(this->AllHoles.HaveRoom);
   this->AllHoles.DropRegionsWithoutRoom();
@@ -215,6 +228,7 @@ void FillParts::Fill()
     const Index hole = this->AllHoles.NumberOf(static_cast<int>(region.first), region.second);
     const bool isReplaced =
       hole != None && this->AllHoles.Result.Reports[hole].Status == FillStatus::Replaced;
+    // A region's triangles on this rank give way to the patch, wherever that was made.
     this->NewTriangles -= isReplaced ? triangles : 0;
   }
   // Parts in files have marks anyway; those in memory get them if any has a point of another.
@@ -242,6 +256,7 @@ void FillParts::FindLattice()
     {
       this->WithPart(part, making, [&visit](FilledPart& one, const Progress&) {
         Buffer<double> kept;
+        // A view of memory that is here during the visit alone.
         visit(one.OwnPoints(kept));
       });
     }
@@ -250,7 +265,10 @@ void FillParts::FindLattice()
     this->AllRanks, { this->RankPoints, forEach }, this->Fraction(0.2, 0.5));
 }
 
-/** The part of each hole; in memory, of a rank with points. */
+/**
+ * The part of each hole; in memory, of a rank with points. In files, the part that has the edge at
+ * which the rim begins: so a hole's group and its patch are mostly on the rank that surrounds them.
+ */
 std::vector<int> FillParts::HoleParts() const
 {
   std::vector<int> parts;
@@ -269,6 +287,7 @@ std::vector<int> FillParts::HoleParts() const
   {
     partOf[border.RegionEdges[i].Origin] = border.RegionEdgePart[i];
   }
+  // After those of regions, as a point may be on both.
   for (std::size_t i = 0; i < border.Edges.size(); ++i)
   {
     partOf[border.Edges[i].Origin] = border.EdgePart[i];
@@ -281,7 +300,11 @@ std::vector<int> FillParts::HoleParts() const
   return parts;
 }
 
-/** About how many points are in the box around a hole. */
+/**
+ * About how many points are in the box around a hole. Two estimates, of which the larger counts: as
+ * dense as the rim; or as the part on the average, where a surface has half as many points as
+ * triangles.
+ */
 double FillParts::PointsAround(Index hole, const KnownPart& part) const
 {
   const HoleExtent& extent = this->AllHoles.Extents[hole];
@@ -304,6 +327,8 @@ void FillParts::GroupHoles()
       holesOf[partOf[hole]].push_back(static_cast<Index>(hole));
     }
   }
+  // What surrounds a group is in memory at once. In files an eighth of what a part has is allowed
+  // for it; in memory, a rank has all of its holes in one group.
   const double most = !this->Crew.IsInFiles()
     ? std::numeric_limits<double>::infinity()
     : std::max(
@@ -315,6 +340,8 @@ void FillParts::GroupHoles()
     for (const Index hole : holesOf[part])
     {
       const double around = this->PointsAround(hole, this->KnownParts[part]);
+      // Holes come in the order of their numbers. A hole that is larger than this has a group of
+      // its own.
       if (hole == holesOf[part].front() || points + around > most)
       {
         this->Groups.push_back({ part, {} });
@@ -333,6 +360,7 @@ void FillParts::GroupHoles()
 void FillParts::Surround(const std::vector<char>& areWaiting, const Progress& progress)
 {
   this->Crew.ForEachInTurn(progress, *this->GroupCrew, [&](int part, const Progress& ofPart) {
+    // By the boxes of parts, before anything is read: most parts meet few groups.
     std::map<int, std::vector<Box>> boxes; // that meet the part, of each group
     for (std::size_t group = 0; group < this->Groups.size(); ++group)
     {
@@ -351,6 +379,8 @@ void FillParts::Surround(const std::vector<char>& areWaiting, const Progress& pr
     }
     this->WithPart(part, ofPart, [&](FilledPart& one, const Progress& reading) {
       const bool isInFiles = this->Crew.IsInFiles();
+      // In memory the mesh is there since pass 1. Long triangles are sent with the others: they are
+      // opened again where they arrive, in the same way.
       if (isInFiles)
       {
         ToMesh(one.Input, one.OwnMesh, reading);
@@ -372,7 +402,11 @@ void FillParts::Surround(const std::vector<char>& areWaiting, const Progress& pr
   });
 }
 
-/** The holes of a group, and what surrounds them: in memory read once, in files anew each time. */
+/**
+ * The holes of a group, and what surrounds them: in memory read once, in files anew each time. An
+ * empty box in memory means that it has been read, when needs were found. In files it is never
+ * empty: a hole that is to be filled has triangles around it.
+ */
 SurroundedHoles& FillParts::HolesOf(int group, const Progress& progress)
 {
   Inbox& box = this->GroupCrew->At(group, Surrounding);
@@ -392,7 +426,10 @@ SurroundedHoles& FillParts::HolesOf(int group, const Progress& progress)
   return this->Around;
 }
 
-/** Hands to all ranks what each knows of the holes of its groups. */
+/**
+ * Hands to all ranks what each knows of the holes of its groups. Values alone are sent: groups, and
+ * holes in them, are in the same order on all ranks.
+ */
 template <typename Value>
 void FillParts::ShareHoleValues(std::vector<Value>& values) const
 {
@@ -418,6 +455,7 @@ void FillParts::ShareHoleValues(std::vector<Value>& values) const
 /** What each hole may take, and whether all take too much, is known where all needs are. */
 void FillParts::FindQuotas(const Progress& progress)
 {
+  // Holes that the limits refuse are in no group, and keep a need that is NaN.
   std::vector<HoleNeed> needs(this->AllHoles.Extents.size());
   this->GroupCrew->ForEach(progress, [&](int group, const Progress& ofGroup) {
     SurroundedHoles& holes = this->HolesOf(group, ofGroup.Between(0.0, 0.5));
@@ -433,6 +471,7 @@ void FillParts::FindQuotas(const Progress& progress)
 }
 
 /** @return false if holes, which are added to those beyond, need more of the surface around them */
+// Fills a group. What is done leaves memory, and the box, when the next one is worked on.
 bool FillParts::FillGroup(int group, const Progress& progress, std::vector<vtkIdType>& beyond)
 {
   SurroundedHoles& holes = this->HolesOf(group, progress.Between(0.0, 0.1));
@@ -440,6 +479,7 @@ bool FillParts::FillGroup(int group, const Progress& progress, std::vector<vtkId
   beyond.insert(beyond.end(), found.begin(), found.end());
   for (const Index hole : this->Groups[group].Holes)
   {
+    // Fill() has taken regions without room out of the numbers.
     this->AllHoles.HaveRoom[hole] =
       std::binary_search(holes.Numbers.begin(), holes.Numbers.end(), hole) ? 1 : 0;
   }
@@ -447,10 +487,12 @@ bool FillParts::FillGroup(int group, const Progress& progress, std::vector<vtkId
   {
     this->AllHoles.Result.Reports[holes.Numbers[i]] = holes.Patches.Reports[i];
   }
+  // If one hole needs more, the whole group is done again: its patches are one list.
   if (found.empty() && holes.Patches.NumberOfTriangles() > 0)
   {
     this->NewTriangles += holes.Patches.NumberOfTriangles();
     holes.KeepCorners();
+    // Without a message: a group is on the rank of its part (GroupHoles).
     this->Crew.At(this->Groups[group].Part, Patches).Append(holes.Pack());
   }
   this->GroupCrew->At(group, Surrounding).Clear();
@@ -464,7 +506,9 @@ void FillParts::FillAll()
   std::vector<char> areWaiting(this->Groups.size(), 1);
   while (std::count(areWaiting.begin(), areWaiting.end(), 1) > 0)
   {
-    // Few holes need more than their first box.
+    // Few holes need more than their first box: so the first round takes nearly all of the
+    // progress.
+    // Quotas are found once, in the first round.
     const bool isFirst = this->AllHoles.Quotas.empty();
     const double begin = isFirst ? 0.5 : 0.9;
     this->Surround(areWaiting, this->Fraction(begin, isFirst ? 0.58 : 0.9));
@@ -472,6 +516,7 @@ void FillParts::FillAll()
     {
       this->FindQuotas(this->Fraction(0.58, 0.6));
     }
+    // Numbers as vtkIdType, so that one kind of Collect() is enough.
     std::vector<vtkIdType> beyond, waiting; // holes, and their groups
     const Progress filling = isFirst ? this->Fraction(0.6, 0.9) : this->Fraction(0.9, 1.0);
     this->GroupCrew->ForEach(filling, [&](int group, const Progress& progress) {
@@ -480,6 +525,7 @@ void FillParts::FillAll()
         waiting.push_back(group);
       }
     });
+    // On all ranks, as each of them sends by BoxOf(), which is larger then.
     for (const vtkIdType hole : this->AllRanks.Collect(beyond))
     {
       ++this->AllHoles.Retries[hole];
@@ -505,6 +551,7 @@ void FillParts::TakePatches(int part, FilledPart& one)
   one.Filled = SurroundedHoles(std::move(groups));
   for (Index& hole : one.Filled.Numbers)
   {
+    // Packed before regions without room were dropped.
     hole = this->AllHoles.NewNumbers[hole];
   }
   one.FindCorners();
@@ -525,6 +572,8 @@ void FillParts::Pass(int part, const Progress& progress, vtkPolyData* output)
 
 void FillParts::PassRims(const Progress& progress, vtkPolyData* output)
 {
+  // Own ones were kept without packing them. A point on the border of several parts comes several
+  // times.
   Parts points = this->OwnRims;
   this->Crew.At(this->RimsPart, Rims).ForEach([&points](const Bytes& bytes) {
     points.push_back(UnpackData(bytes.data(), bytes.size()));
@@ -562,6 +611,8 @@ bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolat
     return IsPlain(part) && (type == VTK_VOID || type == VTK_FLOAT || type == VTK_DOUBLE);
   };
   return WorkOnParts(block, ranks, isFit, [&](const SurfaceParts& surface) {
+    // Sums make the decision the same on all ranks: float and double points, and whether all have
+    // ids.
     std::vector<vtkIdType> sums = { block.Input->GetNumberOfCells(), type == VTK_FLOAT,
       type == VTK_DOUBLE, !hasIds };
     ranks.Sum(sums);
@@ -572,6 +623,7 @@ bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolat
     FillOptions filling = options;
     filling.Monitor = block.Progress.Between(0.0, 0.82);
     FillParts fill(surface, filling, interpolate, longest, sums[3] == 0);
+    // The part that gets the outlines: that of the first rank with outputs.
     constexpr int first = 0;
     try
     {
@@ -579,6 +631,7 @@ bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolat
     }
     catch (const Error& error) // on all ranks
     {
+      // Gathering would take more memory still.
       if (MessageOf(error).GetCode() == sentences::NotEnoughMemory.Code)
       {
         throw;

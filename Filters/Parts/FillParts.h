@@ -52,6 +52,10 @@ namespace elevation
 {
 struct Block;
 
+/**
+ * One use: FindHoles() and Fill() once on all ranks, then Pass() for each part of this rank, as
+ * often as wanted from files, and PassRims() on the rank of rimsPart.
+ */
 class FillParts
 {
 public:
@@ -109,13 +113,17 @@ private:
   }
   template <typename Visit>
   void WithPart(int part, const Progress& progress, const Visit& visit);
+  // Pass 1:
   void SendRims(Parts&& borders);
   void FindReaches();
   KnownPart Describe(int part, const FilledPart& one);
+  // Pass 2:
   void FindLattice();
+  // Pass 3:
   std::vector<int> HoleParts() const;
   double PointsAround(Index hole, const KnownPart& part) const;
   void GroupHoles();
+  // Passes 4 and 5:
   void Surround(const std::vector<char>& areWaiting, const Progress& progress);
   SurroundedHoles& HolesOf(int group, const Progress& progress);
   template <typename Value>
@@ -123,6 +131,7 @@ private:
   void FindQuotas(const Progress& progress);
   bool FillGroup(int group, const Progress& progress, std::vector<vtkIdType>& beyond);
   void FillAll();
+  // Pass 6:
   void TakePatches(int part, FilledPart& one);
 
   const SurfaceParts::MakePart Make;

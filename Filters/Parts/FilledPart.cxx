@@ -1,5 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Read() looks at the part for pass 1. FindCorners() and Write() are pass 6: the patches come by
+ * the points that surround their holes, on whatever rank that was, and their corners are found
+ * among the part's own points by their keys. Corners that are not among these are appended as
+ * ghosts.
+ */
 #include "FilledPart.h"
 
 #include "Adapt/Adapt.h"
@@ -26,6 +32,7 @@
 namespace elevation
 {
 
+// Ghost cells and other cells than triangles have been refused, or are none in files.
 void FilledPart::Read(bool byIds, double longest, const Progress& progress)
 {
   ToMesh(this->Input, this->OwnMesh, progress.Between(0.0, 0.4));
@@ -51,6 +58,9 @@ void FilledPart::ListShared(bool byIds)
   this->AreUsed.assign(mayBeShared.size(), 0);
   for (const Index corner : this->OwnMesh.Triangles)
   {
+    // A point with a triangle is shared only if it is on the border, or a corner of a long
+    // triangle: inside a part, no other part has triangles with it. A point without a triangle may
+    // be a copy of any.
     mayBeShared[corner] = 0;
     this->AreUsed[corner] = 1;
   }
@@ -71,6 +81,7 @@ void FilledPart::ListShared(bool byIds)
       this->Shared.OnBoundary.push_back(marks && marks->GetValue(static_cast<vtkIdType>(i)) != 0);
     }
   }
+  // In this order: TakeMarks() and Sort() need places and keys.
   this->Shared.Keys = KeysOf(this->Input, byIds, &this->Shared.Places);
   this->Shared.TakeMarks(this->Input);
   this->Shared.Sort(this->AreUsed);
@@ -90,11 +101,16 @@ std::vector<char> FilledPart::AreOthers() const
   }
   for (std::size_t i = 0; i < this->Shared.Places.size(); ++i)
   {
+    // For points that may be shared, what ranks have found out together replaces the mark.
     areOthers[this->Shared.Places[i]] = this->Shared.AreCopies[i];
   }
   return areOthers;
 }
 
+/*
+ * All points, used by a triangle or not: the lattice is that of all, and the limit of new points
+ * too.
+ */
 vtkIdType FilledPart::OwnCount() const
 {
   const std::vector<char> areOthers = this->AreOthers();
@@ -117,11 +133,13 @@ PointView FilledPart::OwnPoints(Buffer<double>& kept) const
     }
   }
   PointView some;
+  // In double whatever the input has: rows are put together from those that count.
   some.Double = kept.data();
   some.Count = static_cast<Index>(kept.size() / 3);
   return some;
 }
 
+// Of all corners of patches, and of the points nearest to new ones, whose values these get.
 void FilledPart::FindCorners()
 {
   const Index first = static_cast<Index>(this->Filled.Keys.size());
@@ -129,6 +147,7 @@ void FilledPart::FindCorners()
   this->PlaceOf.assign(this->Filled.Keys.size(), None);
   this->Added.clear();
   std::map<PointKey, Index> added; // a point may be there several times
+  // Beyond the first new point, a corner is one that the patch itself has made.
   const auto place = [&](Index corner) {
     if (corner < first && this->PlaceOf[corner] == None)
     {
@@ -186,6 +205,7 @@ vtkSmartPointer<vtkPolyData> FilledPart::WithCorners(bool areMarked, const Progr
       points.OfOthers.push_back(this->Shared.Places[i]);
     }
   }
+  // Each is another part's, and a ghost here.
   for (std::size_t i = 0; i < this->Added.size(); ++i)
   {
     points.OfOthers.push_back(own + static_cast<Index>(i));
@@ -197,7 +217,11 @@ vtkSmartPointer<vtkPolyData> FilledPart::WithCorners(bool areMarked, const Progr
   return data;
 }
 
-/** The patches among those of all holes, by the places of the input's points. */
+/**
+ * The patches among those of all holes, by the places of the input's points. MakeSurface() then
+ * does for a part what it does for a surface: holes of other parts just have no points and
+ * triangles here.
+ */
 FillResult FilledPart::PlacedPatches(const SharedHoles& all, vtkPolyData* input) const
 {
   const FillResult& from = this->Filled.Patches;
@@ -213,6 +237,7 @@ FillResult FilledPart::PlacedPatches(const SharedHoles& all, vtkPolyData* input)
     from.Triangles.begin(), from.Triangles.end(), std::back_inserter(to.Triangles), placed);
   std::transform(from.NearestBoundaryPoints.begin(), from.NearestBoundaryPoints.end(),
     std::back_inserter(to.NearestBoundaryPoints), placed);
+  // Offsets for each of all holes; where a hole is not one of this part, they do not rise.
   std::size_t next = 0;
   for (Index hole = 0; hole < static_cast<Index>(all.Result.Reports.size()); ++hole)
   {
@@ -231,7 +256,10 @@ FillResult FilledPart::PlacedPatches(const SharedHoles& all, vtkPolyData* input)
   return to;
 }
 
-/** Attributes in the order of the input's arrays. */
+/**
+ * Attributes in the order of the input's arrays. The surrounding was joined from parts of several
+ * ranks, whose arrays may be in another order; so they are found by their names.
+ */
 void FilledPart::PlaceAttributes(vtkPolyData* input, FillResult& placed) const
 {
   vtkPointData* const given =
@@ -262,6 +290,7 @@ void FilledPart::NumberNewPoints(
   const SharedHoles& all, vtkIdType largest, vtkPolyData* output) const
 {
   vtkDataArray* const ids = output->GetPointData()->GetGlobalIds();
+  // New points come last, hole by hole, as Numbers lists the holes.
   vtkIdType next = output->GetNumberOfPoints() - this->Filled.Patches.NumberOfPoints();
   for (const Index hole : this->Filled.Numbers)
   {
@@ -272,6 +301,7 @@ void FilledPart::NumberNewPoints(
   }
 }
 
+// The same two steps as on one rank: points and their data, then the surface with its patches.
 void FilledPart::Write(const SharedHoles& all, bool areMarked, vtkIdType largestId,
   const Progress& progress, vtkPolyData* output) const
 {
@@ -287,6 +317,7 @@ vtkSmartPointer<vtkPolyData> FilledPart::PointsOnBorder() const
   IdSet ends(static_cast<Index>(this->Input->GetNumberOfPoints()));
   for (Index h = 0; h < static_cast<Index>(this->OwnMesh.Twins.size()); ++h)
   {
+    // More than are needed: which are on the border of the surface is not known yet.
     if (this->IsRim(h))
     {
       ends.Add(this->OwnMesh.Origin(h));
@@ -297,6 +328,7 @@ vtkSmartPointer<vtkPolyData> FilledPart::PointsOnBorder() const
   return chosen.empty() ? nullptr : ChosenPoints(this->Input, chosen);
 }
 
+// All ranks know the holes; this one also has their points, with data.
 void WriteRims(
   const SharedHoles& all, const Parts& points, const Progress& progress, vtkPolyData* output)
 {

@@ -4,6 +4,12 @@
  * @file
  * A part of a surface whose holes are filled (FillParts.h): what is read of it, and how it is
  * written. Private to the module.
+ *
+ * A point is known by three numbers: its place in the input; its place in the surrounding of the
+ * holes whose patches the part gets, with Filled.Keys; and the place in the output that PlaceOf
+ * gives it:
+ *
+ *     input's points | Added: corners of others | new points of patches     the output's points
  */
 #ifndef FilledPart_h
 #define FilledPart_h
@@ -19,6 +25,10 @@
 namespace elevation
 {
 
+/**
+ * One part from Read() to Write(). In memory it stays in between; in files it is read again for
+ * Write(), and is the same then, as all of Read() depends on the input alone.
+ */
 struct FilledPart
 {
   int Number = 0;

@@ -1,5 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * A place is a data set of this rank's input with its outputs (Blocks.h); a block is what all
+ * ranks' places of one path are together. On one rank each place is a block of its own.
+ *
+ * Failures: what a block throws is kept as an error of the block, and the other blocks go on. What
+ * is thrown outside of blocks, as by a second input that cannot be read, ends the run. An abort
+ * ends it, too, and empties everything on all ranks, as what there is by then depends on the order
+ * of blocks.
+ */
 #include "FilterRun.h"
 
 #include "Adapt/Adapt.h"
@@ -38,13 +47,16 @@ bool IsOtherType(const Place& place)
   return !vtkPointSet::SafeDownCast(place.Input);
 }
 
-/** The type of the first input, in any block. */
+/** The type of the first input, in any block: what the filter named first in FillInput(). */
 const char* RequiredType(vtkAlgorithm* filter)
 {
   return filter->GetInputPortInformation(0)->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), 0);
 }
 
-/** Warns that a block has been gathered, if it has cells or there is another reason to warn. */
+/**
+ * Warns that a block has been gathered, if it has cells or there is another reason to warn. A block
+ * without cells loses nothing by it.
+ */
 void WarnOfGathering(Place* home, const Message& why)
 {
   if (home && (!why.IsEmpty() || home->Input->GetNumberOfElements(vtkDataObject::CELL) > 0))
@@ -72,13 +84,19 @@ bool IsCopy(vtkPolyData* surface, vtkIdType point)
 /**
  * Removes the points that no cell has. A rank keeps its own that cells of another have, so that
  * each point still belongs to one. All ranks call it, those without an output with nullptr.
+ *
+ *     rank 0 owns p, and no cell here has it      rank 1 has a ghost of p, in a cell
+ *     keeps p, as its key has come            <-- sends the key of p
+ *                                                 keeps its ghost, as a cell has it
  */
 void KeepUsed(vtkPolyData* surface, const Ranks& ranks, const Progress& progress)
 {
   std::vector<char> areUsed;
   std::vector<PointKey> keys; // of points of others that are used here
   const bool hasPoints = surface && surface->GetNumberOfPoints() > 0;
+  // Either all ranks go by ids or none does: keys of both kinds would not meet.
   const bool byIds = !IsOnAny(ranks, hasPoints && !surface->GetPointData()->GetGlobalIds());
+  // With areCopies: ghosts that are used here. Without: own points that are not.
   const auto forEach = [&](bool areCopies, const auto& visit) {
     for (std::size_t i = 0; i < areUsed.size(); ++i)
     {
@@ -95,6 +113,7 @@ void KeepUsed(vtkPolyData* surface, const Ranks& ranks, const Progress& progress
   });
   keys = ranks.Collect(keys);
   ranks.Agree([&] {
+    // Only now is it known which of the own points another rank uses.
     std::sort(keys.begin(), keys.end());
     forEach(false, [&keys](char& isUsed, const PointKey& key) {
       isUsed = std::binary_search(keys.begin(), keys.end(), key);
@@ -121,6 +140,7 @@ FilterRun::FilterRun(vtkAlgorithm* filter, vtkMultiProcessController* controller
 
 int FilterRun::Run(const std::function<void(Block&)>& body)
 {
+  // An error here is that of a request for too many pieces, on all ranks; it leaves Run().
   const Ranks ranks(this->Controller, this->Request, this->Outputs, [this](const Message& waiting) {
     ReportMessages(this->Filter, {}, { waiting }, this->Messages);
   });
@@ -143,6 +163,7 @@ int FilterRun::Run(const std::function<void(Block&)>& body)
   catch (const std::exception& error)
   {
     this->EmptyOutputs();
+    // On all ranks the same, as it was thrown by Agree().
     this->Errors = { MessageOf(error) };
     this->Warnings.clear();
   }
@@ -191,6 +212,7 @@ vtkSmartPointer<vtkPolyData> FilterRun::ShareSecond(const Ranks& ranks) const
 
 bool FilterRun::ShouldReport(const Place& place, const Ranks& ranks) const
 {
+  // A block that is empty on all ranks is reported on by rank 0, so that somebody is.
   return HasPoints(place) || IsOtherType(place) ||
     (ranks.OwnRank() == 0 &&
       !std::binary_search(this->Occupied.begin(), this->Occupied.end(), IdOf(place.Path)));
@@ -200,8 +222,11 @@ double FilterRun::GatherSpreadBlocks(
   std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress)
 {
   const std::map<vtkIdType, int> spread = FindSpread(places, ranks, this->Occupied);
+  // Gathering alone is short; the filter's own way on ranks is nearly all of the work.
   const double share = this->Spread ? 0.9 : 0.1;
   double done = 0.0;
+  // In the order of their numbers, which is the same on all ranks: each block is a series of
+  // meetings.
   for (const auto& block : spread)
   {
     const double next = done + share / static_cast<double>(spread.size());
@@ -210,6 +235,8 @@ double FilterRun::GatherSpreadBlocks(
     std::vector<Place*> own;
     for (Place& place : places)
     {
+      // A rank may have several places of a block: partitions. An image among them is an error
+      // later.
       if (IdOf(place.Path) == block.first && !IsOtherType(place))
       {
         own.push_back(&place);
@@ -232,6 +259,7 @@ double FilterRun::GatherSpreadBlocks(
       this->IsAborted = true;
       return done;
     }
+    // The block is done with on all ranks; the next one is worked on.
     catch (const std::exception& error) // on all ranks
     {
       this->AddMessages(own, { MessageOf(error) }, this->Errors);
@@ -251,6 +279,8 @@ void FilterRun::AddMessages(const std::vector<Place*>& places, const std::vector
   for (std::size_t i = 0; i < messages.size() && !places.empty(); ++i)
   {
     all.push_back(messages[i]);
+    // Ranks without a place say nothing: OnFirst() would keep the same message twice, with and
+    // without the name.
     all.back().SetBlock(places.front()->BlockName);
   }
 }
@@ -273,6 +303,7 @@ vtkSmartPointer<vtkPointSet> FilterRun::Prepared(
   {
     shown = WithOriginalIds(shown, first, warnings);
   }
+  // What was made anew has no mark, and a missing mark makes a warning of its own.
   CopyMark(input, shown);
   return shown;
 }
@@ -288,6 +319,7 @@ void FilterRun::PrepareParts(
     counts[0] += part->GetNumberOfPoints();
   }
   counts = ranks.Collect(counts);
+  // The place of a point in the block is counted over ranks, and over partitions within a rank.
   vtkIdType first = std::accumulate(counts.begin(), counts.begin() + ranks.OwnRank(), vtkIdType(0));
   ranks.Agree([&] {
     for (Place* place : places)
@@ -304,7 +336,10 @@ void FilterRun::PrepareParts(
   this->AddMessages(places, warnings, this->Warnings);
 }
 
-/** Does work. If that fails, the results of the filter are those before. */
+/**
+ * Does work. If that fails, the results of the filter are those before: a body adds to them as it
+ * goes.
+ */
 void FilterRun::CountIfDone(const std::function<void()>& work) const
 {
   std::vector<vtkIdType> sums;
@@ -340,6 +375,7 @@ void FilterRun::FinishOutputs(Block& block, const Ranks& ranks) const
   for (std::size_t port = 0; port < static_cast<std::size_t>(this->CleanedOutputs); ++port)
   {
     vtkPolyData* const surface = block.Outputs.empty() ? nullptr : block.Outputs[port];
+    // Before points are removed, while the list still names points that are there.
     if (surface && this->ListsUnused)
     {
       NameUnusedByOriginalIds(surface);
@@ -352,6 +388,10 @@ void FilterRun::FinishOutputs(Block& block, const Ranks& ranks) const
   }
 }
 
+/*
+ * The result goes to the outputs of the first place with points, or of any; the other places of the
+ * block on this rank, partitions, become empty: they are the parts of one surface.
+ */
 bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
   vtkPolyData* second, const Progress& progress, Message& whyGathered)
 {
@@ -359,7 +399,9 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
   {
     return false;
   }
+  // The parts of a block on this rank in one, even if it has none: all ranks take part.
   Block block{ nullptr, second, {}, progress, {} };
+  // Kept alive here: a block only points to its input.
   vtkSmartPointer<vtkPointSet> own;
   ranks.Agree([&] { own = JoinHere(PartsOf(places), this->InputKind(), block.Warnings); });
   block.Input = own;
@@ -371,6 +413,7 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
     block.Outputs = home->Outputs;
   }
   bool isDone = false;
+  // Finishing counts nothing, but may throw: then the block failed, and nothing of it counts.
   this->CountIfDone([&] {
     isDone = this->Spread(block, ranks);
     if (isDone)
@@ -384,6 +427,7 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
     return false;
   }
   this->AddMessages(places, block.Warnings, this->Warnings);
+  // The other places of the block have nothing to work on any more.
   Empty(places);
   if (home)
   {
@@ -404,6 +448,7 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
   const Progress ofAll = ProgressOf(this->Filter);
   const Progress progress =
     ofAll.Between(this->GatherSpreadBlocks(places, ranks, second, ofAll), 1.0);
+  // The 1 is for blocks without points: the sum must not be 0.
   const auto workOf = [](const Place& place) {
     auto* const points = vtkPointSet::SafeDownCast(place.Input);
     return 1.0 + (points ? points->GetNumberOfPoints() : 0);
@@ -419,6 +464,7 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
     {
       break;
     }
+    // Also where nothing is made: a filter after this one must not warn of it again.
     std::for_each(place.Outputs.begin(), place.Outputs.end(), MarkAsReported);
     // A rank without points has the rest of the outputs, and leaves the messages to the others.
     const bool isReported = this->ShouldReport(place, ranks);
@@ -440,10 +486,12 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
     {
       continue;
     }
+    // On how the data came here: before what the filter says of them.
     if (!place.Warning.IsEmpty())
     {
       block.Warnings.insert(block.Warnings.begin(), place.Warning);
     }
+    // What was warned of before an error is about a result that is not there.
     if (!error.IsEmpty())
     {
       block.Warnings = { error };
@@ -465,6 +513,7 @@ Message FilterRun::RunPlace(
   try
   {
     const char* const required = RequiredType(this->Filter);
+    // The executive checks the type of the whole input alone, and a composite may have anything.
     if (!place.Input->IsA(required))
     {
       throw Error(std::string("It is a ") + place.Input->GetClassName() + ", but a " + required +
@@ -476,8 +525,10 @@ Message FilterRun::RunPlace(
     block.Input = input;
     this->CountIfDone([&] {
       body(block);
+      // This block is on one rank; others may be at work on theirs, so nobody is waited for.
       this->FinishOutputs(block, Ranks());
     });
+    // Those of preparing come first, as preparing does.
     block.Warnings.insert(block.Warnings.begin(), warnings.begin(), warnings.end());
     return message;
   }
@@ -495,6 +546,7 @@ Message FilterRun::RunPlace(
 
 void FilterRun::ShareResults(const Ranks& ranks)
 {
+  // The first meeting after ranks were on their own: here each learns of an abort elsewhere.
   std::vector<vtkIdType> sums = { this->IsAborted || IsAbortRequested(this->Filter) ? 1 : 0 };
   for (vtkIdType* sum : this->Sums)
   {
@@ -518,6 +570,7 @@ void FilterRun::ShareResults(const Ranks& ranks)
   }
   if (this->IsAborted)
   {
+    // Those of composites with their blocks, so that all ranks have the same: nothing.
     this->EmptyOutputs();
     this->Errors.clear();
     this->Warnings.clear();

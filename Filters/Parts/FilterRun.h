@@ -4,6 +4,17 @@
  * @file
  * How a filter calls the kernel: for each block of the input; progress and abort go in, warnings
  * and exceptions come out as one message of the filter. Private to the module.
+ *
+ * The way of a run; all ranks are together at the steps with a star, of several ranks:
+ *
+ *     * list the places of the input in the outputs (Blocks.h); share the second input
+ *     * for each block with points on several ranks: Spread, or gather it to one of them
+ *       for each place of this rank: prepare the input, call the body, finish the outputs
+ *     * add up the results, and whether any rank was aborted
+ *     * report: rank 0 for all
+ *
+ * Preparing leaves out hidden cells, sets the precision of points and adds original ids; finishing
+ * removes unused points and rounds. So a body sees none of this.
  */
 #ifndef FilterRun_h
 #define FilterRun_h
@@ -94,24 +105,37 @@ public:
 
 private:
   void EmptyOutputs();
+  /**
+   * The second input in one, of all ranks, in double precision; nullptr: none. All ranks call it.
+   */
   vtkSmartPointer<vtkPolyData> ShareSecond(const Ranks& ranks) const;
+  /** Whether this rank gives the messages of a place: of one block, one rank does. */
   bool ShouldReport(const Place& place, const Ranks& ranks) const;
   /** Works on the blocks that are spread over ranks. @return the progress that has been made */
   double GatherSpreadBlocks(
     std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress);
+  /** What the filter works on. @param[in] first  place of the first point in the block */
   vtkSmartPointer<vtkPointSet> Prepared(
     vtkPointSet* input, vtkPolyData* second, vtkIdType first, std::vector<Message>& warnings) const;
   void PrepareParts(const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second);
   void CountIfDone(const std::function<void()>& work) const;
+  /** After a body: removes unused points, and rounds. All ranks that have the block call it. */
   void FinishOutputs(Block& block, const Ranks& ranks) const;
+  /** Works on a block by Spread. @return false on all ranks if it has to be gathered */
   bool RunSpread(const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second,
     const Progress& progress, Message& whyGathered);
+  /** Adds messages of this rank about a block that is spread, with the name of the block. */
   void AddMessages(const std::vector<Place*>& places, const std::vector<Message>& messages,
     std::vector<Message>& all) const;
+  /** Whether the first input is a mesh, or points whose cells do not count. */
   PartKind InputKind() const;
   void RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second,
     const std::function<void(Block&)>& body);
+  /**
+   * Calls the body for a place. @return the error, if any; outputs are empty then. @throws Aborted
+   */
   Message RunPlace(const Place& place, Block& block, const std::function<void(Block&)>& body);
+  /** Adds up results and aborts of all ranks; after an abort anywhere, all outputs become empty. */
   void ShareResults(const Ranks& ranks);
   bool IsAbortReported() const;
   void Report(const Ranks& ranks) const;

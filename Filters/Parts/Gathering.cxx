@@ -1,5 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Gathering takes two meetings and one exchange: all ranks check and pack, exchange, and the home
+ * rank unpacks and joins. ShareLines() is the other direction, one data set for all ranks, as lines
+ * are few.
+ */
 #include "Gathering.h"
 
 #include "Adapt/Adapt.h"
@@ -26,6 +31,7 @@ void CheckCorners(vtkPolyData* part)
 {
   const vtkIdType count = part->GetNumberOfPoints();
   vtkIdType cell = 0;
+  // In this order, by which cells are numbered; strips have been refused.
   for (vtkCellArray* cells : { part->GetVerts(), part->GetLines(), part->GetPolys() })
   {
     auto each = vtk::TakeSmartPointer(cells->NewIterator());
@@ -49,6 +55,7 @@ void CheckCorners(vtkPolyData* part)
 vtkSmartPointer<vtkPolyData> Checked(vtkPointSet* part, PartKind kind)
 {
   auto checked = vtkSmartPointer<vtkPolyData>::New();
+  // Cells of points do not matter, and may be of any kind; a vtkPointSet may have none.
   if (kind == PartKind::Points)
   {
     CheckPointArrays(part);
@@ -63,6 +70,7 @@ vtkSmartPointer<vtkPolyData> Checked(vtkPointSet* part, PartKind kind)
     throw Error(std::string("It is a ") + part->GetClassName() + ", but a vtkPolyData is needed.");
   }
   CheckArrays(mesh);
+  // Throws where a polygon is no triangle, or there are strips, which Join() does not know.
   ViewTriangles(mesh);
   CheckCorners(mesh);
   checked->ShallowCopy(mesh);
@@ -86,8 +94,10 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
     }
     catch (const Error& error)
     {
+      // The error is reported by rank 0, to whom "the input" would be its own.
       throw Error("On rank " + std::to_string(ranks.OwnRank()) + ": " + error.what());
     }
+    // What is at home already stays as it is, without a copy.
     for (std::size_t i = 0; i < own.size() && ranks.OwnRank() != home; ++i)
     {
       packed[home].push_back(PackData(own[i]));
@@ -98,6 +108,7 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
   ranks.Agree([&] {
     Report(progress, 0.5);
     Parts all;
+    // In the order of ranks, with the own parts in their place: the order decides ids and ties.
     for (int rank = 0; rank < ranks.Count() && ranks.OwnRank() == home; ++rank)
     {
       if (rank == home)
@@ -106,6 +117,7 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
       }
       for (Bytes& bytes : packed[rank])
       {
+        // Each message goes as soon as it is unpacked, as both together take twice the memory.
         all.push_back(UnpackData(bytes.data(), bytes.size()));
         bytes = Bytes();
       }
@@ -118,6 +130,7 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
   return joined;
 }
 
+// Without a meeting: partitions of one rank. None gives an empty data set, never nullptr.
 vtkSmartPointer<vtkPointSet> JoinHere(
   const std::vector<vtkPointSet*>& parts, PartKind kind, std::vector<Message>& warnings)
 {
@@ -143,6 +156,7 @@ vtkSmartPointer<vtkPolyData> ShareLines(
   {
     return nullptr;
   }
+  // A rank without the input still meets the others.
   if (!lines)
   {
     lines = vtkSmartPointer<vtkPolyData>::New(); // on other ranks only
@@ -150,6 +164,10 @@ vtkSmartPointer<vtkPolyData> ShareLines(
   return ranks.Gather(lines);
 }
 
+/*
+ * Ranks that have given away their part keep the arrays, so that filters after this one find the
+ * same arrays on all ranks.
+ */
 vtkSmartPointer<vtkPolyData> EmptyCopy(vtkPointSet* input)
 {
   auto copy = vtkSmartPointer<vtkPolyData>::New();

@@ -3,6 +3,9 @@
 /**
  * @file
  * Brings the parts of a data set from all ranks to one of them. Private to the module.
+ *
+ * The alternative to Spread in FilterRun, and how lines reach all ranks. It needs memory for the
+ * whole data set on one rank.
  */
 #ifndef Gathering_h
 #define Gathering_h

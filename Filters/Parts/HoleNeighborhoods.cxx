@@ -1,5 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * A hole is filled where its surroundings are. They are all triangles that meet a box around it:
+ * those that hold the boundary, the ring of points beside it that gives the slope, and the places
+ * nearby where methods are tried (Heights.h). The box is a guess by the size of the hole; the
+ * kernel says whether it was enough.
+ */
 #include "HoleNeighborhoods.h"
 
 #include "BoundaryZone.h"
@@ -16,6 +22,7 @@
 namespace elevation
 {
 
+// By the edges of rim and islands: more is not known of a hole yet.
 std::vector<HoleExtent> ExtentsOf(const Holes& holes, const PointView& points)
 {
   std::vector<HoleExtent> extents;
@@ -35,11 +42,13 @@ std::vector<HoleExtent> ExtentsOf(const Holes& holes, const PointView& points)
 std::vector<int> BalancedRanks(
   const std::vector<HoleExtent>& holes, const std::vector<vtkIdType>& can)
 {
+  // Even a hole of three edges has trials.
   constexpr double leastWork = 150.0;                // of the trials, in points
   std::vector<std::pair<double, std::size_t>> order; // negative work, hole
   for (std::size_t hole = 0; hole < holes.size(); ++hole)
   {
     const HoleExtent& one = holes[hole];
+    // Points of the spacing of its edges in the box of the rim: an upper bound of what is new.
     const double points = one.OfRim.Width() / one.MeanEdge * (one.OfRim.Height() / one.MeanEdge);
     order.emplace_back(-(points + one.NumberOfEdges + leastWork), hole);
   }
@@ -47,6 +56,7 @@ std::vector<int> BalancedRanks(
   std::vector<double> work(can.size(), DBL_MAX);
   for (std::size_t rank = 0; rank < can.size(); ++rank)
   {
+    // A rank that gets nothing stays the one with most work.
     work[rank] = can[rank] ? 0.0 : DBL_MAX;
   }
   std::vector<int> rankOf(holes.size(), 0);
@@ -68,13 +78,29 @@ Box BoxAround(const HoleExtent& hole, int retries, double reach)
     return { { -DBL_MAX, -DBL_MAX }, { DBL_MAX, DBL_MAX } };
   }
   const double size = std::hypot(rim.Width(), rim.Height());
+  // On each side, 1.5 times the diagonal of the hole and six edges, which small holes need.
   const double by = std::max(reach, std::pow(4.0, retries) * (1.5 * size + 6.0 * hole.MeanEdge));
   return { { rim.Low.X - by, rim.Low.Y - by }, { rim.High.X + by, rim.High.Y + by } };
 }
 
 namespace
 {
-/** Places of a grid over a mesh, and how many marked cells lie below and left of each. */
+/**
+ * A grid of 256 by 256 cells over a mesh, in which the cells that boxes touch are marked. Whether a
+ * box meets a marked cell takes four look-ups, however many boxes there are and however large it
+ * is:
+ *
+ *     Counts(i, j) is the number of marked cells left of column i and below row j.
+ *
+ *          a----b          Marked cells in the rectangle:
+ *          |    |          Counts(b) - Counts(a) - Counts(d) + Counts(c),
+ *          c----d          as with a summed-area table [Crow 1984].
+ *
+ * The same way round, a box is marked by four differences, whose double sum is 1 inside it. Cells
+ * are coarse, so some triangles just beside a box come along; that does no harm.
+ *
+ * [Crow 1984] Summed-area tables for texture mapping.
+ */
 class MarkedCells
 {
 public:
@@ -82,6 +108,7 @@ public:
     : Bounds(all)
     , Counts(static_cast<std::size_t>(Side + 1) * (Side + 1), 0)
   {
+    // One row and column more than there are cells: a difference may stand just beyond the last.
     std::vector<Index> marks(this->Counts.size(), 0); // differences
     for (const Box& box : boxes)
     {
@@ -101,6 +128,7 @@ public:
         const auto at = [&](std::vector<Index>& from, int di, int dj) {
           return i >= di && j >= dj ? from[Place(i - di, j - dj)] : 0;
         };
+        // Then each is the number of boxes over the cell.
         marks[Place(i, j)] += at(marks, 1, 0) + at(marks, 0, 1) - at(marks, 1, 1);
       }
     }
@@ -108,6 +136,7 @@ public:
     {
       for (int i = 0; i < Side; ++i)
       {
+        // Each marked cell counts once, however many boxes touch it.
         this->Counts[Place(i + 1, j + 1)] = (marks[Place(i, j)] > 0 ? 1 : 0) +
           this->Counts[Place(i, j + 1)] + this->Counts[Place(i + 1, j)] - this->Counts[Place(i, j)];
       }
@@ -135,6 +164,8 @@ private:
   }
   static int CellOf(double x, double low, double width)
   {
+    // Without an extent there is one column (row). The clamp also takes boxes that reach to
+    // infinity.
     const double cell = width > 0.0 ? std::floor((x - low) / width * Side) : 0.0;
     return static_cast<int>(std::min(std::max(cell, 0.0), Side - 1.0));
   }
@@ -171,6 +202,7 @@ std::vector<Index> TrianglesIn(const std::vector<Box>& boxes, const Mesh& mesh)
     {
       box.Add(mesh.PointOf(mesh.Origin(3 * t + k)));
     }
+    // By the box of the triangle: a thin one across a corner may come along without meeting a box.
     if (marked.Meet(box))
     {
       near.push_back(t);
@@ -179,6 +211,7 @@ std::vector<Index> TrianglesIn(const std::vector<Box>& boxes, const Mesh& mesh)
   return near;
 }
 
+// Points keep their order, and with it the choice among duplicates.
 vtkSmartPointer<vtkPolyData> ChosenTriangles(
   vtkPolyData* source, const Mesh& mesh, const std::vector<Index>& chosen)
 {

@@ -3,6 +3,9 @@
 /**
  * @file
  * Which triangles of a surface a hole needs to be filled, and on which rank. Private to the module.
+ *
+ * SharedHoles asks for extents and boxes, FillParts for ranks and triangles. All of it is by the
+ * holes and the mesh alone: no rank is asked here.
  */
 #ifndef HoleNeighborhoods_h
 #define HoleNeighborhoods_h
@@ -18,6 +21,7 @@
 namespace elevation
 {
 
+/** How large a hole is: what is known of it on all ranks, before anybody has its surroundings. */
 struct HoleExtent
 {
   Box OfRim;
@@ -28,7 +32,12 @@ struct HoleExtent
 std::vector<HoleExtent> ExtentsOf(const Holes& holes, const PointView& points);
 
 /**
- * The rank of each hole: the largest first, to the one with least work. @param[in] can  have some
+ * The rank of each hole: the largest first, to the one with least work. So no rank has more than a
+ * third above the best that is possible [Graham 1969], as far as the work is known. The same on all
+ * ranks.
+ * @param[in] can  one a rank; 0: it gets no hole
+ *
+ * [Graham 1969] Bounds on multiprocessing timing anomalies.
  */
 std::vector<int> BalancedRanks(
   const std::vector<HoleExtent>& holes, const std::vector<vtkIdType>& can);

@@ -1,5 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Rows say which tuple of which part each joined tuple is. Points, point data, cells and cell data
+ * are then the same copying of rows. The passes: which points are the same (CommonPoints.h); points
+ * and their arrays; field data; then, for a mesh, vertices, lines and polygons in this order, as
+ * VTK numbers cells, and their arrays.
+ */
 #include "Joining.h"
 
 #include "Adapt/Adapt.h"
@@ -27,10 +33,11 @@ namespace elevation
 
 namespace
 {
-/** Copies some tuples; copy(to, from) does. */
+/** Copies some tuples; copy(to, from) does, for two lists of the same length. */
 template <typename Copy>
 void CopyRows(const Rows& rows, const Progress& progress, const Copy& copy)
 {
+  // VTK's lists of ids are copies; so many are made at a time, and progress is reported in between.
   constexpr std::size_t atOnce = 65536;
   vtkNew<vtkIdList> from, to;
   for (std::size_t begin = 0; begin < rows.From.size(); begin += atOnce)
@@ -55,6 +62,7 @@ vtkSmartPointer<vtkPoints> JoinPoints(
   const auto isFloat = [](const auto& part) {
     return part->GetPoints()->GetDataType() == VTK_FLOAT;
   };
+  // Float in, float out; else no value may be rounded.
   points->SetDataType(std::all_of(parts.begin(), parts.end(), isFloat) ? VTK_FLOAT : VTK_DOUBLE);
   SetTuples(count, points->GetData());
   for (std::size_t i = 0; i < parts.size(); ++i)
@@ -72,8 +80,10 @@ vtkSmartPointer<vtkAbstractArray> JoinArray(vtkAbstractArray* first,
   const Progress& progress)
 {
   std::vector<vtkAbstractArray*> arrays = { first };
+  // All parts are looked at before anything is copied.
   for (auto each = data.begin() + 1; each != data.end(); ++each)
   {
+    // By name. An array without one has no partner, unless there is a single part.
     arrays.push_back(first->GetName() ? (*each)->GetAbstractArray(first->GetName()) : nullptr);
     if (!arrays.back() || arrays.back()->GetDataType() != first->GetDataType() ||
       arrays.back()->GetNumberOfComponents() != first->GetNumberOfComponents())
@@ -145,6 +155,7 @@ std::set<std::string> JoinArrays(const std::vector<vtkDataSetAttributes*>& data,
         vtkAbstractArray* const active = part->GetAbstractAttribute(type);
         return active && active->GetName() && !std::strcmp(active->GetName(), first->GetName());
       };
+      // Scalars on one rank alone are an array like others.
       if (std::all_of(data.begin(), data.end(), isActive))
       {
         output->SetActiveAttribute(index, type);
@@ -158,6 +169,7 @@ std::set<std::string> JoinArrays(const std::vector<vtkDataSetAttributes*>& data,
     {
       vtkAbstractArray* const array = part->GetAbstractArray(i);
       const std::string name = array->GetName() ? array->GetName() : "";
+      // Also arrays that only a later part has: the loop above sees those of the first.
       if (!IsGhostArray(array) && !output->HasArray(name.c_str()))
       {
         left.insert(name);
@@ -178,12 +190,14 @@ vtkSmartPointer<vtkCellArray> JoinCells(const Parts& parts, const std::vector<vt
   for (std::size_t part = 0; part < parts.size(); ++part)
   {
     vtkUnsignedCharArray* const ghosts = GhostsOf(parts[part]->GetCellData());
+    // Cells of a kind follow those of the kinds before, and so do their tuples.
     vtkIdType cell = firstCells[part];
     auto each = vtk::TakeSmartPointer(kind[part]->NewIterator());
     for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell(), ++cell)
     {
       ReportStep(progress, static_cast<std::size_t>(cell),
         static_cast<std::size_t>(parts[part]->GetNumberOfCells()));
+      // Its owner is another part, and has it.
       if (ghosts && (ghosts->GetValue(cell) & vtkDataSetAttributes::DUPLICATECELL))
       {
         continue;
@@ -197,6 +211,7 @@ vtkSmartPointer<vtkCellArray> JoinCells(const Parts& parts, const std::vector<vt
         corners.push_back(points.Place(part, ids[i]));
       }
       cells->InsertNextCell(size, corners.data());
+      // From the cell of the part to the next of the joined ones, which are counted over all kinds.
       rows[part].Add(cell, count++);
     }
   }
@@ -227,6 +242,7 @@ void JoinFieldData(const Parts& parts, const CommonPoints& points, vtkFieldData*
          ids && reasons && i < std::min(ids->GetNumberOfTuples(), reasons->GetNumberOfTuples());
          ++i)
     {
+      // A list from elsewhere may name points that are not there.
       const double id = ids->GetComponent(i, 0);
       if (id >= 0.0 && id < static_cast<double>(parts[part]->GetNumberOfPoints()))
       {
@@ -234,6 +250,7 @@ void JoinFieldData(const Parts& parts, const CommonPoints& points, vtkFieldData*
       }
     }
   }
+  // No list where no part had one: an empty list would say that all points are used.
   if (!areKnown)
   {
     return;
@@ -268,10 +285,15 @@ void WarnOfLeftOut(
   }
 }
 
+/*
+ * The progress is that of finding common points: copying moves on at its end, and only hears
+ * aborts.
+ */
 vtkSmartPointer<vtkPolyData> Join(
   const Parts& parts, PartKind kind, const Progress& progress, std::vector<Message>& warnings)
 {
   auto joined = vtkSmartPointer<vtkPolyData>::New();
+  // The sort takes most of the time.
   const CommonPoints points(parts, kind, progress.Between(0.0, 1.0));
   std::vector<Rows> rows = points.Sources();
   const Progress copying = progress.Between(1.0, 1.0);
@@ -288,6 +310,7 @@ vtkSmartPointer<vtkPolyData> Join(
   {
     return joined;
   }
+  // From here on of cells, which JoinCells() adds kind by kind.
   rows.assign(parts.size(), Rows());
   data.clear();
   // The cells of a kind, and the first of them, of each part.

@@ -1,5 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * vtkCommunicator writes VTK's legacy file format into memory. In that, active attributes stand
+ * apart from the other arrays, and a vtkIdType has 32 bits. Hence the two steps: MarkArrays()
+ * brings a shallow copy into a form that survives, and notes what it was; RestoreArrays() makes
+ * that of it again.
+ */
 #include "PackedData.h"
 
 #include "Kernel/Base/Base.h"
@@ -26,11 +32,15 @@ std::array<vtkFieldData*, 3> FieldsOf(vtkPolyData* data)
   return { data->GetPointData(), data->GetCellData(), data->GetFieldData() };
 }
 
-/** Puts an array in the place of one with the same name, which has another type or is missing. */
+/**
+ * Puts an array in the place of one with the same name, which has another type or is missing: then
+ * it has no values. @return its index
+ */
 int Replace(vtkFieldData* fields, const std::string& name, int type, int components)
 {
   const auto other = vtk::TakeSmartPointer(vtkAbstractArray::CreateArray(type));
   other->SetNumberOfComponents(components);
+  // The values are converted one by one where types differ.
   if (vtkAbstractArray* const array = fields->GetAbstractArray(name.c_str()))
   {
     other->DeepCopy(array);
@@ -80,6 +90,7 @@ Bytes MarkArrays(vtkPolyData* data)
         Replace(all[k], array->GetName(), VTK_TYPE_INT64, mark.Components);
       }
     }
+    // From the last, as removing one moves those after it.
     for (int i = all[k]->GetNumberOfArrays() - 1; i >= 0; --i)
     {
       if (all[k]->GetAbstractArray(i)->GetNumberOfTuples() == 0)
@@ -95,6 +106,7 @@ Bytes MarkArrays(vtkPolyData* data)
   return marks;
 }
 
+// Marks come in the order of the arrays. An array that had no values is missing, and is made.
 void RestoreArrays(const char* marks, const char* end, vtkPolyData* data)
 {
   while (marks != end)
@@ -123,6 +135,7 @@ void RestoreArrays(const char* marks, const char* end, vtkPolyData* data)
 
 Bytes PackData(vtkPolyData* data)
 {
+  // The arrays stay the caller's; only the lists of them are changed.
   vtkNew<vtkPolyData> copy;
   copy->ShallowCopy(data);
   const Bytes marks = MarkArrays(copy);
@@ -142,6 +155,7 @@ vtkSmartPointer<vtkPolyData> UnpackData(const char* from, std::size_t size)
   const char* const end = from + size;
   std::size_t marksSize = 0;
   TakeFrom(from, &marksSize, 1);
+  // The bytes stay the caller's; neither the marks nor VTK's buffer is copied.
   const char* const marks = from;
   from += marksSize;
   vtkNew<vtkCharArray> buffer;

@@ -1,5 +1,28 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * A part is put together from what lies in its boxes, in memory once and in files at each use:
+ *
+ *     rows of OwnPoints   -- sorted by ids -->   OwnPoints
+ *     corners of Settled  (places)       ----->  triangles of the cell    \
+ *     FromSeams  (numbers)  -- PlaceOf -->       appended to them          > Result
+ *     Changed    (numbers)  -- PlaceOf -->       written over some         /
+ *     rows of Corners                    ----->  Others, in the order of OtherNumbers
+ *
+ * In memory the first two are in Part already, since a cell's result is moved there as it is made.
+ *
+ * The rows of Corners need no numbers of their own. A part asks each owner for places in increasing
+ * order; the answers lie in the box in the order of the ranks that sent them, and a rank's parts
+ * answer in their order. So the rows come in the order of OtherNumbers, which ListOthersOf() makes
+ * again from the triangles.
+ *
+ * Two boxes have more than rows or plain lists:
+ *
+ *     Settled   | duplicates, not finite, unused points, reasons |   the first stretch
+ *               | corners ...                                    |   none without a triangle
+ *     OnSeam    | places, increasing |
+ *               | their rows         |
+ */
 #include "PartStore.h"
 
 #include <algorithm>
@@ -10,6 +33,7 @@
 namespace elevation
 {
 
+// In the order of BoxOfPart. The last three lists are short, whatever the size of a part.
 const std::vector<std::string>& BoxNames()
 {
   static const std::vector<std::string> names = { "points", "triangles", "seam-points", "seams",
@@ -30,6 +54,7 @@ void PartStore::Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const 
       Report(ofPart, 0.0);
       if (this->Crew.IsInFiles())
       {
+        // Written back sorted and without repeated points: later reads find all in order.
         const PointTable own = this->ReadOwn(part, ofPart).OwnPoints;
         counts[part] = static_cast<vtkIdType>(own.Count());
         std::vector<vtkIdType> places(own.Count());
@@ -38,6 +63,7 @@ void PartStore::Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const 
         this->AddOwn(part, own.Pack(places));
         return;
       }
+      // A step of memory alone: the one part of this rank.
       this->Part.OwnPoints.Unpack(this->Crew.At(part, OwnPoints).Take());
       Report(ofPart, 0.5);
       SortOwn(this->Part);
@@ -59,6 +85,7 @@ void PartStore::AddOwn(int part, Bytes&& rows)
   this->Part.OwnPoints.Unpack(&rows, 1);
 }
 
+// In a step, so that all ranks throw where one part has too many.
 void PartStore::CheckCounts() const
 {
   this->Crew.ForEach(Progress(), [this](int part, const Progress&) {
@@ -127,6 +154,7 @@ void PartStore::KeepForOthers(int part, const SurfacePart& own, std::vector<vtkI
   {
     return;
   }
+  // Lines may add points to those of the seam. Rows are packed again, in the order of all places.
   const std::vector<vtkIdType> before = this->ReadForOthers(part).Places;
   places.insert(places.end(), before.begin(), before.end());
   std::sort(places.begin(), places.end());
@@ -162,6 +190,7 @@ Bytes PartStore::PackForOthers(const RowsForOthers& rows, std::vector<vtkIdType>
   }
   for (vtkIdType& place : places)
   {
+    // The table has rows of the seam alone. Each place asked for is one of them: see KeepSettled().
     place = std::lower_bound(rows.Places.begin(), rows.Places.end(), place) - rows.Places.begin();
   }
   return rows.OnSeam.Pack(places);
@@ -175,6 +204,7 @@ SurfacePart PartStore::ReadWhole(int part, const Progress& progress) const
   this->Crew.At(part, Settled).ForEach([&](const Bytes& bytes) {
     const char* from = bytes.data();
     Triangulation& result = read.Result;
+    // The second stretch, if there is one. Without triangles the cell's corners stay an empty list.
     if (!std::exchange(isFirst, false))
     {
       result.Triangles.Resize(bytes.size() / sizeof(Index));
@@ -204,6 +234,7 @@ void PartStore::ForgetOthers(int part)
 {
   this->Crew.At(part, Requests).Clear();
   this->Crew.At(part, Corners).Clear();
+  // Triangles of the cell that lines have changed stay so: PutTogether() writes them once more.
   if (std::exchange(this->IsWhole, false))
   {
     this->Part.Result.Triangles.Resize(this->CellCorners);
@@ -219,6 +250,7 @@ void PartStore::PutTogether(int part, const Progress& progress, SurfacePart& who
   whole.Others.Unpack(this->Crew.At(part, Corners).Copy());
   this->CheckCount(whole.OwnPoints.Count() + whole.Others.Count());
   AppendTriangles(ValuesIn<GlobalTriangle>(this->Crew.At(part, FromSeams)), first, progress, whole);
+  // After the seams' triangles: a place counts them too. Lines change corners, never the number.
   for (const ChangedTriangle& changed : ValuesIn<ChangedTriangle>(this->Crew.At(part, Changed)))
   {
     std::transform(changed.Corners.begin(), changed.Corners.end(),
@@ -245,6 +277,7 @@ void PartStore::Forget(int part)
   }
 }
 
+// In memory the part leaves the store, which has none then.
 SurfacePart PartStore::TakeWhole(int part, const Progress& progress)
 {
   if (!this->Crew.IsInFiles())
@@ -253,11 +286,13 @@ SurfacePart PartStore::TakeWhole(int part, const Progress& progress)
   }
   SurfacePart taken =
     this->Crew.IsInFiles() ? this->ReadWhole(part, progress) : std::move(this->Part);
+  // No other id is as high: FirstLineId is above the largest of all that were given.
   taken.AddedPoints = static_cast<Index>(std::count_if(taken.OwnPoints.Ids.begin(),
     taken.OwnPoints.Ids.end(), [this](vtkIdType id) { return id >= this->FirstLineId; }));
   return taken;
 }
 
+// From files without sorting: stretches as they came, each in the order of ids.
 void PartStore::ForEachRows(const std::function<void(const PointTable&)>& visit) const
 {
   for (int part = this->Crew.FirstOwn(); part < this->Crew.EndOwn(); ++part)
@@ -275,6 +310,7 @@ void PartStore::ForEachRows(const std::function<void(const PointTable&)>& visit)
   }
 }
 
+// For the search for a lattice, which looks at x,y,z alone; but rows are read with their arrays.
 PointSlices PartStore::Slices() const
 {
   return { static_cast<double>(this->OwnCount()), [this](const auto& visit) {

@@ -46,7 +46,7 @@
 namespace elevation
 {
 
-/** The boxes of a part. */
+/** The boxes of a part, as the table above lists them. Their order is that of BoxNames(). */
 enum BoxOfPart
 {
   OwnPoints,
@@ -70,6 +70,18 @@ struct ChangedTriangle
 /** Names of their files; those without one are small. */
 const std::vector<std::string>& BoxNames();
 
+/**
+ * What there is of the parts of this rank between the passes of TriangulateParts.h. The calls, in
+ * their order:
+ *
+ *     Number()                                     after pass 1 has filled OwnPoints
+ *     AddOwn()                                     with lines, which Bases then count
+ *     WithOwn(), KeepSettled()                     each part, pass 2; again without a lattice
+ *     ForgetOthers(), ListOthersOf(),              pass 5, and once more when lines have changed
+ *     ReadForOthers(), PackForOthers()             triangles
+ *     WithWhole()                                  lines, pass 6
+ *     TakeWhole(), Forget()                        for the output, in any order of parts
+ */
 class PartStore
 {
 public:
@@ -88,12 +100,23 @@ public:
   /**
    * Sets the numbers of the points of all parts: part after part, and within a part in the order of
    * ids. All ranks call it.
+   *
+   *     part        0         1      2
+   *     points      4         0      3
+   *     numbers     0 1 2 3          4 5 6
+   *     Bases     { 0,        4,     4,     7 }
+   *
+   * The rows that pass 1 has sent leave their box where parts are in memory.
    * @param[in] counts  of the points that this rank has sent to each part
    * @param[in] areIdsGiven  so that one may have come twice; such a point counts once
    */
   void Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const Progress& progress);
 
-  /** Adds packed points of lines, with ids from FirstLineId on; Part.Bases has to count them. */
+  /**
+   * Adds packed points of lines, with ids from FirstLineId on; Part.Bases has to count them. As
+   * these ids are above all others, the points follow those of the part in its order, and nobody's
+   * number within the part changes.
+   */
   void AddOwn(int part, Bytes&& rows);
   vtkIdType FirstLineId = std::numeric_limits<vtkIdType>::max(); ///< above all others
 
@@ -105,7 +128,11 @@ public:
     return this->Part.Bases[this->Crew.EndOwn()] - this->Part.Bases[this->Crew.FirstOwn()];
   }
 
-  /** No part may have more points than an Index counts. @throws Error */
+  /**
+   * No part may have more points than an Index counts. CheckCounts() looks at all parts, on all
+   * ranks.
+   * @throws Error naming more parts as the way out
+   */
   void CheckCount(std::size_t count) const;
   void CheckCounts() const;
 
@@ -122,10 +149,17 @@ public:
     step(read);
   }
 
-  /** Keeps what the cell of a part settles, and the own points on its seam. */
+  /**
+   * Keeps what the cell of a part settles, and the own points on its seam. Called again, it
+   * replaces what an attempt on a lattice has left. @a settled loses its triangles in memory, and
+   * keeps its seam.
+   */
   void KeepSettled(int part, const SurfacePart& own, SettledCell& settled);
 
-  /** Keeps further own points for which other parts may ask. */
+  /**
+   * Keeps further own points for which other parts may ask. In memory it does nothing, as there any
+   * own point can be asked for.
+   */
   void KeepForOthers(int part, const SurfacePart& own, std::vector<vtkIdType>&& places);
 
   /** What other parts may ask for; in memory, nothing is read. */
@@ -140,7 +174,10 @@ public:
 
   /** The numbers of other parts' points that are corners of triangles from seams, or changed. */
   std::vector<GlobalId> ListOthersOf(int part) const;
-  /** Before they are asked for anew: a part is whole again when they are there. */
+  /**
+   * Before they are asked for anew: a part is whole again when they are there. In memory this takes
+   * back what WithWhole() has appended to the triangles; own rows and those of the cell stay.
+   */
   void ForgetOthers(int part);
 
   /**
@@ -164,12 +201,17 @@ public:
   /** The same part; from memory it can be taken once. */
   SurfacePart TakeWhole(int part, const Progress& progress);
 
-  /** Visits the points of this rank, part after part; from files, stretch after stretch. */
+  /**
+   * Visits the points of this rank, part after part; from files, stretch after stretch. Each visit
+   * of all of them is in the same order, on which the search for a lattice relies.
+   */
   void ForEachRows(const std::function<void(const PointTable&)>& visit) const;
   PointSlices Slices() const;
 
 private:
+  /** The points of a part from its files, and what all parts have in common; no triangle. */
   SurfacePart ReadOwn(int part, const Progress& progress) const;
+  /** The same with all triangles and points of others, each time from the files. */
   SurfacePart ReadWhole(int part, const Progress& progress) const;
   void MakeWhole(int part, const Progress& progress);
   void PutTogether(int part, const Progress& progress, SurfacePart& whole) const;

@@ -3,6 +3,29 @@
 /**
  * @file
  * Surfaces in parts, on ranks or in files. Private to the module.
+ *
+ * What stands on what, from above:
+ *
+ *     the three filters                                  vtkReconstructPieces (files)
+ *       FilterRun: the blocks of an input                  ReconstructParts: slices in, parts out
+ *         SpreadBlocks, Gathering: to one rank
+ *         Spread: or where they are
+ *
+ *     TriangulateParts          TrimParts                FillParts
+ *       PointSource               TrimmedPart              FilledPart
+ *       SettleParts               BoundaryZone             SharedHoles, HoleNeighborhoods
+ *       ConstrainParts                                     SharedBorder
+ *       PartStore, SurfacePart
+ *
+ *     SurfaceParts: how a step gets the parts of the step before
+ *     SharedLatticeSearch: one lattice for all parts
+ *     Joining, CommonPoints, PointKeys: which points of parts are one
+ *     Engine: a program for parts;  SpoolFile: its boxes in files
+ *     Ranks: what all ranks do together;  RankNotes: what one says to the others meanwhile
+ *     PointTable, PackedData, Bytes: what is sent
+ *
+ * FilterRun and ReconstructParts decide where a surface is worked on; the programs for parts below
+ * them do not know whether ranks or files hold the parts.
  */
 #ifndef Parts_h
 #define Parts_h

@@ -25,6 +25,7 @@ PointKey PointKeys::Of(vtkIdType point) const
   PointKey key{ { 0, 0, 0 } };
   if (this->Ids)
   {
+    // A vtkIdTypeArray is what filters write, and is read without a vtkVariant for each value.
     auto* const plain = vtkIdTypeArray::FastDownCast(this->Ids);
     key[0] = plain ? plain->GetValue(point) : this->Ids->GetVariantValue(point).ToTypeInt64();
     return key;
@@ -39,6 +40,7 @@ PointKey PointKeys::Of(vtkIdType point) const
   return key;
 }
 
+// In the order of the points, or of those chosen.
 std::vector<PointKey> KeysOf(vtkPolyData* data, bool byIds, const std::vector<Index>* chosen)
 {
   const PointKeys keys(data, byIds);

@@ -4,6 +4,12 @@
  * @file
  * By what points of different parts of a data set are one: the global id, or x,y,z to the last bit.
  * Private to the module.
+ *
+ * With ids a key is { id, 0, 0 }, by position the bits of x, y and z. Keys are only compared for
+ * equality and sorted; the order of bits is not that of numbers, but the same on all ranks.
+ *
+ * CommonPoints joins by keys what is on one rank; SharedBorder finds by them what several ranks
+ * have; FilterRun and TrimmedPart look for single points of other parts.
  */
 #ifndef PointKeys_h
 #define PointKeys_h

@@ -37,6 +37,9 @@ namespace elevation
 namespace
 {
 constexpr const char* IdsName = "GlobalPointIds";
+// A stretch takes 32 MB and the values of its arrays, and is what a rank has in memory in pass 4.
+// The largest sample of slices takes 12 MB on a rank. A thousand points for each part balance the
+// cells to within a tenth (Cuts.h).
 constexpr vtkIdType PointsInStretch = 1 << 20; // of slices, and in a file
 constexpr std::size_t MostSampled = 1 << 19;   // of slices
 constexpr vtkIdType SamplePerPart = 1000;      // of points that come at once
@@ -44,6 +47,9 @@ constexpr vtkIdType SamplePerPart = 1000;      // of points that come at once
 /** Two rounds of mixing: bits with no rule that rows of a grid could keep step with. */
 std::uint64_t HashOf(vtkIdType number)
 {
+  // By Fibonacci hashing: the multiplier is 2^64 divided by the golden ratio. One round alone would
+  // keep a rule in the upper bits, as successive numbers go on by the same step there. Without the
+  // 1, the hash of 0 would be 0, and point 0 in every sample.
   const std::uint64_t bits = 0x9E3779B97F4A7C15ull * static_cast<std::uint64_t>(number + 1);
   return (bits ^ (bits >> 31)) * 0xD6E8FEB86659FD93ull;
 }
@@ -61,6 +67,7 @@ bool AreSame(const std::vector<ArrayKind>& kinds, const std::vector<ArrayKind>& 
 {
   return std::equal(kinds.begin(), kinds.end(), others.begin(), others.end(),
     [](const ArrayKind& kind, const ArrayKind& other) {
+      // Whether ids are given may not change either: numbers that are places would meet given ones.
       constexpr int ids = vtkDataSetAttributes::GLOBALIDS;
       return kind.Name == other.Name && kind.Type == other.Type &&
         kind.Components == other.Components && (kind.Attribute == ids) == (other.Attribute == ids);
@@ -76,6 +83,7 @@ Error DifferentArrays()
 /** Takes global ids out of the kinds of arrays, or finds a name for them. @return whether given */
 bool TakeIdKind(std::vector<ArrayKind>& kinds, std::string& name)
 {
+  // Ids of any kind of integer; else the array is one of values, and stays among the arrays.
   const auto ids = std::find_if(kinds.begin(), kinds.end(), [](const ArrayKind& kind) {
     return kind.Attribute == vtkDataSetAttributes::GLOBALIDS && kind.Components == 1 &&
       kind.Type != VTK_FLOAT && kind.Type != VTK_DOUBLE && kind.Type != VTK_STRING &&
@@ -89,6 +97,7 @@ bool TakeIdKind(std::vector<ArrayKind>& kinds, std::string& name)
   }
   name = IdsName;
   const auto isTaken = [&name](const ArrayKind& kind) { return kind.Name == name; };
+  // The array of the output must not replace one of the user.
   while (std::any_of(kinds.begin(), kinds.end(), isTaken))
   {
     name += "_";
@@ -127,6 +136,7 @@ void PointSource::TakeKinds(vtkPointSet* points)
 {
   CheckPointArrays(points);
   std::set<std::string> leftOut;
+  // As if this rank were alone: no rank waits for another in Add().
   std::vector<ArrayKind> kinds = CommonArrays(Ranks(), points->GetPointData(), leftOut);
   if (!leftOut.empty())
   {
@@ -172,6 +182,7 @@ void PointSource::Add(vtkPointSet* points, const Progress& progress)
     const std::vector<vtkIdType> places(
       this->Kept.begin() + first, this->Kept.begin() + std::min(first + PointsInStretch, count));
     const Bytes packed = this->Rows.Pack(places);
+    // Short slices share a file until it has as much as a stretch: not a file for each slice.
     if (this->InLastStretch + static_cast<vtkIdType>(places.size()) > PointsInStretch ||
       this->Stretches.empty())
     {
@@ -183,13 +194,15 @@ void PointSource::Add(vtkPointSet* points, const Progress& progress)
     this->InLastStretch += static_cast<vtkIdType>(places.size());
     this->SampleStretch(places);
   }
+  // Also points of other ranks, so that a place stays that in the input.
   this->OwnCount += static_cast<vtkIdType>(this->Rows.Count());
   this->Rows = PointTable();
   this->Kept.clear();
 }
 
 /**
- * A hash of its place decides whether a point is in the sample; of one too large each other goes.
+ * A hash of its place decides whether a point is in the sample; of one too large each other goes,
+ * as the mask gets another bit: what remains is what the longer mask would have chosen from the X
  */
 void PointSource::SampleStretch(const std::vector<vtkIdType>& places)
 {
@@ -208,7 +221,7 @@ void PointSource::SampleStretch(const std::vector<vtkIdType>& places)
   }
 }
 
-/** What the mask admits. */
+/** Keeps what the mask admits; the order stays. */
 void PointSource::KeepSample()
 {
   const auto out =
@@ -234,6 +247,7 @@ void PointSource::NumberPoints(const Progress& progress, SurfacePart& common)
         this->PointType = areDouble ? VTK_DOUBLE : VTK_FLOAT;
       }
     }
+    // Rank 0 reports for all, so the message has to say whose points these are.
     catch (const Error& error)
     {
       throw Error("On rank " + std::to_string(this->AllRanks.OwnRank()) + ": " + error.what());
@@ -243,12 +257,14 @@ void PointSource::NumberPoints(const Progress& progress, SurfacePart& common)
   common.Kinds =
     CommonArrays(this->AllRanks, this->OwnCount > 0 ? arrays : nullptr, common.LeftOut);
   const bool areGiven = TakeIdKind(common.Kinds, common.IdsName);
+  // In files each slice was read by what its rank knew: ids cannot become places now.
   const bool areOthers = this->OwnCount > 0 && this->AreGiven != areGiven;
   if (this->IsInFile() && (!common.LeftOut.empty() || IsOnAny(this->AllRanks, areOthers)))
   {
     throw DifferentArrays(); // on all ranks
   }
   this->AreGiven = areGiven;
+  // Numbers without ids go on from rank to rank, as if all points came from one.
   const std::vector<vtkIdType> counts =
     this->AllRanks.Collect(std::vector<vtkIdType>{ this->OwnCount });
   common.PointType =
@@ -274,6 +290,8 @@ void PointSource::Read(
   auto* const plainIds = vtkIdTypeArray::FastDownCast(ids);
   auto* const ghosts =
     vtkUnsignedCharArray::SafeDownCast(data->GetArray(vtkDataSetAttributes::GhostArrayName()));
+  // Ghost points have rows, as places are those of the input, but are not kept: their owner sends
+  // them.
   this->Kept.reserve(this->Rows.Count());
   for (vtkIdType at = 0; at < static_cast<vtkIdType>(this->Rows.Count()); ++at)
   {
@@ -297,6 +315,7 @@ void PointSource::Read(
 std::vector<double> PointSource::SampleAtOnce(vtkIdType parts) const
 {
   std::vector<vtkIdType> all = { static_cast<vtkIdType>(this->Kept.size()) };
+  // The same stretch on all ranks: each point of all has the same chance, whatever rank it is on.
   this->AllRanks.Sum(all);
   const vtkIdType stretch = std::max<vtkIdType>(1, all[0] / (SamplePerPart * parts));
   std::vector<double> coordinates;
@@ -337,6 +356,7 @@ Cuts PointSource::CutPlane(int parts)
   {
     coordinates = this->SampleAtOnce(parts);
   }
+  // Rank after rank: the same list on all of them, from which each cuts in the same way.
   coordinates = this->AllRanks.Collect(coordinates);
   std::unique_ptr<Cuts> plane;
   this->AllRanks.Agree([&]() {
@@ -367,6 +387,8 @@ void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Pr
     ReportStep(progress, i, this->Kept.size(), 1 << 16);
     const vtkIdType at = this->Kept[i];
     const double* const p = this->Rows.At(at);
+    // A rank with points holds at least one part (TriangulateParts.h), so it never divides by 0. By
+    // the id, not by the place: where a point goes must not depend on how slices were cut.
     partOf[i] = this->Rows.IsFinite(at)
       ? plane.OwnerOf({ p[0], p[1] })
       : firstOwn + static_cast<int>(static_cast<std::uint64_t>(this->Rows.Ids[at]) % ownCount);
@@ -411,6 +433,7 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
   bool isMore = true;
   while (isMore)
   {
+    // Packing may fail, so it stands in a step; then all deliver together.
     this->AllRanks.Agree([&]() {
       Progress ofSlice = this->AllRanks.Watched(sending);
       double begin = 0.0, end = 1.0;
@@ -433,6 +456,7 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
       this->SendSlice(plane, engine, box, ofSlice.Between(begin, end), counts);
     });
     engine.Deliver();
+    // At once, there is no stretch: one round.
     isMore = IsOnAny(this->AllRanks, next != this->Stretches.end());
   }
   return plane;

@@ -39,6 +39,10 @@
 namespace elevation
 {
 
+/**
+ * One use: Add() as often as there are slices, each on its own rank alone; then Distribute() once,
+ * on all ranks together.
+ */
 class PointSource
 {
 public:
@@ -56,7 +60,10 @@ public:
    */
   void Add(vtkPointSet* points, const Progress& progress);
 
-  /** Whether the points bring global ids, known after Distribute(); or these are places. */
+  /**
+   * Whether the points bring global ids, known after Distribute(); or these are places: the points
+   * of all ranks counted, rank after rank, in the order of Add().
+   */
   bool AreIdsGiven() const { return this->AreGiven; }
   vtkIdType Count() const { return this->OwnCount; } ///< of this rank, marked ones included
 
@@ -78,14 +85,19 @@ private:
   };
 
   bool IsInFile() const { return !this->Folder.empty(); }
+  /** The arrays of the next slice. @throws Error if they differ from those before */
   void TakeKinds(vtkPointSet* points);
+  /** Pass 1, for points in slices. */
   void SampleStretch(const std::vector<vtkIdType>& places);
   void KeepSample();
+  /** Pass 2. */
   void NumberPoints(const Progress& progress, SurfacePart& common);
   void Read(
     vtkPointSet* points, const std::string& idsName, vtkIdType first, const Progress& progress);
+  /** Pass 3. */
   std::vector<double> SampleAtOnce(vtkIdType parts) const;
   Cuts CutPlane(int parts);
+  /** Pass 4. */
   void SendSlice(const Cuts& plane, Engine& engine, int box, const Progress& progress,
     std::vector<vtkIdType>& counts);
 

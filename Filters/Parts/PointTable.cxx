@@ -1,5 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Three things: which arrays all ranks have (CommonArrays), how rows become bytes and rows again
+ * (Pack, Unpack), and choosing rows. Numbers go as the bytes that they are in memory, tuple by
+ * tuple; texts with their lengths, and bits as a byte each, as neither has a tuple of fixed size.
+ */
 #include "PointTable.h"
 
 #include "Adapt/Adapt.h"
@@ -65,6 +70,7 @@ vtkSmartPointer<vtkAbstractArray> MakeArray(const ArrayKind& kind, vtkIdType cou
     array->SetComponentName(static_cast<vtkIdType>(i), kind.ComponentNames[i].c_str());
   }
   array->SetNumberOfTuples(count);
+  // VTK does not throw where memory ends; the array stays as it was.
   if (array->GetNumberOfTuples() != count)
   {
     throw std::bad_alloc();
@@ -76,6 +82,7 @@ ArrayKind KindOf(vtkDataSetAttributes* data, int i)
 {
   vtkAbstractArray* const array = data->GetAbstractArray(i);
   const auto inWords = [](const char* name) { return std::string(name ? name : ""); };
+  // An array without a name has the empty one, and Type VTK_VOID; so it is left out on all ranks.
   ArrayKind kind{ inWords(array->GetName()), CanGo(array) ? array->GetDataType() : VTK_VOID,
     array->GetNumberOfComponents(), data->IsArrayAnAttribute(i), {} };
   for (int c = 0; c < kind.Components && array->HasAComponentName(); ++c)
@@ -85,6 +92,7 @@ ArrayKind KindOf(vtkDataSetAttributes* data, int i)
   return kind;
 }
 
+// Names of components and attributes may differ; CommonArrays() settles them.
 bool IsSame(const ArrayKind& kind, const ArrayKind& other)
 {
   return kind.Name == other.Name && kind.Type == other.Type &&
@@ -102,6 +110,8 @@ std::vector<ArrayKind> CommonArrays(
   }
   ofRanks = ranks.Collect(ofRanks);
   std::vector<ArrayKind> all; // each name once
+  // Kinds of one name that differ are one entry, the first: what is compared below is by name and
+  // type.
   for (const std::vector<ArrayKind>& kinds : ofRanks)
   {
     for (const ArrayKind& kind : kinds)
@@ -114,12 +124,15 @@ std::vector<ArrayKind> CommonArrays(
     }
   }
   std::vector<ArrayKind> common;
+  // An array is common if each rank with points has one of its kind. A rank without points has no
+  // say.
   for (ArrayKind& kind : all)
   {
     // A rank without flags of ghosts has none.
     bool areSame = true, haveGhosts = kind.Name == vtkDataSetAttributes::GhostArrayName();
     for (const std::vector<ArrayKind>& kinds : ofRanks)
     {
+      // By value: ranks may have their arrays in different orders.
       const auto same = std::find_if(kinds.begin(), kinds.end(),
         [&kind](const ArrayKind& other) { return IsSame(kind, other); });
       areSame = areSame && same != kinds.end();
@@ -139,7 +152,11 @@ std::vector<ArrayKind> CommonArrays(
 
 namespace
 {
-/** Whether arrays are scalars, global ids and so on where they are on other ranks. */
+/**
+ * Whether arrays are scalars, global ids and so on where they are on other ranks. Arrays of the
+ * same names alone are not enough where each rank passes its own on: the parts of one surface would
+ * have different scalars.
+ */
 bool HasSame(vtkDataSetAttributes* data, const std::vector<ArrayKind>& kinds)
 {
   return std::all_of(kinds.begin(), kinds.end(), [data](const ArrayKind& kind) {
@@ -159,6 +176,7 @@ bool HaveSameArrays(const Ranks& ranks, vtkPointSet* own)
   const std::vector<ArrayKind> kinds = CommonArrays(ranks, hasPoints ? ofPoints : nullptr, others);
   const std::vector<ArrayKind> cellKinds =
     CommonArrays(ranks, hasCells ? ofCells : nullptr, others);
+  // Two meetings above, whatever this rank has; only then may one differ from another.
   return CanAll(ranks, [&]() {
     return others.empty() && (!hasPoints || HasSame(ofPoints, kinds)) &&
       (!hasCells || HasSame(ofCells, cellKinds));
@@ -174,6 +192,7 @@ PointTable::PointTable(const std::vector<ArrayKind>& kinds)
   }
   const auto marks = std::find_if(this->Arrays.begin(), this->Arrays.end(),
     [](const auto& array) { return IsGhostArray(array); });
+  // The number of arrays, which is the end, where there are no flags.
   this->MarksIndex = marks - this->Arrays.begin();
 }
 
@@ -230,6 +249,7 @@ void PointTable::View(vtkPointData* data)
     this->Arrays[i] = MakeArray(this->Kinds[i], count);
     if (given)
     {
+      // As an array that computes its values, or keeps each component apart.
       this->Arrays[i]->DeepCopy(given);
     }
     else if (auto* const flags = vtkArrayDownCast<vtkDataArray>(this->Arrays[i].Get()))
@@ -244,6 +264,7 @@ namespace
 /** The numbers of a table's array, which lie as View() and MakeArray() leave them: one after another. */
 char* BytesOf(vtkAbstractArray* array)
 {
+  // The macro makes a case of each type of numbers, in which VTK_TT is that type.
   switch (array->GetDataType())
   {
     vtkTemplateMacro(return reinterpret_cast<char*>(
@@ -261,6 +282,7 @@ void PackArray(const ArrayKind& kind, vtkAbstractArray* array, const std::vector
     const std::size_t size = bytes.size();
     bytes.Resize(size + row * places.size());
     char* to = bytes.data() + size;
+    // Rows may be anywhere in the array.
     const char* const from = BytesOf(array);
     for (const vtkIdType place : places)
     {
@@ -269,6 +291,7 @@ void PackArray(const ArrayKind& kind, vtkAbstractArray* array, const std::vector
     }
     return;
   }
+  // Texts, or else bits.
   auto* const texts = vtkArrayDownCast<vtkStringArray>(array);
   for (const vtkIdType place : places)
   {
@@ -289,6 +312,7 @@ void PackArray(const ArrayKind& kind, vtkAbstractArray* array, const std::vector
 void UnpackArray(const ArrayKind& kind, vtkIdType first, vtkIdType count, const char*& from,
   vtkAbstractArray* array)
 {
+  // All tuples of a message are together here, so one copy does it.
   if (const std::size_t row = RowSize(kind))
   {
     TakeFrom(from, BytesOf(array) + row * first, row * count);
@@ -314,6 +338,7 @@ void UnpackArray(const ArrayKind& kind, vtkIdType first, vtkIdType count, const 
 Bytes PointTable::Pack(const std::vector<vtkIdType>& places) const
 {
   Bytes bytes;
+  // Three coordinates and the id; texts and bits come on top, and let the buffer grow.
   std::size_t row = 32;
   for (const ArrayKind& kind : this->Kinds)
   {
@@ -324,6 +349,7 @@ Bytes PointTable::Pack(const std::vector<vtkIdType>& places) const
   AppendTo(bytes, &count, 1);
   bytes.Resize(sizeof(count) + 32 * places.size());
   char* to = bytes.data() + sizeof(count);
+  // Copied without growing: Append would check the room for each value.
   for (const vtkIdType place : places)
   {
     std::memcpy(to, this->At(place), 24);
@@ -348,6 +374,7 @@ void PointTable::Unpack(const std::vector<Bytes>& packed)
 
 void PointTable::Unpack(const Bytes* packed, std::size_t count)
 {
+  // All counts first, then each array is made as large as it gets, once.
   vtkIdType first = static_cast<vtkIdType>(this->Count()), all = first;
   for (const Bytes* bytes = packed; bytes != packed + count; ++bytes)
   {
@@ -358,6 +385,7 @@ void PointTable::Unpack(const Bytes* packed, std::size_t count)
   }
   this->Coordinates.Resize(3 * static_cast<std::size_t>(all));
   this->Ids.Resize(static_cast<std::size_t>(all));
+  // With the rows that are there already, which keep their values.
   for (const auto& array : this->Arrays)
   {
     ReserveTuples(array, all); // keeps the values, unlike the next
@@ -388,6 +416,7 @@ void PointTable::Unpack(const Bytes* packed, std::size_t count)
 
 void PointTable::Choose(const std::vector<vtkIdType>& places)
 {
+  // A new table: an array that is the input's own must not change.
   PointTable chosen(this->Kinds);
   chosen.Coordinates.Resize(3 * places.size());
   chosen.Ids.Resize(places.size());
@@ -407,10 +436,15 @@ void PointTable::Choose(const std::vector<vtkIdType>& places)
   *this = std::move(chosen);
 }
 
+/*
+ * The array only lends the memory of the table, which has to outlive the view. If points are
+ * hidden, the view has a copy of the coordinates in which theirs are NaN.
+ */
 DataSetPoints ViewOf(const PointTable& rows)
 {
   vtkNew<vtkDoubleArray> coordinates;
   coordinates->SetNumberOfComponents(3);
+  // Saved: VTK must not free the memory of the table.
   coordinates->SetArray(const_cast<double*>(rows.Coordinates.data()),
     static_cast<vtkIdType>(rows.Coordinates.size()), /*save=*/1);
   DataSetPoints points;

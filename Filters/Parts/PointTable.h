@@ -3,6 +3,13 @@
 /**
  * @file
  * Points with their arrays, which go from rank to rank. Private to the module.
+ *
+ * Rows are packed column by column, so that each array is one run of bytes:
+ *
+ *     | count | x y z, x y z, ... | id, id, ... | array 0: tuple, tuple, ... | array 1: ... |
+ *
+ * Who unpacks them has to know the kinds of the arrays: they are agreed on once, by CommonArrays(),
+ * and not sent with each message. Tables may be appended to each other by unpacking.
  */
 #ifndef PointTable_h
 #define PointTable_h
@@ -21,7 +28,10 @@
 namespace elevation
 {
 
-/** What an array is, so that ranks can make one that has none. */
+/**
+ * What an array is, so that ranks can make one that has none. Type VTK_VOID stands for one that
+ * cannot be sent; no other array is the same as it.
+ */
 struct ArrayKind
 {
   std::string Name;
@@ -35,6 +45,9 @@ struct ArrayKind
  * The arrays of points (or cells) that all ranks with points have, the same on all ranks.
  * @param[in] own  of this rank; nullptr: it has no points
  * @param[out] leftOut  names of the others, the same on all ranks
+ * An array of ghost flags is common if any rank has it: the others have none that is set. An
+ * attribute, as scalars, is common where the array is that on all ranks. The order is that of the
+ * first rank with points; ghost flags that it lacks come last.
  */
 std::vector<ArrayKind> CommonArrays(
   const Ranks& ranks, vtkDataSetAttributes* own, std::set<std::string>& leftOut);
@@ -42,7 +55,11 @@ std::vector<ArrayKind> CommonArrays(
 /** Whether all ranks have the same point and cell arrays, with the same attributes. */
 bool HaveSameArrays(const Ranks& ranks, vtkPointSet* own);
 
-/** Points: positions, global ids and the values of arrays, those of each kind. */
+/**
+ * Points: positions, global ids and the values of arrays, those of each kind. Positions are double
+ * whatever the data set has: float values come through unchanged. A table of the points of an input
+ * shares its arrays; one that is unpacked has its own.
+ */
 class PointTable
 {
 public:
@@ -53,7 +70,7 @@ public:
   std::size_t Count() const { return this->Ids.size(); }
   const double* At(std::size_t place) const { return this->Coordinates.data() + 3 * place; }
 
-  /** Whether it has a place, and is not hidden. */
+  /** Whether it has a place, and is not hidden. Only such a point goes to the part of its cell. */
   bool IsFinite(std::size_t place) const;
   /** The flags of ghosts, or nullptr. */
   vtkUnsignedCharArray* Marks() const;
@@ -77,6 +94,10 @@ public:
   std::vector<vtkSmartPointer<vtkAbstractArray>> Arrays; ///< one of each kind
 
 private:
+  /**
+   * Takes the arrays of each kind: those of the data as they are, where values lie one after
+   * another; converted ones else; zeros, for ghost flags that this rank has not.
+   */
   void View(vtkPointData* data);
   std::size_t MarksIndex = 0; // among the arrays; their number: there are none
 };

@@ -22,7 +22,10 @@ constexpr int FailureTag = 20201, ArrivalTag = 20202; // of no other message
 
 struct RankNotes::Sent
 {
-  /** Sends the others a note. */
+  /**
+   * Sends the others a note. MPI reads Note until each request is done, so Wait() comes before the
+   * object goes.
+   */
   Sent(vtkMPIController* ranks, int tag)
     : Ranks(ranks)
     , Requests(ranks->GetNumberOfProcesses())
@@ -75,6 +78,8 @@ bool RankNotes::HasFailureCome()
   {
     return false;
   }
+  // A report of progress may come every few microseconds, and each probe enters MPI. A note that
+  // has come stays there to be probed again, until TakeFailures().
   this->Next = now + std::chrono::milliseconds(50);
   int isThere = 0, source = 0;
   this->Ranks->Iprobe(vtkMultiProcessController::ANY_SOURCE, FailureTag, &isThere, &source);
@@ -109,6 +114,8 @@ void RankNotes::Meet(
   Sent arrival(this->Ranks, ArrivalTag);
   std::vector<int> missing;
   arrival.ForEachOther([&missing](int rank) { missing.push_back(rank); });
+  // Asked for rank by rank, as messages of one rank come in the order of sending: a note of the
+  // next meeting cannot overtake that of this one.
   const auto hasCome = [this](int rank) {
     int isThere = 0, source = 0, note = 0;
     this->Ranks->Iprobe(rank, ArrivalTag, &isThere, &source);
@@ -126,6 +133,7 @@ void RankNotes::Meet(
       isLate = true;
       late(missing);
     }
+    // No sleep: most waits are short, and each meeting would pay for it.
     std::this_thread::yield();
   }
   arrival.Wait();

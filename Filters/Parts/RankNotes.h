@@ -9,6 +9,12 @@
  * A note is one number, sent to every other rank without waiting for it. This needs MPI: with any
  * other controller, or where VTK has been built without the module VTK::ParallelMPI, no note is
  * sent; the others learn of a failure at the end of their step, and wait without a word.
+ *
+ *     rank 0   |--- step ------------X  failed
+ *                                    | note
+ *     rank 1   |--- step ------------v-|  its next report finds the note, and the step ends
+ *
+ *     both then meet in Ranks::Agree(), count the failures, and take that many notes in
  */
 #ifndef RankNotes_h
 #define RankNotes_h
@@ -23,6 +29,7 @@
 namespace elevation
 {
 
+/** One for the life of a Ranks. All ranks have one, or none has. */
 class RankNotes
 {
 public:
@@ -35,7 +42,11 @@ public:
   /** Whether another rank has failed. Looks every 50 ms, so that asking costs nothing. */
   bool HasFailureCome();
 
-  /** Ends a step after which all know how many other ranks have failed: takes all notes in. */
+  /**
+   * Ends a step after which all know how many other ranks have failed: takes all notes in. One may
+   * still be under way, as notes and the data of VTK's collective calls pass each other; it is
+   * waited for.
+   */
   void TakeFailures(int failures);
 
   /**

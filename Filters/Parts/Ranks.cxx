@@ -1,5 +1,18 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Everything rests on VTK's collective calls (AllReduce, AllGather), on a message from one rank to
+ * another, and, with MPI alone, on the notes of RankNotes.h. From these:
+ *
+ * - Sum(), Maximum(), Collect(): one wait, one or two collective calls.
+ * - Agree(): a step, then a Collect() of what has gone wrong in it. The collection is the meeting
+ *   at which all ranks learn the same, so all throw or none does.
+ * - ExchangeLists(): two rounds of messages, pair by pair. First all lengths, then, when all ranks
+ *   have the memory for what comes, the bytes.
+ *
+ * A rank that fails in a step still comes to the end of Agree(). So no rank waits for ever: it
+ * waits until the slowest has ended its step, and Watched() ends that early.
+ */
 #include "Ranks.h"
 
 #include "Adapt/Adapt.h"
@@ -25,6 +38,8 @@ namespace elevation
 
 namespace
 {
+// Tags keep these messages apart from those of VTK's own filters on the same controller.
+// RankNotes.cxx has the next two numbers.
 constexpr int BytesTag = 20200; // of no other message
 
 bool AreEqual(vtkPoints* one, vtkPoints* other)
@@ -55,7 +70,10 @@ bool AreEqual(vtkCellArray* one, vtkCellArray* other)
   return isEqual;
 }
 
-/** Whether both have the same points and cells; both have points. */
+/**
+ * Whether both have the same points and cells; both have points. Values of arrays are not looked
+ * at: data that were broadcast to all ranks have the same, and only these are meant.
+ */
 bool AreEqual(vtkPolyData* one, vtkPolyData* other)
 {
   return AreEqual(one->GetPoints(), other->GetPoints()) &&
@@ -67,6 +85,7 @@ bool AreEqual(vtkPolyData* one, vtkPolyData* other)
 bool IsInPieces(
   vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs)
 {
+  // Below 0, the request names no port; the first then stands for all.
   const int port = request ? request->Get(vtkExecutive::FROM_OUTPUT_PORT()) : 0;
   vtkInformation* const output = outputs->GetInformationObject(std::max(port, 0));
   const int pieces = output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES());
@@ -111,6 +130,7 @@ int Ranks::Count() const
   return this->Controller ? this->Controller->GetNumberOfProcesses() : 1;
 }
 
+// With another controller than MPI's there are no notes, and VTK's calls do the waiting.
 void Ranks::WaitForAll() const
 {
   if (!this->Notes)
@@ -154,6 +174,7 @@ Bytes Ranks::CollectBytes(const Bytes& bytes) const
 {
   this->WaitForAll();
   const vtkIdType length = static_cast<vtkIdType>(bytes.size());
+  // Lengths first, so that each rank knows where the bytes of which rank begin.
   std::vector<vtkIdType> lengths(this->Count());
   this->Controller->AllGather(&length, lengths.data(), 1);
   std::vector<vtkIdType> offsets(lengths.size(), 0);
@@ -168,6 +189,17 @@ Bytes Ranks::CollectBytes(const Bytes& bytes) const
   return all;
 }
 
+/*
+ * How a step ends on this rank, and what the rank brings to the meeting:
+ *
+ *     it is done                                    nothing
+ *     it fails                                      its message, and a note to the others
+ *     the user aborts it                            an empty message, and a note
+ *     it is stopped by the note of another rank     nothing: the other one says why
+ *
+ * All ranks then have the same list, in the order of ranks, and throw by it. Each rank takes in as
+ * many notes as other ranks have failed: one left over would stop the next step.
+ */
 void Ranks::Agree(const std::function<void()>& step) const
 {
   if (!this->Controller)
@@ -188,6 +220,7 @@ void Ranks::Agree(const std::function<void()>& step) const
   {
     failures.push_back(MessageOf(error));
   }
+  // Watched() has made the step throw Aborted; to the user that would look like an abort.
   const bool isStopped = this->IsStopped; // and not by a failure of its own
   this->IsStopped = false;
   if (isStopped)
@@ -197,6 +230,7 @@ void Ranks::Agree(const std::function<void()>& step) const
   const int own = static_cast<int>(failures.size());
   if (own > 0)
   {
+    // Before the meeting: others may be far from the end of their step.
     this->Notes->SendFailure();
   }
   failures = this->Collect(failures);
@@ -217,12 +251,25 @@ Progress Ranks::Watched(const Progress& progress) const
   {
     return progress;
   }
+  // Once stopped, always stopped: a step that catches Aborted, and goes on, is stopped again.
   return [this, progress](double fraction) {
     this->IsStopped = this->IsStopped || this->Notes->HasFailureCome();
     return !this->IsStopped && (!progress || progress(fraction));
   };
 }
 
+/*
+ * The rounds of four ranks, where bits is the exclusive or of the two numbers:
+ *
+ *     bits 1:  0-1  2-3
+ *     bits 2:  0-2  1-3
+ *     bits 3:  0-3  1-2
+ *
+ * Each pair meets once. Nobody waits for ever: of all ranks that still wait, take one in the
+ * earliest round. Its partner cannot be in an earlier one, and is not beyond, so it is in the same
+ * round and comes. Where the number of ranks is no power of 2, a rank without a partner leaves out
+ * the round.
+ */
 void Ranks::Meet(const std::function<void(int)>& withOther) const
 {
   const int count = this->Count();
@@ -236,6 +283,7 @@ void Ranks::Meet(const std::function<void(int)>& withOther) const
   }
 }
 
+// The same with at most one message for each rank. No message, and an empty one, arrive alike.
 std::vector<Bytes> Ranks::Exchange(std::vector<Bytes>&& toEach) const
 {
   std::vector<std::vector<Bytes>> lists(toEach.size());
@@ -257,6 +305,7 @@ std::vector<Bytes> Ranks::Exchange(std::vector<Bytes>&& toEach) const
 std::vector<std::vector<Bytes>> Ranks::ExchangeLists(std::vector<std::vector<Bytes>>&& toEach) const
 {
   std::vector<std::vector<Bytes>> fromEach(toEach.size());
+  // What a rank sends itself is moved, and stands in its place among the ranks.
   std::swap(fromEach[this->OwnRank()], toEach[this->OwnRank()]);
   std::vector<std::vector<std::size_t>> sizes(toEach.size());
   this->WaitForAll();
@@ -278,9 +327,11 @@ std::vector<std::vector<Bytes>> Ranks::ExchangeLists(std::vector<std::vector<Byt
       sizes[other].resize(count);
       this->Receive(sizes[other].data(), count * sizeof(std::size_t), other);
     };
+    // Both sending first could wait for ever: MPI may hold back a send until the other receives.
     this->OwnRank() < other ? (send(), receive()) : (receive(), send());
     this->Sent.BytesSent += static_cast<vtkIdType>(sizeof(length));
   });
+  // A rank that lacks the memory says so here, while none has begun to send.
   this->Agree([&]() {
     for (std::size_t i = 0; i < sizes.size(); ++i)
     {
@@ -296,6 +347,7 @@ std::vector<std::vector<Bytes>> Ranks::ExchangeLists(std::vector<std::vector<Byt
       for (Bytes& bytes : toEach[other])
       {
         this->Send(bytes.data(), bytes.size(), other);
+        // Sent, so that memory holds what is sent and what comes only in part.
         bytes = Bytes();
       }
     };
@@ -311,6 +363,7 @@ std::vector<std::vector<Bytes>> Ranks::ExchangeLists(std::vector<std::vector<Byt
   return fromEach;
 }
 
+// No bytes, no message: the receiver knows the size, and does not wait either.
 void Ranks::Send(const void* bytes, std::size_t size, int rank) const
 {
   if (size > 0)
@@ -334,6 +387,7 @@ vtkSmartPointer<vtkPolyData> Ranks::Gather(vtkPolyData* local) const
   const bool hasPoints = local && local->GetNumberOfPoints() > 0;
   std::vector<Bytes> packed(this->Count());
   this->Agree([&]() {
+    // Also for this rank itself, whose copy is then not read.
     if (hasPoints && this->Controller)
     {
       const Bytes bytes = PackData(local);
@@ -358,6 +412,7 @@ vtkSmartPointer<vtkPolyData> Ranks::Gather(vtkPolyData* local) const
       const auto part =
         isOwn ? vtkSmartPointer<vtkPolyData>(local) : UnpackData(bytes.data(), bytes.size());
       const auto isPart = [&](vtkPolyData* other) { return AreEqual(part, other); };
+      // Quadratic in the parts that differ, which are few: files of lines.
       if (std::none_of(parts.begin(), parts.end(), isPart))
       {
         parts.push_back(part);
@@ -370,6 +425,7 @@ vtkSmartPointer<vtkPolyData> Ranks::Gather(vtkPolyData* local) const
 
 bool CanAll(const Ranks& ranks, const std::function<bool()>& step)
 {
+  // Two meetings: one for what is thrown, one for the answer.
   bool can = false;
   ranks.Agree([&]() {
     try
@@ -391,6 +447,7 @@ bool IsOnAny(const Ranks& ranks, bool isOnThis)
   return count[0] > 0;
 }
 
+// In the order of ranks. What concerns a block that is spread has been said by all of them alike.
 std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& ranks)
 {
   std::vector<Message> all;
@@ -406,6 +463,7 @@ std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& 
 
 Box JoinBoxes(const Ranks& ranks, const Box& own)
 {
+  // The least is the largest of the negative numbers, so one meeting finds all four sides.
   std::vector<double> sides = { -own.Low.X, -own.Low.Y, own.High.X, own.High.Y };
   ranks.Maximum(sides);
   return { { -sides[0], -sides[1] }, { sides[2], sides[3] } };

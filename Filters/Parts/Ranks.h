@@ -3,6 +3,11 @@
 /**
  * @file
  * The ranks (processes) on which a filter runs at the same time. Private to the module.
+ *
+ * All functions but OwnRank(), Count(), Watched(), GetTraffic(), Send() and Receive() are meetings
+ * of all ranks. What decides whether a meeting takes place has to be the same on all of them. A
+ * value that only this rank knows must go through Sum(), Collect() or IsOnAny() first. And nothing
+ * between two meetings may throw on one rank alone: work that may fail stands in Agree().
  */
 #ifndef Ranks_h
 #define Ranks_h
@@ -52,7 +57,9 @@ public:
   Ranks(vtkMultiProcessController* controller, vtkInformation* request,
     vtkInformationVector* outputs, const std::function<void(const Message&)>& waiting);
 
-  /** A minute, but in tests. */
+  /**
+   * How long a rank waits for others before it says so: a minute, but in tests. The wait goes on.
+   */
   static std::chrono::milliseconds Patience;
 
   int OwnRank() const;
@@ -86,10 +93,10 @@ public:
 
   /**
    * Does a step in which no rank waits for another. Then all of them know how it went; within a
-   * tenth of a second after a failure, where steps that take long report to Watched().
-   * With one rank, what the step throws goes on as it is.
+   * tenth of a second after a failure, where steps that take long report to Watched(). With one
+   * rank, what the step throws goes on as it is.
    * @throws Error on all ranks where the step fails on any: the error of the first of these
-   * @throws Aborted on all ranks where the step is aborted on any
+   * @throws Aborted on all ranks where the step is aborted on any, also where it fails on another
    */
   void Agree(const std::function<void()>& step) const;
 
@@ -107,7 +114,10 @@ public:
   /** The same for lists of bytes, whose lengths need not be known before. */
   std::vector<std::vector<Bytes>> ExchangeLists(std::vector<std::vector<Bytes>>&& toEach) const;
 
-  /** What this rank has sent since it was made, and how often all ranks have met for it. */
+  /**
+   * What this rank has sent since it was made by Collect() and Exchange(), and how many of the
+   * latter there were. Sums and maxima, a few bytes each, and MPI's own headers are not counted.
+   */
   struct Traffic
   {
     vtkIdType BytesSent = 0;
@@ -128,8 +138,12 @@ public:
   vtkSmartPointer<vtkPolyData> Gather(vtkPolyData* local) const;
 
 private:
-  /** Where ranks wait: no rank goes on before all have come. */
+  /**
+   * Where ranks wait: no rank goes on before all have come. Each meeting begins with it, as VTK's
+   * collective calls would wait without a word.
+   */
   void WaitForAll() const;
+  /** Calls withOther() for each other rank, in the order of Exchange(). */
   void Meet(const std::function<void(int other)>& withOther) const;
   Bytes CollectBytes(const Bytes& bytes) const;
 
@@ -141,17 +155,19 @@ private:
 };
 
 /**
- * Does a step on all ranks, in which errors are as false.
+ * Does a step on all ranks, in which errors are as false: for tests whether there is another way,
+ * as gathering. An abort, and anything that is not an Error, is thrown as by Agree().
  * @return whether all ranks can
  */
 bool CanAll(const Ranks& ranks, const std::function<bool()>& step);
 
+/** Whether something holds on any rank: a meeting, whose answer all of them have. */
 bool IsOnAny(const Ranks& ranks, bool isOnThis);
 
 /** The messages of all ranks, on the first, each once. */
 std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& ranks);
 
-/** The box of the boxes of all ranks. */
+/** The box of the boxes of all ranks. Empty boxes count for nothing; if all are empty, so is it. */
 Box JoinBoxes(const Ranks& ranks, const Box& own);
 
 } // namespace elevation

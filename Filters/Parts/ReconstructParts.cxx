@@ -1,5 +1,16 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * States, and what leads from one to the next:
+ *
+ *     closed  --- AddPoints() --->  open     Work has points
+ *     open    --- RequestData() ->  begun    NumberOfParts is set: no more points or settings
+ *     any     --- failure ------->  lost     IsLost, but for refusals before anything is done
+ *     any     --- Close() ------->  closed
+ *
+ * Do() sets IsLost while it works. So whatever way it is left by, an exception included, what it
+ * has begun and not finished is never used again.
+ */
 #include "ReconstructParts.h"
 
 #include "Gathering.h"
@@ -20,7 +31,10 @@ namespace elevation
 {
 namespace
 {
-/** Input 1 of a filter, brought up to date; nullptr: there is none. */
+/**
+ * Input 1 of a filter, brought up to date; nullptr: there is none. The filters that hold the
+ * settings are not run themselves, so nobody else updates what is connected to them.
+ */
 vtkDataObject* UpdatedLines(vtkAlgorithm* filter)
 {
   if (filter->GetNumberOfInputConnections(1) == 0)
@@ -53,6 +67,7 @@ void ReconstructParts::ReportError(const std::exception& error)
   Message message = MessageOf(error);
   if (message.GetCode() == sentences::NotEnoughMemory.Code)
   {
+    // More pieces make triangulating and trimming fit; holes need what surrounds them, too.
     message = this->Set.FillHoles ? MakeMessage<sentences::TooFewPiecesToFill>()
                                   : MakeMessage<sentences::TooFewPieces>();
   }
@@ -77,6 +92,10 @@ bool ReconstructParts::CanChange(const char* setting)
   return !this->HasPoints();
 }
 
+/*
+ * With the first points, or the first request. The controller cannot change after it, until
+ * Close().
+ */
 void ReconstructParts::Open(vtkMultiProcessController* controller)
 {
   if (!this->AllRanks)
@@ -86,7 +105,7 @@ void ReconstructParts::Open(vtkMultiProcessController* controller)
   }
 }
 
-// Each step uses those before it.
+// Each step uses those before it, and goes first. Files go with their boxes.
 void ReconstructParts::Close()
 {
   this->Filled.reset();
@@ -100,6 +119,7 @@ void ReconstructParts::Close()
   this->IsLost = this->IsOnAllRanks = false;
 }
 
+// After a failure it is not known how far the work has come.
 void ReconstructParts::CheckIsComplete() const
 {
   if (this->IsLost)
@@ -119,6 +139,10 @@ void ReconstructParts::Do(bool withAll, const Step& step)
   this->IsLost = false;
 }
 
+/*
+ * Two kinds of errors: those before Do(), as of a folder that is not set, which leave all as it
+ * was; and those of Do(), after which a slice may be half written, so that only Close() helps.
+ */
 bool ReconstructParts::AddPoints(vtkPointSet* points)
 {
   try
@@ -134,6 +158,7 @@ bool ReconstructParts::AddPoints(vtkPointSet* points)
       throw Error("Points cannot be added after the first piece; that needs Reset().");
     }
     this->Open(settings.Controller);
+    // ReportError() looks at it.
     this->Set = settings;
     this->Do(false, [&]() {
       if (!this->Work)
@@ -159,6 +184,8 @@ void ReconstructParts::CheckPart(int part, int count) const
     throw Error("There are " + std::to_string(this->NumberOfParts) +
       " pieces; another number of pieces needs Reset().");
   }
+  // The same number of pieces on each rank, rank after rank: part and rank follow without a
+  // message.
   const int ranks = this->AllRanks->Count(), ofEach = count / ranks;
   if (count % ranks != 0)
   {
@@ -192,6 +219,7 @@ void ReconstructParts::Begin(int count)
   const vtkMTimeType time = this->Source->GetMTime();
   if (this->Refusal && this->RefusalTime == time && this->RefusedParts == count)
   {
+    // All ranks did throw it. One that asks again must not meet: others may have stopped asking.
     throw CodedError(*this->Refusal);
   }
   this->IsOnAllRanks = true;
@@ -203,6 +231,7 @@ void ReconstructParts::Begin(int count)
       constraints = UpdatedLines(this->Set.HasConstraints);
       boundary = UpdatedLines(this->Set.HasBoundary);
     });
+    // A different number on a rank would make it hold other parts than the others think.
     const std::vector<vtkIdType> counts = this->AllRanks->Collect(std::vector<vtkIdType>{ count });
     if (std::count(counts.begin(), counts.end(), count) != this->AllRanks->Count())
     {
@@ -258,6 +287,7 @@ void ReconstructParts::Check() const
   {
     CheckedSteps(options.GivenLattice);
   }
+  // From here on, what can only be done with all points, or all of the surface, in memory.
   if (options.MaximumElevationError > 0.0)
   {
     throw MakeError<sentences::ErrorNotInPieces>();
@@ -303,12 +333,14 @@ void ReconstructParts::WorkOnAll(const Progress& progress)
   }
 }
 
+// The first step of 3. Points leave their source here; the parts are in files then.
 void ReconstructParts::Triangulate(const Progress& progress)
 {
   std::vector<Message> warnings;
   this->Do(true, [&]() {
     DelaunayOptions& options = this->Set.Delaunay;
     options.Monitor = progress;
+    // Lines add points, which float would round off them. Their type is that of all parts.
     if (NeedsDouble(vtkAlgorithm::DEFAULT_PRECISION, this->Constraints || this->Boundary))
     {
       this->Work->UseDoublePoints();
@@ -321,6 +353,7 @@ void ReconstructParts::Triangulate(const Progress& progress)
   this->ReportWarnings(warnings);
 }
 
+// Trims the parts that MakePart() makes. What TrimParts keeps is what has come back, in files too.
 void ReconstructParts::Trim(const Progress& progress)
 {
   if (this->Work->GetTotals().Triangles == 0)
@@ -344,6 +377,7 @@ void ReconstructParts::Trim(const Progress& progress)
   this->ReportWarnings(warnings);
 }
 
+// Fills the parts that MakeTrimmed() makes. Rank 0 has part 0, and so the outlines.
 void ReconstructParts::Fill(const Progress& progress)
 {
   std::vector<Message> warnings;
@@ -356,6 +390,7 @@ void ReconstructParts::Fill(const Progress& progress)
       this->Set.Fill, this->Set.InterpolatePointData, this->Set.LongestEdge);
     filled->FindHoles(0);
     filled->Fill();
+    // Only when it has succeeded: Pass() would write from it.
     this->Filled = std::move(filled);
     warnings = OnFirst(WarningsOf(this->Filled->Result()), *this->AllRanks);
   });
@@ -373,6 +408,7 @@ vtkSmartPointer<vtkPolyData> ReconstructParts::MakePart(int part, const Progress
   auto made = vtkSmartPointer<vtkPolyData>::New();
   PassPart(taken, ResolveNumberOfThreads(this->Set.Delaunay.NumberOfThreads), made);
   ConstrainedTriangulation counts;
+  // AddReport() looks at the number alone.
   counts.Added.resize(static_cast<std::size_t>(taken.AddedPoints));
   counts.NumberOfCrossings = this->Work->GetTotals().Crossings;
   counts.Result = std::move(taken.Result);
@@ -413,6 +449,15 @@ void ReconstructParts::Pass(
   });
 }
 
+/*
+ * A request goes through:
+ * 1. Nothing to do: no points on the only rank, or a piece that is none. The output is empty.
+ * 2. What this rank can refuse alone: a piece of another rank, or one that has gone; settings that
+ *    have changed. Errors are this rank's own.
+ * 3. At the first request, steps 2 and 3 with all ranks. An error is that of all, and rank 0
+ *    reports it.
+ * 4. The part, from the files of this rank. Errors are this rank's own again.
+ */
 int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector* outputs)
 {
   const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
@@ -424,17 +469,20 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
   const int count = std::max(1, get(Pipeline::UPDATE_NUMBER_OF_PIECES()));
   vtkPolyData* const output = vtkPolyData::GetData(outputs, 0);
   vtkPolyData* const rims = vtkPolyData::GetData(outputs, 1);
+  // Whether this rank reports an error in any case: one that it finds before it meets the others.
   bool isReporting = true;
   try
   {
     const Settings settings = this->MakeSettings();
     this->Open(settings.Controller);
+    // Of several ranks, one without points has to take part all the same.
     if ((this->IsAlone() && !this->HasPoints()) || part < 0 || part >= count)
     {
       return 1; // empty, as VTK's sources
     }
     this->CheckPart(part, count);
     const bool isFirst = this->NumberOfParts == 0;
+    // What has been done was done by the settings then.
     if (!isFirst && settings.Time > this->Set.Time)
     {
       throw Error("Properties were changed after the first piece; that needs Reset().");
@@ -448,6 +496,7 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
       this->WorkOnAll(progress.Between(0.0, 0.9));
     }
     this->Pass(part, progress.Between(0.9, 1.0), output, rims);
+    // A part can then be passed on once, and its files make room for what is written.
     if (!settings.KeepFiles)
     {
       this->Work->Forget(part);
@@ -466,6 +515,7 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
   return 1;
 }
 
+// Of the steps that are done; of those that were not asked for, 0.
 ReconstructParts::Counts ReconstructParts::GetCounts() const
 {
   Counts counts;
@@ -490,6 +540,8 @@ ReconstructParts::Counts ReconstructParts::GetCounts() const
   {
     counts.Holes = this->Filled->Result().Found.Count();
     counts.FilledHoles = CountFilled(this->Filled->Result());
+    // NewTriangleCount() may be below 0, where patches have fewer triangles than the regions that
+    // they replace.
     counts.FilledTriangles = this->Filled->NewTriangleCount() +
       (this->Trimmed ? counts.TrimmedTriangles : counts.Triangles);
   }

@@ -19,6 +19,12 @@
  * without a meeting of the ranks, until the properties change: so a rank that asks for its next
  * part does not wait for one that has given up. Any other error loses the points of the rank, in
  * step 3 of all ranks. What all ranks throw is reported by the first one.
+ *
+ *     AddPoints()  AddPoints() ...   RequestData(piece 0)        RequestData(piece 1) ...
+ *     points to files                all steps; part 0           part 1, from the files
+ *
+ * The steps are made into each other: FillParts asks for parts by MakeTrimmed(), that makes them by
+ * MakePart(), and that takes them from TriangulateParts. Nothing but their own files is kept.
  */
 #ifndef ReconstructParts_h
 #define ReconstructParts_h
@@ -114,6 +120,7 @@ public:
   Counts GetCounts() const;
 
 private:
+  // What is known, and checked, before all begin:
   void Open(vtkMultiProcessController* controller);
   bool IsAlone() const { return this->AllRanks->Count() == 1; }
   bool HasPoints() const { return this->Work || this->IsLost; } // or has lost some
@@ -122,13 +129,16 @@ private:
   void CheckPart(int part, int count) const;
   template <typename Step>
   void Do(bool withAll, const Step& step);
+  // Step 2:
   void Begin(int count);
   void Prepare();
   void Check() const;
+  // Step 3:
   void WorkOnAll(const Progress& progress);
   void Triangulate(const Progress& progress);
   void Trim(const Progress& progress);
   void Fill(const Progress& progress);
+  // Step 4, and what the steps of 3 hand to each other:
   vtkSmartPointer<vtkPolyData> MakePart(int part, const Progress& progress);
   vtkSmartPointer<vtkPolyData> MakeTrimmed(int part, const Progress& progress);
   void Pass(int part, const Progress& progress, vtkPolyData* output, vtkPolyData* rims);

@@ -40,6 +40,8 @@ struct Node
   static Node Of(int cell, int level, int count)
   {
     Node node{ 0, count };
+    // A cell that is reached before the level has no node there: it stands for itself, with a size
+    // of 1.
     for (; level > 0 && node.Size() > 1; --level)
     {
       const int middle = node.Middle();
@@ -108,6 +110,7 @@ private:
   const Ranks& AllRanks;
   const Cuts& Plane;
   const DelaunayOptions& Options;
+  // Of the nodes that wait for their other half.
   std::map<int, Piece> Seams; // of nodes, by their first parts
   bool IsOffLattice = false;  // a point of this rank is
   SettledParts Found;         // sums of this rank until the end
@@ -121,6 +124,9 @@ private:
 SettledParts Settling::SettleAll()
 {
   SharedLattice lattice;
+  // Of the whole: up to 0.15 points are brought to their parts, up to 0.2 the lattice is found, up
+  // to 0.78 cells are triangulated, up to 0.9 the seams that ranks join. What is done again reports
+  // again.
   const Progress searching = this->Fraction(0.15, 0.2);
   const bool isAsked = this->Options.UseLattice == LatticeMode::Automatic;
   if (isAsked && this->Options.GivenLattice.IsSet())
@@ -170,6 +176,7 @@ void Settling::SettleOnGiven(const Progress& progress)
 /** Whether so few points may fit a lattice by chance, or are all on one line of it. */
 bool Settling::IsByChance(const SharedLattice& lattice) const
 {
+  // Points that could be vertices, which is known only after the cells were triangulated.
   std::vector<vtkIdType> sums = { this->Store.OwnCount() - this->Found.Duplicates -
       this->Found.NotFinite - this->Found.Hidden,
     this->Found.Triangles + static_cast<vtkIdType>(this->Found.OfSeams.size()) };
@@ -184,12 +191,15 @@ bool Settling::IsByChance(const SharedLattice& lattice) const
  */
 bool Settling::SettleOn(const SharedLattice* lattice)
 {
+  // Boxes keep no seam of an attempt: what was sent has been taken, and KeepSettled() replaces the
+  // rest.
   this->Seams.clear();
   this->Found = SettledParts();
   this->IsOffLattice = false;
   this->Crew.ForEach(this->Fraction(0.2, 0.78), [&](int part, const Progress& progress) {
     this->WatchLattice([&]() { this->SettlePart(part, lattice, progress); });
   });
+  // A rank that is off the lattice goes on without work, so that all meet here.
   return !this->IsOffAnywhere(lattice) && this->JoinSeams(lattice);
 }
 
@@ -222,10 +232,12 @@ void Settling::WatchLattice(const Step& step)
  */
 void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress& progress)
 {
+  // Reports of reading hear an abort, but do not move.
   const Progress reading = progress.Between(0.0, 0.0);
   this->Store.WithOwn(part, reading, [&](const SurfacePart& own) {
     SettledCell settled = SettleCell(ViewOf(own.OwnPoints).View, this->Store.FirstOf(part),
       this->Plane.CellOf(part, part + 1), this->OptionsWith(progress), lattice);
+    // To the kernel they were points that are not finite.
     NameHidden(own.OwnPoints.Marks(), settled.Result);
     this->Found.Triangles += static_cast<vtkIdType>(settled.Result.Triangles.size() / 3);
     this->Found.Duplicates += settled.Result.NumberOfDuplicates;
@@ -237,11 +249,14 @@ void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress
   });
   const int count = this->Crew.PartCount();
   const Progress last = progress.Between(1.0, 1.0);
+  // From the smallest node that ends with this part; the seam of its lower half is there, as its
+  // parts came before.
   for (int level = Node::Levels(count) - 1; level >= 0; --level)
   {
     const Node node = Node::Of(part, level, count);
     if (node.Size() > 1 && node.End == part + 1 && node.IsWithinRank(this->Crew))
     {
+      // The seam of the upper half is that of its first part.
       const Piece other = std::move(this->Seams[node.Middle()]);
       this->Seams.erase(node.Middle());
       this->SettleNode(node, other, lattice, last);
@@ -250,6 +265,10 @@ void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress
 }
 
 /** Settles what a larger cell can, of whose halves the seams are known. */
+/*
+ * What is settled now lies in the larger cell, and in no half of it. The rest is the seam that goes
+ * up.
+ */
 void Settling::SettleNode(
   const Node& node, const Piece& other, const SharedLattice* lattice, const Progress& progress)
 {
@@ -273,14 +292,17 @@ bool Settling::JoinSeams(const SharedLattice* lattice)
     };
     this->Crew.ForEach(Progress(), [&](int part, const Progress&) {
       const Node node = Node::Of(part, level, count);
+      // The first part of the upper half, which has its seam.
       if (isJoined(node) && part == node.Middle())
       {
         Bytes bytes;
         AnyValue::Append(bytes, this->Seams[part]);
         this->Crew.Send(node.Begin, FromSeams, std::move(bytes));
+        // A seam is in memory at one place only.
         this->Seams.erase(part);
       }
     });
+    // On one rank nothing can have been sent.
     if (this->AllRanks.Count() > 1)
     {
       this->Crew.Deliver();
@@ -292,6 +314,7 @@ bool Settling::JoinSeams(const SharedLattice* lattice)
         const Node node = Node::Of(part, level, count);
         if (isJoined(node) && part == node.Begin)
         {
+          // Taken before triangles are sent to the same box in pass 4.
           const Bytes bytes = std::move(this->Crew.At(part, FromSeams).Take().at(0));
           const char* from = bytes.data();
           Piece other;

@@ -20,6 +20,16 @@
  *
  * Cost: that of triangulating each part, and for a part of m points some multiple of sqrt(m) for
  * its seam; log2(ranks) rounds.
+ *
+ * The tree of five cells, by MiddleOf(); part 0 to 2 on rank 0, 3 and 4 on rank 1:
+ *
+ *                  [0,5)                 by part 0, with the seam of [2,5) from part 2
+ *                /       \
+ *           [0,2)         [2,5)          [2,5) by part 2, with the seam of [3,5) from part 3
+ *           /   \         /   \
+ *          0     1       2   [3,5)       [0,2) by part 0, as soon as part 1 is done;
+ *                            /   \       [3,5) by part 3, as soon as part 4 is done
+ *                           3     4
  */
 #ifndef SettleParts_h
 #define SettleParts_h

@@ -1,5 +1,15 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * CollectBorder() takes these steps:
+ * 1. KeepSingleEdges() on each rank: edges between its own parts go without a message.
+ * 2. Each edge goes to the rank of its hash, and KeepSingleEdges() is called there.
+ * 3. All ranks get the edges that are left, those around regions of long triangles, and which
+ *    regions of two parts are one.
+ * 4. Each makes the SharedBorder of them: points numbered by keys, edges in the order of parts and
+ *    half-edges. The order has nothing to do with who sent what, so it is the same on all ranks,
+ *    and that of one surface whose triangles come part after part.
+ */
 #include "SharedBorder.h"
 
 #include "Adapt/Adapt.h"
@@ -23,13 +33,17 @@ namespace elevation
 
 namespace
 {
-/** The rank where all ranks' points or edges with some numbers meet. */
+/**
+ * The rank where all ranks' points or edges with some numbers meet. The upper bits of the product
+ * depend on all lower ones; the remainder is taken of these.
+ */
 int RankOf(std::uint64_t bits, const Ranks& ranks)
 {
   bits = (bits ^ (bits >> 31)) * 0x9E3779B97F4A7C15ull;
   return static_cast<int>((bits >> 33) % static_cast<std::uint64_t>(ranks.Count()));
 }
 
+// For an edge the two hashes are added, so that both directions of it meet.
 std::uint64_t BitsOf(const PointKey& key)
 {
   std::uint64_t bits = 0;
@@ -40,7 +54,7 @@ std::uint64_t BitsOf(const PointKey& key)
   return bits;
 }
 
-/** A point, where all ranks' points with its key meet. */
+/** A point, where all ranks' points with its key meet. Rank and place say where the answer goes. */
 struct MetPoint
 {
   PointKey Key;
@@ -66,6 +80,7 @@ std::vector<Value> Unpacked(const std::vector<Bytes>& packed)
 
 Index SharedPoints::Find(const PointKey& key) const
 {
+  // From place 0 on, so the first entry of the key.
   const auto found =
     std::lower_bound(this->Sorted.begin(), this->Sorted.end(), std::make_pair(key, Index(0)));
   return found != this->Sorted.end() && found->first == key ? found->second : None;
@@ -83,6 +98,7 @@ void SharedPoints::Sort(const std::vector<char>& areUsed)
     return std::make_tuple(a.first, !areUsed[a.second], a.second) <
       std::make_tuple(b.first, !areUsed[b.second], b.second);
   });
+  // Two vertices at one place have one key, and nobody could say which of them is meant.
   const auto isTwice = [&](const auto& a, const auto& b) {
     return a.first == b.first && areUsed[a.second] && areUsed[b.second];
   };
@@ -91,6 +107,7 @@ void SharedPoints::Sort(const std::vector<char>& areUsed)
     throw Error("Two points of a part have the same global id or place.");
   }
   const auto isSame = [](const auto& a, const auto& b) { return a.first == b.first; };
+  // Of points with one key, one with a triangle is found, if there is one.
   this->Sorted.erase(
     std::unique(this->Sorted.begin(), this->Sorted.end(), isSame), this->Sorted.end());
 }
@@ -112,6 +129,7 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
   ranks.Agree([&]() {
     for (std::size_t i = 0; i < points.Places.size(); ++i)
     {
+      // All points that may be shared go, also those that no rank has marked.
       const MetPoint met{ points.Keys[i], points.AreCopies[i], ranks.OwnRank(),
         static_cast<vtkIdType>(i) };
       AppendTo(packed[RankOf(BitsOf(met.Key), ranks)], &met, 1);
@@ -119,13 +137,17 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
   });
   packed = ranks.Exchange(std::move(packed));
   ranks.Agree([&]() {
+    // This rank answers for the keys that the hash gives to it.
     std::vector<MetPoint> met = Unpacked<MetPoint>(packed);
     packed = std::vector<Bytes>(ranks.Count());
     const auto keyOf = [](const MetPoint& p) {
       return std::make_tuple(p.Key, p.IsMarked, p.Rank, p.Place);
     };
+    // Of one key: first who is not marked, then by rank.
     std::sort(met.begin(), met.end(),
       [&](const MetPoint& a, const MetPoint& b) { return keyOf(a) < keyOf(b); });
+    // Two points of one rank at one place are different points; with ids, they are one all the
+    // same.
     std::vector<vtkIdType> found(ranks.Count(), 0); // of the key so far, on each rank
     vtkIdType different = 0;
     for (std::size_t i = 0; i < met.size(); ++i)
@@ -145,6 +167,7 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
     }
   });
   packed = ranks.Exchange(std::move(packed));
+  // Only copies are answered, so what has no answer counts.
   points.AreCopies.assign(points.Places.size(), 0);
   for (const vtkIdType place : Unpacked<vtkIdType>(packed))
   {
@@ -164,6 +187,8 @@ void AppendBorder(const Mesh& mesh, const SharedPoints& points, const std::vecto
   };
   for (Index h = 0; h < static_cast<Index>(mesh.Twins.size()); ++h)
   {
+    // An edge between a long triangle and one that is not long is listed from the long side alone:
+    // it is on the border of the region, and not on that of the surface.
     const bool isBorder = mesh.Twin(h) == Mesh::Border;
     if (isBorder || (regionAt(h) != None && regionAt(mesh.Twin(h)) == None))
     {
@@ -179,7 +204,10 @@ void AppendBorder(const Mesh& mesh, const SharedPoints& points, const std::vecto
 
 namespace
 {
-/** Notes what an edge is that two parts have in common, where a triangle beside it is long. */
+/**
+ * Notes what an edge is that two parts have in common, where a triangle beside it is long. Both are
+ * long: a region goes on in the other part. One is: the edge is on the border of its region.
+ */
 void JoinRegions(const PartEdge& one, const PartEdge& other, PartEdges& all)
 {
   if (one.Region != None && other.Region != None)
@@ -192,7 +220,15 @@ void JoinRegions(const PartEdge& one, const PartEdge& other, PartEdges& all)
   }
 }
 
-/** Takes away the edges that two parts have in common. */
+/**
+ * Takes away the edges that two parts have in common. Sorted by their points, whatever their
+ * direction, edges between the same points are next to each other:
+ *
+ *     a-b                on the border
+ *     a-b  b-a           a pair, which goes
+ *     a-b  a-b           two triangles on one side: an error
+ *     a-b  b-a  a-b      three triangles: an error
+ */
 void KeepSingleEdges(PartEdges& all)
 {
   std::vector<PartEdge>& edges = all.OnBorder;
@@ -205,9 +241,11 @@ void KeepSingleEdges(PartEdges& all)
   std::vector<PartEdge> single;
   for (std::size_t i = 0; i < edges.size(); ++i)
   {
+    // The second runs from where the first ends to where it begins.
     const bool isPair = i + 1 < edges.size() && edges[i].Ends[0] == edges[i + 1].Ends[1] &&
       edges[i].Ends[1] == edges[i + 1].Ends[0];
     const std::size_t next = i + (isPair ? 2 : 1);
+    // What follows a pair, or a single edge, has to be another edge.
     if (next < edges.size() &&
       std::minmax(edges[i].Ends[0], edges[i].Ends[1]) ==
         std::minmax(edges[next].Ends[0], edges[next].Ends[1]))
@@ -222,6 +260,7 @@ void KeepSingleEdges(PartEdges& all)
     {
       single.push_back(edges[i]);
     }
+    // The loop adds 1.
     i = next - 1;
   }
   edges = std::move(single);
@@ -232,9 +271,11 @@ SharedBorder::SharedBorder(PartEdges&& edges)
 {
   std::vector<PartEdge>& border = edges.OnBorder;
   const auto isOfRegion = [](const PartEdge& edge) { return edge.Region != None; };
+  // An edge of a long triangle on the border of the surface is on that of its region, too.
   std::copy_if(border.begin(), border.end(), std::back_inserter(edges.OfRegions), isOfRegion);
   for (std::vector<PartEdge>* some : { &border, &edges.OfRegions })
   {
+    // Holes are numbered by this order (FindBorderHoles), and so must be the same on all ranks.
     std::sort(some->begin(), some->end(), [](const PartEdge& a, const PartEdge& b) {
       return std::tie(a.Part, a.HalfEdge) < std::tie(b.Part, b.HalfEdge);
     });
@@ -256,6 +297,7 @@ SharedBorder::SharedBorder(PartEdges&& edges)
       partOf.push_back(static_cast<int>(edge.Part));
       for (std::size_t k = 0; k < 2; ++k)
       {
+        // Several edges write the same: a point is at one place. Heights are not needed for holes.
         std::copy_n(edge.Places + 2 * k, 2, this->Coordinates.begin() + 3 * ends[k]);
         this->OnBoundary[ends[k]] = edge.OnBoundary[k] != 0;
       }
@@ -266,7 +308,11 @@ SharedBorder::SharedBorder(PartEdges&& edges)
   this->NumberRegions(edges);
 }
 
-/** Regions are in the order of the first parts that have some of them. */
+/**
+ * Regions are in the order of the first parts that have some of them: union-find over the regions
+ * of all parts, in which the lowest of a set is its root. As the map is sorted by part and region,
+ * one pass gives each root its number before others of its set ask for it.
+ */
 void SharedBorder::NumberRegions(const PartEdges& edges)
 {
   for (const PartEdge& edge : edges.OfRegions)
@@ -290,6 +336,7 @@ void SharedBorder::NumberRegions(const PartEdges& edges)
     const Index b = RootOf(parents, this->Regions[{ joined[2], joined[3] }]);
     parents[std::max(a, b)] = std::min(a, b);
   }
+  // By the numbers in the map's order, which are those in parents.
   std::vector<Index> numbers;
   Index count = 0;
   for (auto& region : this->Regions)
@@ -325,6 +372,8 @@ SharedBorder CollectBorder(const Ranks& ranks, PartEdges&& edges)
   std::vector<Bytes> packed(ranks.Count());
   ranks.Agree([&]() {
     KeepSingleEdges(edges);
+    // Edges of regions and joined regions stay here until the end: their other side is known
+    // already.
     for (std::size_t i = 0; i < edges.OnBorder.size() && ranks.Count() > 1; ++i)
     {
       const PartEdge& edge = edges.OnBorder[i];
@@ -339,6 +388,7 @@ SharedBorder CollectBorder(const Ranks& ranks, PartEdges&& edges)
       edges.OnBorder = Unpacked<PartEdge>(packed);
       KeepSingleEdges(edges);
     });
+    // Each rank sends all of what it has to all: what is left is short, as a border is.
     const auto toAll = [&](auto& some) {
       using Some = std::decay_t<decltype(some.front())>;
       ranks.Agree([&]() {

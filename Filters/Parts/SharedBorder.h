@@ -4,6 +4,18 @@
  * @file
  * The border of a mesh in parts, on ranks or in pieces: which edges have one triangle in all of
  * them. Private to the module.
+ *
+ * An edge is on the border if one part has a triangle beside it and no part has one on the other
+ * side. No rank can see that alone. So each edge of a part's own border goes to a rank that its two
+ * points decide by a hash: there meets whoever has the edge, and what is left alone is on the
+ * border of all.
+ *
+ *     rank 0:  a-b  b-c  c-a        rank 1:  b-a  b-d  d-b ...
+ *               |                             |
+ *               +------ both at rank 1 -------+      a-b and b-a cancel: an edge between two parts
+ *
+ * Cost: each rank sends its border edges once, to one rank each; what is left goes to all ranks,
+ * and is in memory on each of them.
  */
 #ifndef SharedBorder_h
 #define SharedBorder_h
@@ -22,7 +34,9 @@
 namespace elevation
 {
 
-/** The points of a part that others may have, too. */
+/**
+ * The points of a part that others may have, too. The lists have one entry each, in the same order.
+ */
 struct SharedPoints
 {
   /** Increasing: on the border of its triangles, of long ones, or without any triangle. */
@@ -33,7 +47,10 @@ struct SharedPoints
 
   /** The place of the point with a key, or None. */
   Index Find(const PointKey& key) const;
-  /** Takes for copies what is marked so. */
+  /**
+   * Takes for copies what is marked so, as DUPLICATEPOINT. For parts in files this is all: what
+   * made them has marked all but one copy of each point.
+   */
   void TakeMarks(vtkPolyData* data);
   /** Sorts the keys for Find(). @throws Error if two points with a triangle have one key */
   void Sort(const std::vector<char>& areUsed);
@@ -42,10 +59,17 @@ private:
   std::vector<std::pair<PointKey, Index>> Sorted;
 };
 
-/** Finds the copies of parts in memory, at a rank for each key. All ranks call it. */
+/**
+ * Finds the copies of parts in memory, at a rank for each key. All ranks call it. Of the points
+ * that are one, the first that is not marked stays, else the first: so each is counted once, even
+ * where the user's marks are wrong or missing.
+ */
 void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points);
 
-/** An edge of a part's triangles. */
+/**
+ * An edge of a part's triangles, as it is sent: a plain value. Its direction is that of the
+ * half-edge, with the triangle on its left.
+ */
 struct PartEdge
 {
   PointKey Ends[2];
@@ -86,11 +110,13 @@ struct SharedBorder
   PointView View() const;
 
 private:
+  /** Gives regions of parts that are one the same number, in Regions and for each edge. */
   void NumberRegions(const PartEdges& edges);
 };
 
 /**
- * Appends the border of a part, and the edges around its regions.
+ * Appends the border of a part, and the edges around its regions. All their ends have to be among
+ * the shared points, whose keys they get. log(points) steps for each.
  * @param[in] mesh      with Twins
  * @param[in] regionOf  from NumberRegions()
  */

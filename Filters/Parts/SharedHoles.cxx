@@ -1,5 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Find() makes of the border what FindHoles() makes of a surface, with points numbered by keys. A
+ * group of holes then goes through Surround(), Needs(), Fill(), KeepCorners() and Pack(). The
+ * kernel fills them as holes of a small surface; what it has to know beyond that stands in
+ * WholeSurface: how far the triangles are complete, the lattice, and what other holes leave of the
+ * limit of new points.
+ */
 #include "SharedHoles.h"
 
 #include "Adapt/Adapt.h"
@@ -36,6 +43,7 @@ bool SharedHoles::Find(const Progress& progress)
 {
   const PointView points = this->Border.View();
   this->Result = FillResult();
+  // Holes of the surface first, then regions of long triangles, as in one run.
   this->Result.Found = FindBorderHoles(this->Border.Edges, points, progress);
   this->FirstRegion = this->Result.Found.Count();
   if (!this->Border.RegionEdges.empty())
@@ -47,6 +55,7 @@ bool SharedHoles::Find(const Progress& progress)
   this->Retries.assign(this->Extents.size(), 0);
   this->Reach.assign(this->Extents.size(), 0.0);
   this->HaveRoom.assign(this->Extents.size(), 1);
+  // MeasureHole() wants a mesh, but looks at its points alone.
   Mesh places;
   for (Index i = 0; i < points.Count; ++i)
   {
@@ -85,6 +94,7 @@ void SharedHoles::DropRegionsWithoutRoom()
   std::vector<HoleReport> reports;
   for (std::size_t hole = 0; hole < this->HaveRoom.size(); ++hole)
   {
+    // What was known by old numbers can be asked by these alone.
     this->NewNumbers.push_back(this->HaveRoom[hole] ? static_cast<Index>(reports.size()) : None);
     if (this->HaveRoom[hole])
     {
@@ -95,6 +105,7 @@ void SharedHoles::DropRegionsWithoutRoom()
   KeepRegions({ this->HaveRoom.begin(), this->HaveRoom.end() }, this->Result.Found);
 }
 
+// From the region of a part to that of all, to its number as a hole, to the number that is left.
 Index SharedHoles::NumberOf(int part, Index region) const
 {
   return this->NewNumbers[this->FirstRegion + this->Border.Regions.at({ part, region })];
@@ -109,6 +120,10 @@ void SharedHoles::NumberNewPoints()
   }
 }
 
+/*
+ * A surface of its own of what parts have sent: points that are one are joined, and triangles
+ * between parts become neighbours again.
+ */
 void SurroundedHoles::Surround(const Parts& parts, const SharedHoles& all, const Progress& progress)
 {
   std::vector<Message> warnings; // none: all have the same arrays
@@ -131,6 +146,7 @@ void SurroundedHoles::Surround(const Parts& parts, const SharedHoles& all, const
  */
 void SurroundedHoles::ListRegions(Index first, Holes& holes) const
 {
+  // By the first edge of the rim, which no other region has on the same side.
   std::map<std::pair<Index, Index>, Index> regionAt;
   const auto rimOf = [](const Holes& some, Index hole) {
     const Index* const rim = some.Walks.Begin(some.Rim(hole));
@@ -142,6 +158,7 @@ void SurroundedHoles::ListRegions(Index first, Holes& holes) const
   }
   for (Index hole = first; hole < holes.Count(); ++hole)
   {
+    // It can only be missing if a part has not sent a triangle that meets the rim's box.
     const auto found = regionAt.find(rimOf(holes, hole));
     if (found == regionAt.end())
     {
@@ -150,6 +167,7 @@ void SurroundedHoles::ListRegions(Index first, Holes& holes) const
     this->Regions.VisitInnerEdges(found->second, [&holes](Index a, Index b) {
       holes.InnerEnds.insert(holes.InnerEnds.end(), { a, b });
     });
+    // As Holes keeps them: two ends an edge.
     holes.InnerOffsets.push_back(static_cast<Index>(holes.InnerEnds.size() / 2));
   }
   holes.LongestEdge = this->Regions.LongestEdge;
@@ -159,6 +177,7 @@ void SurroundedHoles::ListRegions(Index first, Holes& holes) const
 /** The holes by the points of the surrounding. */
 Holes SurroundedHoles::Listed(const SharedHoles& all) const
 {
+  // Of the border's points, those around these holes alone have a place here.
   std::vector<Index> placeOf(all.Border.Keys.size(), None);
   for (std::size_t i = 0; i < this->Keys.size(); ++i)
   {
@@ -181,18 +200,22 @@ Holes SurroundedHoles::Listed(const SharedHoles& all) const
       holes.Walks.Offsets.push_back(static_cast<Index>(holes.Walks.Vertices.size()));
     }
     holes.Offsets.push_back(static_cast<Index>(holes.Loops.size()));
+    // Where borders touch, FillParts has given up before.
     holes.Touched.push_back(0);
   }
+  // A box holds the rim, so each of its points has come with a triangle.
   if (std::count(holes.Walks.Vertices.begin(), holes.Walks.Vertices.end(), None) > 0)
   {
     throw Error("A point of a hole has not come from another part of the surface.");
   }
+  // Regions come last, here as among all holes.
   const auto firstRegion =
     std::lower_bound(this->Numbers.begin(), this->Numbers.end(), all.FirstRegion);
   this->ListRegions(static_cast<Index>(firstRegion - this->Numbers.begin()), holes);
   return holes;
 }
 
+// What is by the points of the surrounding: their precision and their attributes.
 FillOptions SurroundedHoles::OptionsFor(const SharedHoles& all, const Progress& progress) const
 {
   FillOptions options = all.Options;
@@ -205,6 +228,7 @@ FillOptions SurroundedHoles::OptionsFor(const SharedHoles& all, const Progress& 
   return options;
 }
 
+// What one run would know by looking at the whole surface.
 WholeSurface SurroundedHoles::KnownOf(const SharedHoles& all) const
 {
   WholeSurface whole;
@@ -212,6 +236,7 @@ WholeSurface SurroundedHoles::KnownOf(const SharedHoles& all) const
   for (const Index hole : this->Numbers)
   {
     whole.Surroundings.push_back(all.BoxOf(hole));
+    // There are none yet while needs are found, of which quotas are made.
     if (!all.Quotas.empty())
     {
       whole.Quotas.push_back(all.Quotas[hole]);
@@ -230,6 +255,7 @@ std::vector<Index> SurroundedHoles::Fill(const SharedHoles& all, const Progress&
 {
   this->Patches = FillHoles(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all),
     this->OptionsFor(all, progress), this->KnownOf(all));
+  // Numbers become those of the holes that are left, which Patches.Reports are of.
   std::vector<Index> numbers, beyond;
   for (std::size_t i = 0; i < this->Numbers.size(); ++i)
   {
@@ -249,6 +275,7 @@ std::vector<Index> SurroundedHoles::Fill(const SharedHoles& all, const Progress&
   return beyond;
 }
 
+// Ids from the count of points on are those of the patches' new points; they follow the kept ones.
 void SurroundedHoles::KeepCorners()
 {
   const Index count = static_cast<Index>(this->Keys.size());
@@ -275,6 +302,7 @@ void SurroundedHoles::KeepCorners()
   {
     keys.push_back(this->Keys[id]);
   }
+  // What is packed next is a patch: the triangles around it are no longer needed.
   this->Keys = std::move(keys);
   this->Near = Mesh();
   this->Regions = Holes();
@@ -317,8 +345,17 @@ SurroundedHoles::SurroundedHoles(const Bytes& bytes)
   this->Surrounding = UnpackData(from, static_cast<std::size_t>(bytes.end() - from));
 }
 
+/*
+ * Points of the groups' surroundings come first, group after group; then the new points of all:
+ *
+ *     surroundings of 0, 1, 2 | new points of 0, 1, 2
+ *     in group 1, id i < count is first + i, and an id beyond is firstNew + (i - count)
+ *
+ * A point that two groups have is there twice; FilledPart finds both by their key.
+ */
 SurroundedHoles::SurroundedHoles(std::vector<SurroundedHoles>&& groups)
 {
+  // A group that was filled again comes after later ones.
   std::sort(groups.begin(), groups.end(),
     [](const SurroundedHoles& a, const SurroundedHoles& b) { return a.Numbers[0] < b.Numbers[0]; });
   Parts surroundings;
@@ -336,6 +373,7 @@ SurroundedHoles::SurroundedHoles(std::vector<SurroundedHoles>&& groups)
     const Index count = static_cast<Index>(group.Keys.size());
     for (std::vector<Index>* ids : { &patches.Triangles, &patches.NearestBoundaryPoints })
     {
+      // New points of all groups follow the surrounding points of all groups.
       std::for_each(ids->begin(), ids->end(),
         [&](Index& id) { id = id < count ? first + id : firstNew + id - count; });
     }
@@ -347,6 +385,7 @@ SurroundedHoles::SurroundedHoles(std::vector<SurroundedHoles>&& groups)
       [points](Index& offset) { offset += points; });
     std::for_each(patches.TriangleOffsets.begin(), patches.TriangleOffsets.end(),
       [triangles](Index& offset) { offset += triangles; });
+    // The end of the groups so far is the begin of this one, which its own offsets have.
     this->Patches.PointOffsets.pop_back();
     this->Patches.TriangleOffsets.pop_back();
     this->Patches.Attributes.resize(patches.Attributes.size());

@@ -3,6 +3,13 @@
 /**
  * @file
  * The holes of a surface in parts, on ranks or in pieces. Private to the module.
+ *
+ * SharedHoles is what all ranks know: the holes, by points of the border. SurroundedHoles is what
+ * one rank has to fill some of them: the triangles around them, joined from all parts, and holes by
+ * points of these. Keys lead from the one to the other.
+ *
+ *     SharedHoles: border points 0 ... b - 1    -- keys -->    SurroundedHoles: points 0 ... s - 1
+ *     SurroundedHoles                           -- keys -->    FilledPart: points of a part
  */
 #ifndef SharedHoles_h
 #define SharedHoles_h
@@ -21,7 +28,10 @@
 namespace elevation
 {
 
-/** As it goes to other ranks. */
+/**
+ * As it goes to other ranks. The structured binding names all members: with one more in the report,
+ * this does not compile until it is sent, too.
+ */
 template <>
 struct FieldsOf<HoleReport>
 {
@@ -33,7 +43,10 @@ struct FieldsOf<HoleReport>
   }
 };
 
-/** What is known of all holes, wherever they are filled. */
+/**
+ * What is known of all holes, wherever they are filled: the same on all ranks, apart from reports
+ * and room of holes while they are being filled, which FillParts shares afterwards.
+ */
 struct SharedHoles
 {
   FillOptions Options; ///< without what is of a part
@@ -62,6 +75,10 @@ struct SharedHoles
   {
     return BoxAround(this->Extents[hole], this->Retries[hole], this->Reach[hole]);
   }
+  /**
+   * Whether anybody asks for the lattice of the surface's points. It takes two readings of all
+   * parts.
+   */
   bool NeedLattice() const;
   /** @param[in] points  of all parts, each once */
   void FindLattice(const Ranks& ranks, const PointSlices& points, const Progress& progress);
@@ -69,6 +86,7 @@ struct SharedHoles
   void DropRegionsWithoutRoom();
   std::vector<Index> NewNumbers;                ///< then, of the holes before, or None
   Index NumberOf(int part, Index region) const; ///< then, of a region of a part
+  /** Sets FirstNewPoints by the reports: global ids of new points follow the order of the holes. */
   void NumberNewPoints();
 };
 
@@ -82,6 +100,7 @@ struct SurroundedHoles
 
   /** Joins what parts have around the holes. */
   void Surround(const Parts& parts, const SharedHoles& all, const Progress& progress);
+  /** What the holes may take of MaximumInsertedPoints, in the order of Numbers. */
   std::vector<HoleNeed> Needs(const SharedHoles& all, const Progress& progress) const;
   /**
    * Takes regions without room out of Numbers. @return the holes that need more than their boxes

@@ -1,5 +1,17 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * The search of FindLattice.h, with its looks at the points taken apart. Each look is a meeting:
+ *
+ * 1. Each rank samples its points by a hash of their coordinates; the samples of all are collected.
+ * 2. All ranks find the same fullest place of the sum, and collect the distinct points there.
+ * 3. Each fits the lattice to these. The input is the same on all ranks, so is the lattice.
+ * 4. The box of nodes. On a lattice along the axes it follows from the box of the points; on one
+ *    askew to them, all points are looked at once more.
+ *
+ * Samples are chosen by coordinates alone, and sorted, so how points are distributed changes
+ * nothing.
+ */
 #include "SharedLatticeSearch.h"
 
 #include <algorithm>
@@ -57,6 +69,7 @@ std::vector<Point2> CollectPoints(const Ranks& ranks, const std::vector<Point2>&
   {
     all.push_back({ reals[i], reals[i + 1] });
   }
+  // Sorted, so the order of ranks is lost; a point that two ranks have counts once.
   std::sort(all.begin(), all.end(), IsLower);
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
@@ -103,6 +116,8 @@ NodeBox AllNodes(const Ranks& ranks, const PointSlices& points, const Box& all,
   const Lattice& steps, const Progress& progress)
 {
   const NodeFinder nodeOf(steps);
+  // The look at all points is made only if the box of the points would be too large for the nodes:
+  // on all ranks or on none, as the box is the same.
   return FindNodeBox(nodeOf, all, steps, [&]() {
     NodeBox own;
     ranks.Agree([&]() {
@@ -114,6 +129,7 @@ NodeBox AllNodes(const Ranks& ranks, const PointSlices& points, const Box& all,
 }
 } // namespace
 
+// For points in memory.
 PointSlices InOneSlice(const PointView& points)
 {
   return { static_cast<double>(points.Count), [points](const auto& visit) { visit(points); } };
@@ -132,6 +148,8 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
     const Progress sampling = ranks.Watched(progress.Between(0.0, 0.4));
     ForEachSlice(points, sampling, [&](const PointView& slice, const Progress& ofSlice) {
       notFinite.emplace_back();
+      // The hash chooses by the size of the whole cloud, so parts of a sample add up to that of
+      // all.
       own.Add(SampleForLattice(slice, all.CloudSize, threads, ofSlice, notFinite.back()));
     });
     reals = ToReals(own);
@@ -148,6 +166,7 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
   std::vector<Point2> there;
   ranks.Agree([&]() {
     const Box place = FullestPlace(all);
+    // Slices come again in the same order (PointSlices).
     auto ofSlice = notFinite.begin();
     const Progress looking = ranks.Watched(progress.Between(0.4, 0.7));
     ForEachSlice(points, looking, [&](const PointView& slice, const Progress& part) {
@@ -163,6 +182,7 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
   return isFound;
 }
 
+// Whether each point is on it is not known yet: that is found while cells are triangulated.
 bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
   const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice)
 {
@@ -182,6 +202,7 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
   const std::function<void(const std::function<void(const PointTable&)>&)>& forEachRows,
   const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice)
 {
+  // CheckOptions() refuses other values; this is for whoever calls without it.
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
   Lattice steps;
@@ -197,6 +218,7 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
       const Extent extent = FindExtent(view, threads, looking, [](Index, const Point2&) {});
       own.Join(extent);
       const Index first = FirstOffLattice(view, extent.NotFinite, steps, tolerance, looking);
+      // Of each slice the first, which has the lowest id: a slice is in the order of ids.
       if (first != None && (beside.empty() || rows.Ids[first] < beside[0]))
       {
         beside = { rows.Ids[first] };
@@ -206,11 +228,13 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
   });
   const std::vector<vtkIdType> all = ranks.Collect(beside);
   ranks.Agree([&]() {
+    // The one rank that has the point throws; Agree() lets all ranks throw the same.
     if (!beside.empty() && beside[0] == *std::min_element(all.begin(), all.end()))
     {
       throw BesideGivenLattice(beside[0], place, steps, tolerance);
     }
   });
+  // Empty if no rank has a finite point.
   const Box box = JoinBoxes(ranks, own);
   if (box.Low.X > box.High.X)
   {
@@ -232,11 +256,13 @@ Lattice FromLowestNode(const Ranks& ranks, const PointSlices& points, const Shar
   ranks.Agree([&]() {
     ForEachFinite(points, Progress(), [&](const Point2& p) {
       const LatticeNode node = lattice.NodeOf(p);
+      // Row first: pairs are compared in this order.
       own = std::max(own, { -static_cast<double>(node.J), -static_cast<double>(node.I) });
     });
   });
   std::vector<double> row = { own[0] };
   ranks.Maximum(row);
+  // Only ranks with a point in the lowest row have a say in the column.
   std::vector<double> column = { own[0] == row[0] ? own[1] : least };
   ranks.Maximum(column);
   Lattice steps = lattice.Steps();

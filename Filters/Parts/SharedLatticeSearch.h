@@ -3,6 +3,9 @@
 /**
  * @file
  * The search for the lattice of points that are spread over ranks. Private to the module.
+ *
+ * SettleParts looks for the lattice that points are triangulated on, SharedHoles (the first part of
+ * the search alone) for that of new points in holes.
  */
 #ifndef SharedLatticeSearch_h
 #define SharedLatticeSearch_h

@@ -19,6 +19,7 @@ struct Closer
 };
 using OpenFile = std::unique_ptr<std::FILE, Closer>;
 
+// A read that ends early sets no errno. That is why Open() clears it.
 Error Failed(const char* what, const std::string& path)
 {
   const std::string reason = errno != 0 ? std::strerror(errno) : "the file is cut off";
@@ -44,6 +45,7 @@ SpoolFile::SpoolFile(const std::string& path)
 
 SpoolFile::SpoolFile(SpoolFile&& other) noexcept
   : Path(std::move(other.Path))
+  // The other must not remove the file when it goes.
   , IsThere(std::exchange(other.IsThere, false))
   , Count(std::exchange(other.Count, 0))
 {
@@ -56,10 +58,13 @@ SpoolFile::~SpoolFile()
 
 void SpoolFile::Append(const void* stretch, std::size_t size)
 {
+  // The first stretch also replaces a file that an earlier run has left behind.
   OpenFile file = Open(this->Path, this->Count > 0 ? "ab" : "wb", "written");
+  // Also where writing fails next: what has been written goes with the object.
   this->IsThere = true;
   const bool isWritten = std::fwrite(&size, sizeof(size), 1, file.get()) == 1 &&
     std::fwrite(stretch, 1, size, file.get()) == size;
+  // On a full disk the first call to fail may be fclose(), which writes what is still buffered.
   if (!isWritten || std::fclose(file.release()) != 0)
   {
     throw Failed("written", this->Path);
@@ -72,6 +77,7 @@ void SpoolFile::ForEach(const std::function<void(Bytes&&)>& visit) const
   const OpenFile file = this->IsEmpty() ? OpenFile() : Open(this->Path, "rb", "read");
   for (std::size_t i = 0; i < this->Count; ++i)
   {
+    // A size of 0, or no size, leaves the stretch empty: then the file is not as it was written.
     std::size_t size = 0;
     Bytes stretch;
     if (std::fread(&size, sizeof(size), 1, file.get()) == 1)
@@ -88,6 +94,7 @@ void SpoolFile::ForEach(const std::function<void(Bytes&&)>& visit) const
 
 void SpoolFile::Remove()
 {
+  // Only what this object has made: a file of this name may be anybody's.
   if (this->IsThere)
   {
     std::remove(this->Path.c_str());

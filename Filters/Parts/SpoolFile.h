@@ -15,7 +15,16 @@
 namespace elevation
 {
 
-/** A file that is written stretch by stretch, and read like that. It goes with its object. */
+/**
+ * A file that is written stretch by stretch, and read like that. It goes with its object. There is
+ * no file before the first stretch, and it is open only while it is written or read: a rank may
+ * have some boxes for each of a thousand parts, more than a process may have open files.
+ *
+ *   | size | bytes ... | size | bytes ... | ...      size is a std::size_t; no stretch is empty
+ *
+ * The number of stretches stays in memory. So a file that has been cut off is noticed when it is
+ * read.
+ */
 class SpoolFile
 {
 public:

@@ -16,6 +16,7 @@ namespace elevation
 
 vtkIdType IdOf(const std::string& path)
 {
+  // Not negative as a signed number.
   return static_cast<vtkIdType>(std::hash<std::string>()(path) >> 2);
 }
 
@@ -25,12 +26,17 @@ bool HasPoints(const Place& place)
   return points && points->GetNumberOfPoints() > 0;
 }
 
+/*
+ * One meeting: each rank says how much it has of which block. The size decides where a block is
+ * gathered, so that least is sent.
+ */
 std::map<vtkIdType, int> FindSpread(
   const std::vector<Place>& places, const Ranks& ranks, std::vector<vtkIdType>& occupied)
 {
   std::map<vtkIdType, vtkIdType> own; // points and cells of each block
   for (const Place& place : places)
   {
+    // An empty place does not make a block spread.
     if (HasPoints(place))
     {
       own[IdOf(place.Path)] += place.Input->GetNumberOfElements(vtkDataObject::POINT) +
@@ -42,12 +48,14 @@ std::map<vtkIdType, int> FindSpread(
   {
     rows.insert(rows.end(), { block.first, ranks.OwnRank(), block.second });
   }
+  // All ranks go through the same list in the same order, and find the same.
   rows = ranks.Collect(rows);
   occupied.clear();
   std::map<vtkIdType, int> spread;
   std::map<vtkIdType, std::size_t> largest; // row of each block
   for (std::size_t i = 0; i < rows.size(); i += 3)
   {
+    // A first row of a block makes it occupied; a second, of another rank, makes it spread.
     const auto found = largest.emplace(rows[i], i);
     if (found.second)
     {
@@ -55,6 +63,7 @@ std::map<vtkIdType, int> FindSpread(
       continue;
     }
     std::size_t& row = found.first->second;
+    // Of ranks with as much, the first.
     row = rows[i + 2] > rows[row + 2] ? i : row;
     spread[rows[i]] = static_cast<int>(rows[row + 1]);
   }
@@ -82,6 +91,7 @@ Place* FirstWithPoints(const std::vector<Place*>& places)
   return first == places.end() ? nullptr : *first;
 }
 
+// The input stays the caller's: a place gets another data set.
 void Empty(const std::vector<Place*>& places)
 {
   for (Place* place : places)
@@ -100,6 +110,7 @@ void GatherBlock(const std::vector<Place*>& places, int home, PartKind kind, con
   const vtkSmartPointer<vtkPolyData> whole =
     Gather(PartsOf(places), kind, home, ranks, progress, warnings);
   Place* const first = FirstWithPoints(places);
+  // On the home rank, which has points of the block, as it has most of it.
   if (whole)
   {
     CopyMark(first->Input, whole);
@@ -109,6 +120,7 @@ void GatherBlock(const std::vector<Place*>& places, int home, PartKind kind, con
   {
     first->Made = whole;
     first->Input = whole;
+    // It is no longer one partition that messages are about.
     first->Name = first->BlockName;
   }
 }

@@ -3,6 +3,9 @@
 /**
  * @file
  * The blocks of the input that have points on several ranks. Private to the module.
+ *
+ * A block is known on all ranks by its path in the composite (Place::Path). Ranks may have
+ * different trees; those that lack a block just have no place for it.
  */
 #ifndef SpreadBlocks_h
 #define SpreadBlocks_h
@@ -18,7 +21,10 @@ namespace elevation
 {
 struct Place;
 
-/** A block's path as a number that is the same on all ranks. */
+/**
+ * A block's path as a number that is the same on all ranks, since all run the same program. Numbers
+ * are what meetings send.
+ */
 vtkIdType IdOf(const std::string& path);
 
 bool HasPoints(const Place& place);

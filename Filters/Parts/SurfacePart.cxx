@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Numbers and places of a part's points; the measure of edges of all parts; and the part as the
+ * data set that leaves the module.
+ */
 #include "SurfacePart.h"
 
 #include "Adapt/Adapt.h"
@@ -29,10 +33,14 @@ namespace elevation
 
 int OwnerOf(GlobalId number, const std::vector<vtkIdType>& bases)
 {
+  // Of parts that begin with the same number only the last has points, and upper_bound() is beyond
+  // it. The first and the last of the list are left out, so the answer is a part whatever the
+  // number is.
   const auto next = std::upper_bound(bases.begin() + 1, bases.end() - 1, number);
   return static_cast<int>(next - bases.begin()) - 1;
 }
 
+// Most corners are own ones, and need no search.
 std::size_t SurfacePart::PlaceOf(GlobalId number, GlobalId first) const
 {
   const std::size_t ownCount = this->OwnPoints.Count();
@@ -55,6 +63,7 @@ Point2 SurfacePart::PointAt(std::size_t place) const
 void SortOwn(SurfacePart& part)
 {
   PointTable& own = part.OwnPoints;
+  // Most often all is in order: from one rank, or sorted in a pass before. Then nothing is copied.
   const auto isIncreasing = [&own](std::size_t i) { return own.Ids[i] < own.Ids[i + 1]; };
   std::size_t i = 0;
   while (i + 1 < own.Count() && isIncreasing(i))
@@ -67,10 +76,12 @@ void SortOwn(SurfacePart& part)
   }
   std::vector<vtkIdType> places(own.Count());
   std::iota(places.begin(), places.end(), vtkIdType(0));
+  // Stable: of points with one id, the one that came first stays.
   std::stable_sort(places.begin(), places.end(),
     [&own](vtkIdType a, vtkIdType b) { return own.Ids[a] < own.Ids[b]; });
   const auto isSame = [&part, &own](vtkIdType a, vtkIdType b) {
     const double *const p = own.At(a), *const q = own.At(b);
+    // Points without a place are in no place that could differ.
     if (own.Ids[a] == own.Ids[b] && own.IsFinite(a) && own.IsFinite(b) &&
       (p[0] != q[0] || p[1] != q[1]))
     {
@@ -84,6 +95,7 @@ void SortOwn(SurfacePart& part)
   own.Choose(places);
 }
 
+// A corner is listed once, in however many triangles it is.
 std::vector<GlobalId> ListOthers(
   const std::vector<GlobalTriangle>& triangles, GlobalId first, GlobalId end)
 {
@@ -98,6 +110,7 @@ std::vector<GlobalId> ListOthers(
   return others;
 }
 
+// Each corner takes a search among the others' numbers, unless it is an own point.
 void AppendTriangles(const std::vector<GlobalTriangle>& triangles, GlobalId first,
   const Progress& progress, SurfacePart& part)
 {
@@ -124,7 +137,10 @@ struct ValueForOwner
   double Value;
 };
 
-/** The least values at own points that any part has there. */
+/**
+ * The least values at own points that any part has there. Each part sends what it has at points of
+ * others to their owners; then values are those of own points alone, and each point counts once.
+ */
 void MergeAtOwners(Engine& engine, int box, const SurfacePart& part, std::vector<double>& values)
 {
   const std::size_t ownCount = part.OwnPoints.Count();
@@ -148,7 +164,11 @@ void MergeAtOwners(Engine& engine, int box, const SurfacePart& part, std::vector
   values.resize(ownCount);
 }
 
-/** A quantile of the values of all ranks, sorted on each, none negative. */
+/**
+ * A quantile of the values of all ranks, sorted on each, none negative. Bisection of the bits of a
+ * double: 63 sums of one number at most, where sorting would bring all values to one rank. The
+ * result is one of the values, the same as of one sorted list.
+ */
 double FindQuantile(const Ranks& ranks, const std::vector<double>& values, double part)
 {
   std::vector<vtkIdType> count = { static_cast<vtkIdType>(values.size()) };
@@ -163,6 +183,8 @@ double FindQuantile(const Ranks& ranks, const std::vector<double>& values, doubl
   {
     const std::uint64_t bits = low + (high - low) / 2;
     std::memcpy(&middle, &bits, sizeof(bits));
+    // How many values of all ranks are at most the middle. Above the place, the quantile is at most
+    // it.
     const auto greater = std::upper_bound(values.begin(), values.end(), middle);
     count[0] = static_cast<vtkIdType>(greater - values.begin());
     ranks.Sum(count);
@@ -189,6 +211,7 @@ void MeasureAll(
     std::sort(lengths.Edges.begin(), lengths.Edges.end());
     std::vector<double>& limits = lengths.Limits;
     std::sort(limits.begin(), limits.end());
+    // Points without any triangle: no limit keeps them.
     const double infinity = std::numeric_limits<double>::infinity();
     limits.erase(std::lower_bound(limits.begin(), limits.end(), infinity), limits.end());
   });
@@ -197,6 +220,10 @@ void MeasureAll(
   effect.Median = FindQuantile(ranks, lengths.Edges, MedianShare);
   effect.ForMost = FindQuantile(ranks, lengths.Limits, MostShare);
 }
+/*
+ * A limit of edges, and what lines have changed, may leave points of others without a triangle.
+ * Three passes over the corners of others: which are used; their order; the new places.
+ */
 void KeepCorners(SurfacePart& part)
 {
   PointTable& others = part.Others;
@@ -219,6 +246,7 @@ void KeepCorners(SurfacePart& part)
       order.push_back(corners[i] - ownCount);
     }
   }
+  // Of equal ids, which points that are not finite may have, the place decides.
   std::sort(order.begin(), order.end(), [&others](vtkIdType a, vtkIdType b) {
     return std::make_pair(others.Ids[a], a) < std::make_pair(others.Ids[b], b);
   });
@@ -236,7 +264,10 @@ void KeepCorners(SurfacePart& part)
 
 namespace
 {
-/** Hands over own values, and then those of others. */
+/**
+ * Hands over own values, and then those of others. VTK frees the memory by free(), as a Buffer
+ * does.
+ */
 template <typename Value, typename Array>
 void TakeOver(Buffer<Value>& own, const Buffer<Value>& others, Array* array)
 {
@@ -249,6 +280,7 @@ void TakeOver(Buffer<Value>& own, const Buffer<Value>& others, Array* array)
 }
 } // namespace
 
+// Points of others follow the own ones, so places are the output's ids as they are.
 void PassPart(SurfacePart& part, int threads, vtkPolyData* output)
 {
   const vtkIdType ownCount = static_cast<vtkIdType>(part.OwnPoints.Count());
@@ -276,6 +308,7 @@ void PassPart(SurfacePart& part, int threads, vtkPolyData* output)
   for (std::size_t i = 0; i < part.Kinds.size(); ++i)
   {
     vtkAbstractArray* const array = part.OwnPoints.Arrays[i];
+    // Both tables have the same kinds of arrays in the same order.
     array->InsertTuples(ownCount, otherCount, 0, part.Others.Arrays[i]);
     const int index = data->AddArray(array);
     if (part.Kinds[i].Attribute >= 0)
@@ -285,6 +318,8 @@ void PassPart(SurfacePart& part, int threads, vtkPolyData* output)
     ghosts = IsGhostArray(array) ? vtkUnsignedCharArray::SafeDownCast(array) : ghosts;
   }
   data->SetGlobalIds(ids);
+  // All ranks mark points, also one that has none of others: arrays have to be the same on all
+  // ranks.
   if (!ghosts)
   {
     vtkNew<vtkUnsignedCharArray> made;

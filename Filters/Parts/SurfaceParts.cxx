@@ -20,10 +20,13 @@ bool WorkOnParts(Block& block, const Ranks& ranks, const std::function<bool(vtkP
     CheckArrays(input);
     return isFit(input);
   };
+  // In this order: HaveSameArrays() reads the arrays, which have to be valid on all ranks.
   if (!CanAll(ranks, check) || !HaveSameArrays(ranks, input))
   {
     return false;
   }
+  // Without boxes: nothing is sent by this engine. The steps make engines of their own over the
+  // same parts, and ask it who holds them.
   Engine crew(ranks, block.Outputs.empty() ? 0 : 1, {}, std::string());
   const auto make = [&input](int, const Progress&) {
     return input->GetNumberOfPoints() > 0 ? input : nullptr;

@@ -20,6 +20,7 @@ namespace elevation
 {
 struct Block;
 
+/** Handed over by value: it refers to the engine, and keeps what Make needs. */
 struct SurfaceParts
 {
   /** The part of this rank with a number; nullptr: it has no points. */

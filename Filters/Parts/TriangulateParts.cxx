@@ -3,6 +3,10 @@
 /*
  * The passes in their order; 2 and 3 are those of SettleParts.h. What they leave for each other
  * lies in the boxes of parts (PartStore.h), whether these are files or in memory.
+ *
+ *     pass        1         2, 3           4             5              6
+ *     boxes    OwnPoints   Settled,    FromSeams     Requests,    Changed, Meeting (lines),
+ *                          OnSeam                    Corners      Covered (limit of edges)
  */
 #include "TriangulateParts.h"
 
@@ -64,6 +68,8 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
   this->Plane = std::make_unique<Cuts>(this->Source.Distribute(
     *this->Crew, OwnPoints, this->Fraction(0.0, 0.1), this->Store->Part, counts));
   this->Store->Number(std::move(counts), this->Source.AreIdsGiven(), this->Fraction(0.1, 0.15));
+  // Before anything is triangulated: a part with too many points is an error that more parts would
+  // cure.
   this->Store->CheckCounts();
   this->Total.Points = this->Store->Part.Bases.back();
   // Lines keep to no lattice.
@@ -82,6 +88,7 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
   this->SendTriangles(this->Settle());
   this->FetchOthers();
   // Pass 6
+  // Without a triangle there is no mesh in which lines could be recovered.
   if (constraints && this->Total.Settled > 0 &&
     RecoverLines(*this->Store, lines, this->Fraction(0.9, 0.95)))
   {
@@ -91,6 +98,7 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
   {
     this->LimitEdges(this->Fraction(0.95, 1.0));
   }
+  // The last chance of an abort: after it, all ranks have the result.
   this->AllRanks.Agree([&]() { Report(this->AllRanks.Watched(this->Options.Monitor), 1.0); });
 }
 
@@ -109,7 +117,10 @@ std::vector<GlobalTriangle> TriangulateParts::Settle()
   return std::move(settled.OfSeams);
 }
 
-/** A triangle that seams have settled belongs to the part of its lowest corner. */
+/**
+ * A triangle that seams have settled belongs to the part of its lowest corner, which comes first in
+ * it. So its part has a corner of its own in each of its triangles, and the rule needs no message.
+ */
 void TriangulateParts::SendTriangles(std::vector<GlobalTriangle>&& ofSeams)
 {
   this->AllRanks.Agree([&]() {
@@ -138,6 +149,7 @@ void TriangulateParts::FetchOthers()
     {
       const int owner = this->Store->Part.OwnerOf(number);
       std::vector<vtkIdType>& ofOwner = places[owner];
+      // The first value of a message is not a place, but the part that asks.
       if (ofOwner.empty())
       {
         ofOwner.push_back(part);
@@ -197,6 +209,7 @@ void TriangulateParts::LimitEdges(const Progress& progress)
       const Buffer<Index> kept =
         WithinLimit(this->Options.MaximumEdgeLength, whole, ofPart.Between(0.5, 1.0));
       const std::size_t ownCount = whole.OwnPoints.Count();
+      // Unused points are no vertices, and so are not missing.
       std::vector<char> areMissing(ownCount + whole.Others.Count(), 1);
       for (const Index corner : kept)
       {
@@ -234,6 +247,7 @@ void TriangulateParts::LimitEdges(const Progress& progress)
     std::vector<vtkIdType> covered = ValuesIn<vtkIdType>(this->Crew->At(part, Covered));
     this->Crew->At(part, Covered).Clear();
     std::sort(covered.begin(), covered.end());
+    // Asked for, but nowhere a corner of a triangle within the limit.
     sums[1] += std::count_if(open[part].begin(), open[part].end(),
       [&](vtkIdType place) { return !std::binary_search(covered.begin(), covered.end(), place); });
   });
@@ -243,6 +257,7 @@ void TriangulateParts::LimitEdges(const Progress& progress)
   effect.Vertices = this->Store->Part.Bases.back() - this->Total.Duplicates -
     this->Total.NotFinite - this->Total.Hidden;
   effect.Missing = sums[1];
+  // The box is empty again. In files, the lengths of all edges would not fit into memory.
   if (!this->Crew->IsInFiles() && effect.AreMostMissing())
   {
     MeasureAll(*this->Crew, Covered, progress, this->Store->Part, effect);
@@ -261,7 +276,8 @@ void TriangulateParts::WarnOfMissing(std::vector<Message>& warnings) const
   }
 }
 
-// The limit of edges is applied again, which is faster than writing what it leaves.
+// The limit of edges is applied again, which is faster than writing what it leaves. Corners of
+// others that only long triangles had go with these (KeepCorners).
 SurfacePart TriangulateParts::Take(int part, const Progress& progress)
 {
   SurfacePart taken = this->Store->TakeWhole(part, progress.Between(0.0, 0.7));

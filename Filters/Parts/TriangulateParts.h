@@ -21,6 +21,10 @@
  *   6. Lines are recovered as edges, of which pass 5 is done again, and long edges left out.
  * Should not all points be on the lattice, passes 2 and 3 are done again without it.
  *
+ * Why the result is that of one rank: Pieces.h proves it for passes 2 and 3, Recovery.h for lines.
+ * What depends on the order of points (duplicates, fans of co-circular points) depends on ids and
+ * positions here, which do not change with the parts.
+ *
  * Cost: a rank sends 32 bytes for a point, and the values of arrays, once, and the same for the
  * points of some multiple of sqrt(m) of the m points of a part: those of seams, and those at which
  * its triangles meet those of other parts. There are log2(ranks) rounds of seams. Memory for files:
@@ -50,6 +54,11 @@
 namespace elevation
 {
 
+/**
+ * One use: Add(), then Triangulate() once on all ranks, then Take() for each part of this rank, as
+ * often as wanted from files. The engine and its boxes live as long as this object; later steps
+ * (SurfaceParts.h) refer to them.
+ */
 class TriangulateParts
 {
 public:
@@ -77,7 +86,7 @@ public:
   int FirstOwn() const { return this->Crew->FirstOwn(); }          ///< part of this rank
   vtkIdType PointCount() const { return this->Source.Count(); }    ///< that this rank has added
 
-  /** Of all parts. */
+  /** Of all parts, on all ranks after Triangulate(). Each point and triangle counts once. */
   struct Totals
   {
     vtkIdType Points = 0; ///< without those that constraints add
@@ -120,8 +129,12 @@ private:
   }
   std::vector<GlobalTriangle> Settle();
   void SendTriangles(std::vector<GlobalTriangle>&& ofSeams);
+  /** Pass 5. It may be done again, and then asks for all points anew. */
   void FetchOthers();
   std::vector<vtkIdType> RequestedPlaces(int part) const;
+  /**
+   * The end of pass 6: counts what MaximumEdgeLength leaves. Nothing is written; Take() applies it.
+   */
   void LimitEdges(const Progress& progress);
 
   const Ranks& AllRanks;

@@ -1,5 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * The passes in their order. Pass 1 is tried with a small margin around the borders of parts, and
+ * for an outline, if that does not decide it, again with a large one; each time with pass 2. A part
+ * is known between passes as TrimmedPart, in memory; in files it is made and swept again when it is
+ * written, so nothing of it is kept meanwhile but what has come back.
+ */
 #include "TrimParts.h"
 
 #include "BoundaryZone.h"
@@ -30,6 +36,7 @@ TrimParts::TrimParts(const SurfaceParts& surface, vtkIdType triangles, vtkPolyDa
       { "", "trimmed" }, surface.Crew.Folder())
   , BoundaryData(boundary)
   , Options(options)
+  // Where pass 1 ends: in files it makes each part, too, and takes most of the time.
   , Swept(this->Crew.IsInFiles() ? 0.8 : 0.4)
   , NumberOfAll(triangles)
 {
@@ -45,6 +52,7 @@ bool TrimParts::Trim()
   }
   catch (const Error& error)
   {
+    // Gathering takes more memory than this did.
     const bool isMemory = MessageOf(error).GetCode() == sentences::NotEnoughMemory.Code;
     if (this->Crew.IsInFiles() || isMemory)
     {
@@ -54,6 +62,7 @@ bool TrimParts::Trim()
   }
 }
 
+// All of it but the last pass. What it throws, it throws on all ranks.
 void TrimParts::TrimAll()
 {
   CheckOptions(this->Options);
@@ -67,6 +76,8 @@ void TrimParts::TrimAll()
     return this->TrimNear();
   };
   // A boundary needs no margin, and most outlines a small one.
+  // In edges. The 6th nearest vertex is seldom more than four edges away, and at the end of a line
+  // of points up to seven (FindOutlinePart).
   constexpr int small = 4, large = 10;
   if (!isTrimmedWith(small) && (this->BoundaryData || !isTrimmedWith(large)))
   {
@@ -82,7 +93,8 @@ CodedError TrimParts::Refusal() const
 }
 
 /**
- * The part, whose triangles are read. In memory the step finds it as it was left by the last one.
+ * The part, whose triangles are read. In memory the step finds it as it was left by the last one. A
+ * part without points is left out.
  */
 template <typename Step>
 void TrimParts::WithPart(int part, const Progress& progress, const Step& step)
@@ -104,6 +116,7 @@ void TrimParts::WithPart(int part, const Progress& progress, const Step& step)
 
 void TrimParts::Sweep(TrimmedPart& part, const Progress& progress)
 {
+  // Once on each rank: rings do not depend on the part.
   if (this->BoundaryData && this->Joined.Count() == 0)
   {
     this->Joined = JoinLines(this->Lines);
@@ -124,6 +137,7 @@ void TrimParts::Read()
   const bool isInFiles = this->Crew.IsInFiles();
   this->Crew.ForEach(this->Fraction(0.0, 0.02), [&](int part, const Progress& progress) {
     Report(progress, 0.0);
+    // The same on all ranks; so is its error.
     if (this->BoundaryData && part == this->Crew.FirstOwn())
     {
       CheckArrays(this->BoundaryData, "The boundary's");
@@ -160,15 +174,20 @@ void TrimParts::FindNear(int margin)
   std::vector<vtkIdType> near, sums(2, 0);
   Box extent;
   this->Crew.ForEach(this->Fraction(0.02, this->Swept), [&](int part, const Progress& progress) {
+    // Until the part has been found to have points: SendBack() skips those without.
     near.push_back(-1);
     this->NearParts.emplace_back();
     this->WithPart(part, progress.Between(0.0, 0.5), [&](TrimmedPart& own) {
       this->Sweep(own, progress.Between(0.5, 1.0));
+      // The 1 prefers a part with triangles as the home, even if none is near.
       near.back() = own.NearCount() + (own.TriangleCount() > 0 ? 1 : 0);
+      // Packed at once, as the part in files goes; near triangles and borders of all own parts are
+      // kept.
       this->NearParts.back() = PackData(own.NearPart());
       this->Near += own.NearCount();
       this->RankCounts.OutwardTriangles += own.SideCount(1);
       sums[0] += own.SideCount(0);
+      // The box is for the error that nothing is kept; as soon as something is, it is not needed.
       if (sums[0] == 0)
       {
         extent.Join(own.Extent());
@@ -178,6 +197,7 @@ void TrimParts::FindNear(int margin)
   });
   this->NearCounts = this->Crew.AllRanks().Collect(near);
   this->Home = static_cast<int>(
+    // Of equal counts the first: the same part on all ranks.
     std::max_element(this->NearCounts.begin(), this->NearCounts.end()) - this->NearCounts.begin());
   this->Crew.AllRanks().Sum(sums);
   this->Kept = sums[0];
@@ -195,6 +215,7 @@ bool TrimParts::TrimNear()
   }
   this->Crew.Deliver(this->Fraction(this->Swept, this->Swept));
   bool isTrimmed = false;
+  // Other ranks wait at the end of the step, or stop with it.
   all.Agree([&]() {
     if (!this->Crew.IsOwn(this->Home))
     {
@@ -222,6 +243,7 @@ bool TrimParts::TrimNear()
 }
 
 /** Pass 3, on the rank that has trimmed the near triangles. */
+// Pass 3, the half of the rank that has trimmed. The other half is Write(), at the part's own time.
 void TrimParts::SendBack(const BoundaryZone& zone)
 {
   const Trimmed& result = zone.Result();
@@ -231,6 +253,7 @@ void TrimParts::SendBack(const BoundaryZone& zone)
   }
   const Progress progress = this->Crew.AllRanks().Watched(this->Fraction(0.95, 0.97));
   std::vector<TrimmedZone> backs = zone.Split(progress);
+  // Parts without points have sent none, and get none.
   auto back = backs.begin();
   for (int part = 0; part < this->Crew.PartCount(); ++part)
   {
@@ -243,6 +266,7 @@ void TrimParts::SendBack(const BoundaryZone& zone)
   this->RankCounts.RecoveredEdges = result.NumberOfRecoveredEdges;
   this->RankCounts.PointsLeftOut = result.NumberOfPointsLeftOut;
   this->RankCounts.GapTolerance = result.GapTolerance;
+  // Warning, boundary and counts of edges are on this rank alone.
   this->CommonWarning = result.Warning;
   this->Outline->GetPointData()->CopyAllOn();
   PassRings(result.Boundary, this->BoundaryData ? this->BoundaryData : zone.Joined(), progress,
@@ -257,9 +281,11 @@ void TrimParts::AddUp()
   this->Crew.ForEach(this->Fraction(0.97, 1.0), [&](int part, const Progress& progress) {
     Report(progress, 0.0);
     this->Crew.At(part, Back).ForEach([&](const Bytes& bytes) {
+      // Unpacked for its counts alone; Write() takes it.
       const TrimmedZone back(bytes);
       const vtkIdType owned = std::count(back.IsOwned.begin(), back.IsOwned.end(), char(1));
       kept += static_cast<vtkIdType>(back.Parents[0].size());
+      // Points of others among those it had, and new ones that it does not own.
       marked += static_cast<vtkIdType>(back.OfOthers.size() + back.IsOwned.size()) - owned;
       this->RankCounts.OutwardTriangles += static_cast<vtkIdType>(back.Parents[1].size());
       this->RankCounts.InsertedPoints += owned;
@@ -268,6 +294,7 @@ void TrimParts::AddUp()
   std::vector<vtkIdType> sums = { this->RankCounts.OutwardTriangles,
     this->RankCounts.RecoveredEdges, this->RankCounts.PointsLeftOut,
     this->RankCounts.InsertedPoints, kept, marked, this->Outline->GetNumberOfLines() };
+  // The rank that has trimmed knows it; on the others it is 0.
   std::vector<double> tolerance = { this->RankCounts.GapTolerance };
   all.Sum(sums);
   all.Maximum(tolerance);
@@ -287,6 +314,7 @@ void TrimParts::Write(int part, const Progress& progress, vtkPolyData* kept, vtk
     if (this->Crew.IsInFiles())
     {
       this->Sweep(own, progress.Between(0.3, 0.5));
+      // Not for what it returns: it lists the points of the near part, by which Back counts.
       own.NearPart();
     }
     this->Crew.At(part, Back).ForEach([&](const Bytes& bytes) {

@@ -18,6 +18,13 @@
  *      point that several parts get, the first is the owner; in the others it is a ghost.
  *   4. Each part is written, when it is asked for.
  *
+ *     far triangles of a part:   kept or outward, decided there (pass 1)
+ *     near triangles:            -- pass 2 --> one rank -- pass 3 --> kept, outward, or cut
+ *
+ * Why only the near ones travel: the raster of the rings decides all others (NearTriangles.h), and
+ * the outline depends on those alone that a local test leaves in doubt (Outline.h). The raster is
+ * the same for all parts, as it is made of the rings and the number of all triangles.
+ *
  * Guarantee: what is kept covers what one surface would keep; next to inserted points, diagonals
  * may differ. What needs the whole surface is refused: triangles that the sweep cannot prove, near
  * triangles that do not decide the outline, InwardNormal.
@@ -42,6 +49,10 @@
 namespace elevation
 {
 
+/**
+ * One use: Trim() once on all ranks, then Write() for each part of this rank. What is known of all
+ * parts can be asked for in between.
+ */
 class TrimParts
 {
 public:
@@ -88,13 +99,19 @@ private:
   }
   template <typename Step>
   void WithPart(int part, const Progress& progress, const Step& step);
+  /** Pass 1 for one part. @throws Error if the sweep cannot prove its triangles */
   void Sweep(TrimmedPart& part, const Progress& progress);
   void TrimAll();
+  /**
+   * The error that the parts cannot be trimmed apart. In memory nobody sees it: they are gathered.
+   */
   CodedError Refusal() const;
+  /** Before the passes: the boundary, and the number of triangles. */
   void Read();
   void FindNear(int margin);
   bool TrimNear();
   void SendBack(const BoundaryZone& zone);
+  /** After pass 3: the counts of all ranks, and whether any point is marked. */
   void AddUp();
 
   const SurfaceParts Surface;

@@ -1,5 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * The life of a part: Read() and Sweep() find what is near; NearPart() is what travels; Take() gets
+ * what has become of it; Write() puts the sides together. Triangles of a side come in the order of
+ * the input, near ones, which may be cut, after all others.
+ */
 #include "TrimmedPart.h"
 
 #include "Kernel/Mesh/Mesh.h"
@@ -37,7 +42,10 @@ void TrimmedPart::Read()
   this->LeaveOutCopies();
 }
 
-/** Leaves out triangles that are marked as another part's. */
+/**
+ * Leaves out triangles that are marked as another part's. Then the list is a copy, and Sources has
+ * the number of each triangle in the input, for its cell data.
+ */
 void TrimmedPart::LeaveOutCopies()
 {
   this->List = this->Triangles.View;
@@ -59,6 +67,8 @@ void TrimmedPart::LeaveOutCopies()
     return;
   }
   Buffer<Index> corners;
+  // The copy is made of the list, and only then takes its place: the list may view what it
+  // replaces.
   corners.Reserve(3 * this->Sources.size());
   for (const Index t : this->Sources)
   {
@@ -70,6 +80,7 @@ void TrimmedPart::LeaveOutCopies()
   this->List.Count = static_cast<Index>(this->Sources.size());
 }
 
+// The sweep's flags have no meaning for near triangles; they get the mark that says so.
 bool TrimmedPart::Sweep(const std::vector<Point2>& points, const Rings& rings, double numberOfAll,
   int threads, const Progress& progress)
 {
@@ -94,6 +105,7 @@ bool TrimmedPart::SweepForOutline(int margin, const TrimOptions& options, const 
   extraction.NumberOfThreads = options.NumberOfThreads;
   extraction.Monitor = progress;
   const bool isProven = FindOutlinePart(this->List, margin, extraction, this->Outline);
+  // From here on both kinds of boundary are alike. States and spacings stay in Outline, to be sent.
   this->Swept.Near = std::move(this->Outline.Triangles);
   this->Swept.Border = std::move(this->Outline.Border);
   this->Swept.IsOutward.assign(static_cast<std::size_t>(this->List.Count), 0);
@@ -117,6 +129,7 @@ vtkSmartPointer<vtkPolyData> TrimmedPart::NearPart()
     used.Add(edge.Origin);
     used.Add(edge.Destination);
   }
+  // The zone looks for the largest id among the points that it gets.
   if (vtkDataArray* const ids = this->Input->GetPointData()->GetGlobalIds())
   {
     // Those of inserted points follow the largest of all.
@@ -129,6 +142,7 @@ vtkSmartPointer<vtkPolyData> TrimmedPart::NearPart()
     }
     used.Add(largest);
   }
+  // Increasing, so duplicates keep their order.
   this->Sent = used.ListAndRank();
   const vtkSmartPointer<vtkPolyData> part = ChosenPoints(this->Input, this->Sent);
   vtkNew<vtkCellArray> border, near;
@@ -145,6 +159,7 @@ vtkSmartPointer<vtkPolyData> TrimmedPart::NearPart()
   }
   part->SetLines(border);
   part->SetPolys(near);
+  // Of an outline; States are one for each near triangle already.
   if (!this->Outline.Spacings.empty())
   {
     std::vector<double> spacings;
@@ -163,6 +178,7 @@ void TrimmedPart::Take(TrimmedZone&& back, const Progress& progress)
   this->FindOwn(progress);
 }
 
+// By the flags: after a sweep, without what comes back.
 vtkIdType TrimmedPart::SideCount(int side) const
 {
   const std::vector<char>& flags = this->Swept.IsOutward;
@@ -182,7 +198,10 @@ void TrimmedPart::FindOwn(const Progress& progress)
   }
   this->Points.New = this->Back.NewPoints;
   this->Places.assign(count, None);
+  // All parts have ids or none has: their arrays are the same.
   const bool byIds = this->Input->GetPointData()->GetGlobalIds() != nullptr;
+  // Points that this part did not send, and that are no new ones. It may have them all the same,
+  // away from its near triangles: then it gets no second copy.
   std::map<PointKey, std::size_t> ofOthers;
   for (std::size_t i = 0; i < count; ++i)
   {
@@ -194,6 +213,7 @@ void TrimmedPart::FindOwn(const Progress& progress)
   std::set<PointKey> far(this->Back.FarOnBoundary.begin(), this->Back.FarOnBoundary.end());
   const vtkIdType own = this->Input->GetNumberOfPoints();
   const PointKeys ofOwn(this->Input, byIds);
+  // A look at all points, if any is asked for; it ends with the last one found.
   for (vtkIdType i = 0; i < own && !(ofOthers.empty() && far.empty()); ++i)
   {
     ReportStep(progress, static_cast<std::size_t>(i), static_cast<std::size_t>(own));
@@ -211,6 +231,7 @@ void TrimmedPart::FindOwn(const Progress& progress)
   }
   for (std::size_t i = 0; i < count; ++i)
   {
+    // What it does not have, inserted or another part's, comes after its own points.
     if (this->Places[i] == None)
     {
       this->Places[i] = static_cast<Index>(own) + static_cast<Index>(this->Points.Added.size());
@@ -226,6 +247,7 @@ void TrimmedPart::FindOwn(const Progress& progress)
 TrimmedSide TrimmedPart::SideOf(int side, const Progress& progress) const
 {
   TrimmedSide written;
+  // Corners by points of the output; parents by triangles of the input, copies of others included.
   const auto add = [this, &written](const auto& cornerOf, Index triangle) {
     for (int k = 0; k < 3; ++k)
     {
@@ -241,11 +263,13 @@ TrimmedSide TrimmedPart::SideOf(int side, const Progress& progress) const
       add([&](int k) { return this->List.CornersOf(t)[k]; }, t);
     }
   }
+  // What has come back: pieces of near triangles, or, from an outline, these as they were.
   const std::vector<Index>& parents = this->Back.Parents[side];
   const Index sent = static_cast<Index>(this->Sent.size());
   for (std::size_t i = 0; i < parents.size(); ++i)
   {
     const Index triangle = this->Swept.Near[parents[i]];
+    // An outline cuts no triangle, so none but their numbers came back.
     if (this->Back.Corners[side].empty())
     {
       add([&](int k) { return this->List.CornersOf(triangle)[k]; }, triangle);
@@ -268,6 +292,8 @@ void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* b
   PassTrimmedPoints(this->Input, this->Points, progress.Between(0.0, 0.2), kept);
   if (boundary)
   {
+    // The owner's points that only ghosts elsewhere have shown to be on the boundary, then all
+    // others.
     std::vector<Index> onBoundary = this->FarOnBoundary;
     const Index sent = static_cast<Index>(this->Sent.size());
     for (const Index point : this->Back.OnBoundary)
@@ -276,6 +302,7 @@ void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* b
     }
     PassBoundary(*boundary, onBoundary, options, kept);
   }
+  // As on one rank, other cells go to the kept side alone.
   kept->SetVerts(this->Input->GetVerts());
   kept->SetLines(this->Input->GetLines());
   if (outward)
@@ -283,6 +310,7 @@ void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* b
     outward->SetPoints(kept->GetPoints());
     outward->GetPointData()->PassData(kept->GetPointData());
   }
+  // Vertices and lines come first in the numbers of cells, but on the kept side alone.
   for (const int side : { 0, 1 })
   {
     if (vtkPolyData* const output = side == 0 ? kept : outward)

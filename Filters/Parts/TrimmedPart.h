@@ -4,6 +4,11 @@
  * @file
  * Trims one part of a mesh along a boundary or its outline, whose near triangles are trimmed with
  * those of all parts: see TrimParts.h. Private to the module.
+ *
+ *     Swept.IsOutward, one a triangle:   0 kept, 1 outward, 2 near (until it comes back)
+ *     Back.Parents[side][i]:             place in Swept.Near
+ *     Back.Corners[side]:                < Sent.size(): Sent[corner] is the point of the input
+ *                                        else: Places[corner - Sent.size()], a point of the output
  */
 #ifndef TrimmedPart_h
 #define TrimmedPart_h
@@ -65,7 +70,9 @@ public:
 
 private:
   void LeaveOutCopies();
+  /** Of Take(): the places of the points that have come. */
   void FindOwn(const Progress& progress);
+  /** All triangles of a side: 0 kept, 1 outward. */
   TrimmedSide SideOf(int side, const Progress& progress) const;
 
   const vtkSmartPointer<vtkPolyData> Input;
