@@ -157,6 +157,23 @@ class Report(Program):
         self.assertLess(report["distance"]["maximum"], 1e-6)
         self.assertIn("along lines); see --open-edge-length", self.output)
 
+    def test_lines_on_a_grid_are_filled_as_those_that_wobble(self):
+        inserted = []
+        for apart, amplitude in ((10, 0), (10, 0.6), (10, 1), (10, 2), (3, 0), (3, 2)):
+            offset = [round(amplitude * math.sin(x / 7)) for x in range(90)]
+            rows = [(x, y, math.sin(x / 9) + math.cos(y / 11))
+                    for x in range(90) for y in range(91) if (y + offset[x]) % apart == 0]
+            with self.subTest(apart=apart, amplitude=amplitude):
+                holes = self.report(self.file("lines.xyz", text_of(rows)))["holes"]
+                if apart == 10:
+                    self.assertEqual(holes["open_edge_length"], 2)
+                    self.assertIn("times as far apart as their points", holes["open_edge_length_is"])
+                    inserted.append(holes["inserted_points"])
+                else:
+                    self.assertEqual(holes["inserted_points"], 0)
+        self.assertGreater(min(inserted), 2000)
+        self.assertLess(max(inserted), 1.4 * min(inserted))
+
     def test_interpolation_is_handed_on_and_reported(self):
         name = self.file("holed.xyz", text_of(HOLED))
         common = (name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6")
