@@ -95,7 +95,7 @@ def length_of(area, shortest, longest, lattice, tolerance):
     apart = tolerance / TOLERANCE_PER_STEP or elongation(area, shortest, longest)
     if apart >= LEAST_STEPS_APART and step > 0.0:
         return STEPS_ALONG * step, (
-            f"survey lines found, {apart:.2g} times as far apart as their points: {STEPS_ALONG:g} steps "
+            f"survey lines found, about {apart:.0f} times as far apart as their points: {STEPS_ALONG:g} steps "
             f"of {step:.4g} along lines")
     if lattice:
         u, v = (numpy.array(step) for step in lattice["steps"])
