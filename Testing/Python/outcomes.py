@@ -44,7 +44,7 @@ def columns_of(attributes, count, without=()):
         array = attributes.GetAbstractArray(i)
         if array.GetName() not in (meshes.GHOSTS, "GlobalPointIds", *without):
             words = numbers_of(array) if count else numpy.zeros((0, array.GetNumberOfComponents()))
-            found[array.GetName()] = (array.GetClassName(), words)
+            found[array.GetName()] = (array.GetDataTypeAsString(), words)
     return found
 
 
