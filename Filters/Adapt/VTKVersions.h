@@ -28,6 +28,18 @@ inline bool IsAbortRequested(vtkAlgorithm* filter)
 #endif
 }
 
+/**
+ * Forgets that a filter was asked to stop, before work that no executive begins: an executive does
+ * so itself. Since VTK 9.3 a filter also remembers that its last output is not complete.
+ */
+inline void ForgetAbort(vtkAlgorithm* filter)
+{
+  filter->SetAbortExecute(0);
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
+  filter->SetAbortOutput(false);
+#endif
+}
+
 /** Makes room for tuples, more than there are, and keeps the values. */
 inline void ReserveTuples(vtkAbstractArray* array, vtkIdType count)
 {

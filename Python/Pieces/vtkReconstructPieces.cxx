@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkReconstructPieces.h"
 
+#include "Adapt/Adapt.h"
 #include "FilterOptions.h"
 #include "Parts/Parts.h"
 #include "vtkFillElevationHoles.h"
@@ -141,7 +142,7 @@ bool vtkReconstructPieces::AddPoints(vtkPointSet* points)
 void vtkReconstructPieces::Reset()
 {
   this->Parts->Close();
-  this->SetAbortExecute(0); // the executive does so before pieces, not before points are added
+  elevation::ForgetAbort(this); // no executive does so before points are added
   this->Modified();
 }
 
