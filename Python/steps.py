@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 from .clouds import bare_lines, cell_names, coordinates_of, joined, marked_points
 from .messages import ElevationSurfaceError, Messages, counted
 from .names import PANEL, PYTHON, are_for, argument, option
-from .opening import lattice_of
+from .opening import LEAST_STEPS_APART, elongation, lattice_of, measured
 from .outline import (
     ON_BORDER,
     ON_OUTLINE,
@@ -26,6 +26,10 @@ from .properties import PROPERTIES, set_properties
 from .ranks import all_values, collected, extremes, together, total
 from .spreading import OUTSIDE_OUTLINE, WITHIN_ERROR, own_point_count, reasons_of, update
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
+
+# Of gap tolerances, in spacings: that of survey lines 200 times as far apart as their points.
+MOST_GAP_TOLERANCE = 300.0
+RAISED = 1.25  # times the tolerance that leaves out some
 
 STEPS = {"delaunay": "triangulating", "trim": "trimming", "fill": "filling holes"}
 
@@ -48,7 +52,12 @@ class Step:
         """Gives the filter of a step its properties, and returns it."""
         return set_properties(algorithm, step, self.properties)
 
-    def __call__(self, name, algorithm):
+    def __call__(self, name, algorithm, change=None):
+        """Returns the filter, updated.
+
+        change  called with the Messages; returns whether it has changed properties, so that the filter
+                runs again. The messages before do not count then.
+        """
         raised = []
 
         def show(caller, _event):
@@ -64,8 +73,11 @@ class Step:
 
         tag = algorithm.AddObserver("ProgressEvent", show)
         began = time.perf_counter()
-        with Messages(algorithm, algorithm.GetExecutive()) as messages:
-            update(algorithm, self.ranks)
+        while True:
+            with Messages(algorithm, algorithm.GetExecutive()) as messages:
+                update(algorithm, self.ranks)
+            if change is None or total(self.ranks, len(raised)) or not change(messages):
+                break
         times, words = self.result.times, "triangulate" if name == "delaunay" else name
         times[words] = times.get(words, 0.0) + time.perf_counter() - began
         algorithm.RemoveObserver(tag)
@@ -175,7 +187,7 @@ def trim_along(run, boundary, edges=None):
         grid = result.cloud.grid
         steps = together(run.ranks, lambda: list(grid.steps) if grid else [])
         trim.SetGridSteps((steps or [0.0] * 4)[:4])
-    result.trim = run("trim", trim)
+    result.trim = run("trim", trim, LineKeeper(run, trim))
     result.triangles["trimmed"] = total(run.ranks, trim.GetOutput().GetNumberOfPolys())
     if result.triangles["trimmed"] == 0:
         raise ElevationSurfaceError(
@@ -183,6 +195,51 @@ def trim_along(run, boundary, edges=None):
             "coordinates?",
             "boundary" if result.boundary_name else "points",
         )
+
+
+class LineKeeper:
+    """Raises the gap tolerance until all points are kept, where the outline would leave out most of them
+    although they lie along lines. Called after each run, with its messages: whether there is another one,
+    the same on all ranks."""
+
+    def __init__(self, run, trim):
+        self.run, self.trim = run, trim
+        self.before = None  # the tolerance that was chosen first, and the share that it leaves out
+
+    def __call__(self, messages):
+        if self.before is None:
+            return self.is_first_raised(messages)
+        tolerance = RAISED * self.trim.GetGapTolerance()
+        if self.trim.GetNumberOfPointsLeftOut() and tolerance <= MOST_GAP_TOLERANCE:
+            self.trim.SetGapTolerance(tolerance)
+            return True
+        left_out = counted(self.trim.GetNumberOfPointsLeftOut(), "point")
+        self.run.result.notes.append(
+            "the points lie along lines: a gap tolerance of {:.4g} spacings leaves out {}, where one of {:.4g} "
+            "leaves out {:g} %; {} decides otherwise".format(
+                self.trim.GetGapTolerance(), left_out, *self.before, argument("gap_tolerance")))
+        return False
+
+    def is_first_raised(self, messages):
+        def advice():
+            for message in messages.errors + messages.warnings:
+                if message.code in ("BoundaryLeavesOut", "BoundaryLeavesOutAll"):
+                    names = ("tolerance", "part", "better")
+                    return [float(message.values.get(name, 100.0)) for name in names]
+            return []
+
+        found = together(self.run.ranks, advice)
+        if not found or self.trim.GetGapTolerance():
+            return False
+        tolerance, percent, better = found
+        if percent <= 50.0 or better > MOST_GAP_TOLERANCE:
+            return False
+        triangles = measured(self.run.ranks, self.run.result.delaunay.GetOutput())
+        if elongation(*triangles) < LEAST_STEPS_APART:
+            return False
+        self.before = tolerance, percent
+        self.trim.SetGapTolerance(better)
+        return True
 
 
 def trim_few(run, boundary, faults):

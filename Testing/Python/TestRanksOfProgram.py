@@ -20,6 +20,7 @@ import numpy
 from in_folder import Program, draws
 from many_programs import ManyPrograms
 from meshes import by_places as triangles, sorted_rows, sorted_triangles, triangles_of
+from on_sheet import CROSSING, text_of
 from vtkelevationsurface.reading import vtk_files
 from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
@@ -192,6 +193,10 @@ class OnRanks(Program):
         writer.SetInputData(points)
         writer.Write()
         self.check_same(2, "a.vtp")
+
+    def test_few_lines_that_cross(self):
+        self.file("a.txt", text_of(CROSSING))
+        self.check_same(2, "a.txt")
 
     def test_points_all_of_whose_triangles_are_on_other_ranks(self):
         self.file("a.txt", "0 0 1\n9 0 2\n4 7 3\n5 2 4\n3 3 5\n")

@@ -12,7 +12,7 @@ import sys
 import unittest
 
 import numpy
-from on_sheet import DATA, HOLED, ROOT, SHEET, SIZE, Program, text_of
+from on_sheet import CROSSING, DATA, HOLED, ROOT, SHEET, SIZE, Program, text_of
 from vtkelevationsurface import options, reading, writing
 from vtkelevationsurface.clouds import make_points
 from vtkelevationsurface.reading import vtk_files
@@ -76,12 +76,22 @@ class Report(Program):
         notes = [note for note in report["notes"] if "leaves out" in note]
         self.assertEqual(len(notes), 1, report["notes"])
         self.assertIn(f"leaves out {len(lone)} points", notes[0])
-        wanted = re.search(r"A --gap-tolerance of ([0-9.]+) would keep all points", notes[0]).group(1)
+        wanted = re.search(r"A larger --gap-tolerance keeps more: try ([0-9.]+)\. ", notes[0]).group(1)
         done = self.call(name, "--no-fill", "--strict")
         self.assertEqual(done.returncode, 1)
         self.assertIn("leaves out", done.stderr)
         report = self.report(name, "--no-fill", "--strict", "--gap-tolerance", wanted)
         self.assertLess(report["trim"]["points_left_out"], 4)
+
+    def test_few_lines_that_cross_are_kept(self):
+        name = self.file("lines.xyz", text_of(CROSSING))
+        report = self.report(name, "--strict")
+        self.assertEqual(report["trim"]["points_left_out"], 0)
+        self.assertRegex("\n".join(report["notes"]), r"along lines: a gap tolerance of 84\.\d+ spacings leaves out "
+                         r"0 points, where one of 4\.5 leaves out 94\.7 %; --gap-tolerance decides otherwise")
+        self.assertIn("along lines", report["holes"]["open_edge_length_is"])
+        report = self.report(name, "--gap-tolerance", "4.5", "--no-fill")
+        self.assertGreater(report["trim"]["points_left_out"], 1300)
 
     def test_a_hole_is_filled_and_listed(self):
         name = self.file("holed.xyz", text_of(HOLED))

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs of the program on a sheet of points: files in, files and a report out."""
 
+import math
 import os
 
 import in_folder
@@ -15,6 +16,11 @@ SHEET = [(x, y, 0.5 * x - 0.25 * y) for y in range(SIZE) for x in range(SIZE)]
 # The same with 3 x 3 points taken out of the middle. With edges of at most 1.5 that leaves a hole of
 # 4 x 4 with its corners cut: 12 edges, an area of 14.
 HOLED = [p for p in SHEET if not (4 <= p[0] <= 6 and 4 <= p[1] <= 6)]
+
+# Three survey lines, 100 times as far apart as their points, and one that crosses them.
+CROSSING = [(x + 0.2 * math.sin(7 * x), 100 * k + 20 * math.sin(x / 90 + k), math.sin(x / 60))
+            for k in range(3) for x in range(400)] + [
+    (80 + 0.4 * y, y, math.sin((80 + 0.4 * y) / 60)) for y in range(200)]
 
 
 def text_of(rows):

@@ -141,11 +141,11 @@ ELEVATION_SENTENCE(InvalidGridSteps,
   "zeros for no grid.");
 ELEVATION_SENTENCE(BoundaryLeavesOut,
   "The extracted boundary leaves out {points} {noun} ({part} %) and {area} % of the area: at a "
-  "gap tolerance of {tolerance} spacings, that is no surface. A {property:GapTolerance} of "
-  "{better} would keep {kept}. Or give the boundary.");
+  "gap tolerance of {tolerance} spacings, that is no surface. A larger {property:GapTolerance} "
+  "keeps more: try {better}. Or give the boundary.");
 ELEVATION_SENTENCE(BoundaryLeavesOutAll,
   "The extracted boundary leaves out every point: at a gap tolerance of {tolerance} spacings, "
-  "that is no surface. A {property:GapTolerance} of {better} would keep {kept}. Or give the "
+  "that is no surface. A larger {property:GapTolerance} keeps more: try {better}. Or give the "
   "boundary.");
 ELEVATION_SENTENCE(RingsRepeated,
   "Rings of the boundary that are there more than once ({count} more, the first of them "

@@ -59,6 +59,7 @@ namespace
 
 constexpr double DefaultTolerance = 4.5;
 constexpr double LongestInBay = 1.6;    // tolerances
+constexpr double LeastAdvice = 1.25;    // the same, of a larger one to be tried
 constexpr double CertainSurface = 0.52; // tolerances, by short spacings
 constexpr double SmallGroup = 0.7;      // the same, the side of a square
 
@@ -582,8 +583,9 @@ private:
       missing.RemoveAll(list.CornersOf(t));
       area -= list.SquareShare(t, 1.0);
     }
-    // A little more, for what is rounded on the way to the user and back.
-    return 1.01 * needed;
+    // A little more, for what is rounded on the way to the user and back. What slivers and openings
+    // take is not known here: a tolerance that is clearly larger takes less.
+    return std::max(1.01 * needed, LeastAdvice * this->Result.GapTolerance);
   }
 
   MeasuredTriangles Measured;

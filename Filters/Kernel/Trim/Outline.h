@@ -45,7 +45,8 @@ struct ExtractedBoundary
   Index NumberOfPointsLeftOut = 0; ///< corners of triangles, but of no surface triangle
   double PointsLeftOut = 0.0;      ///< the same as a part of all corners
   double AreaLeftOut = 0.0;        ///< as a part of the mesh's
-  /** If much is left out: a GapTolerance that keeps all points and half of the area. */
+  /** If much is left out: a larger GapTolerance, at which all points have triangles within it, and
+   * half of the area has. Openings may still leave out some. */
   double KeepingTolerance = 0.0;
   /** Probably more than the user meant. */
   bool LeavesOutMuch() const { return this->PointsLeftOut > 0.05 || this->AreaLeftOut > 0.5; }

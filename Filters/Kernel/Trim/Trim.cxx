@@ -372,15 +372,13 @@ Message LossOf(const ExtractedBoundary& found, bool all)
   };
   const std::string tolerance = ToText(found.GapTolerance, 4);
   const std::string better = ToText(found.KeepingTolerance, 4);
-  // KeepingTolerance keeps all points, or if none is left out, at least half of the area.
-  const char* const kept = found.PointsLeftOut > 0.0 ? "all points" : "half of it";
   if (all)
   {
-    return MakeMessage<sentences::BoundaryLeavesOutAll>(tolerance, better, kept);
+    return MakeMessage<sentences::BoundaryLeavesOutAll>(tolerance, better);
   }
   const Index points = found.NumberOfPointsLeftOut;
   return MakeMessage<sentences::BoundaryLeavesOut>(points, points == 1 ? "point" : "points",
-    percent(found.PointsLeftOut), percent(found.AreaLeftOut), tolerance, better, kept);
+    percent(found.PointsLeftOut), percent(found.AreaLeftOut), tolerance, better);
 }
 
 ExtractOptions ExtractionOf(const TrimOptions& options, const Progress& progress)
