@@ -31,10 +31,9 @@ from .clouds import (
 )
 from .messages import ElevationSurfaceError, Reason
 from .ranks import before, together, total
-from .reading import leave_out
 from .reading.columns import choose_columns
 from .reading.layouts import Layout
-from .reading.nulls import take_out
+from .reading.nulls import leave_out, take_out
 from .reading.upwards import notes_on_up
 from .reading.vtk_files import points_of_grid
 

@@ -11,16 +11,15 @@ from typing import Any, Union
 
 import numpy
 
-from ..clouds import Cloud, ReadOptions, coordinates_of, keep_points, make_lines, turn_over
+from ..clouds import Cloud, ReadOptions, make_lines, turn_over
 from ..description import DESCRIBED, listing
 from .formats import recognise
 from ..messages import FileError, Reason, did_you_mean
 from ..names import option
 from ..progress import no_progress, share
 from ..projecting import notes_on_degrees, project
-from ..ranks import total
 from ..selecting import columns_in, layer_condition, select
-from .nulls import blank_attributes, take_out
+from .nulls import blank_attributes, leave_out, take_out
 from .text import read_line_table, read_table
 from .unpacking import STANDARD_INPUT, is_plain, unpacked
 from .upwards import notes_on_up
@@ -145,18 +144,6 @@ def upright_note(points):
         f"x, y and z extend over {x:.4g}, {y:.4g} and {z:.4g}: if y is the height, as in many "
         "programs for 3D models, export the file with z upwards"
     ]
-
-
-def leave_out(path, cloud, no_data, ranks=None):
-    """Takes the points of this elevation out of a cloud; ranks: see take_out()."""
-    keep = coordinates_of(cloud.points)[:, 2] != no_data
-    lost = total(ranks, numpy.count_nonzero(~keep))
-    if not total(ranks, numpy.count_nonzero(keep)):
-        raise FileError(f"{path}: all points have the elevation that marks missing data")
-    if lost:
-        cloud.left_out[Reason("point", "without data")] = lost
-    if not keep.all():
-        keep_points(cloud, numpy.flatnonzero(keep))
 
 
 def read_faults(path, depth=False, progress=no_progress):

@@ -7,7 +7,7 @@ import re
 import unicodedata
 
 from .known import (
-    ABBREVIATED, AXES, BESIDE, HORIZONS, LETTERS, LETTERS_OF_AXES, ROLES, SEISMIC, UNITS, UNITS_OF_TIME
+    ABBREVIATED, AXES, NEXT_TO_AXES, HORIZONS, LETTERS, LETTERS_OF_AXES, ROLES, SEISMIC, UNITS, UNITS_OF_TIME
 )
 
 
@@ -76,7 +76,7 @@ def _axis_of(words, joined, extra):
     direction = max(d for _, _, d in found)
     known = frozenset().union(*(names for _, _, _, names in AXES))
     beside = tuple(w for w in words if w not in known) if not whole else ()
-    strange = [word for word in beside if word not in BESIDE]
+    strange = [word for word in beside if word not in NEXT_TO_AXES]
     if axis == "z" and "alt" in words and len(words) > 1 and any(
         w != "alt" and w in names for a, _, _, names in AXES if a == "z" for w in words
     ):
@@ -120,9 +120,9 @@ def is_seismic(name):
     return "".join(plain(name)) in SEISMIC
 
 
-def is_beside(name):
+def stands_beside_axis(name):
     """Whether a word may stand next to the name of an axis, as "coordinate" does."""
-    return all(word in BESIDE for word in plain(name))
+    return all(word in NEXT_TO_AXES for word in plain(name))
 
 
 def known_names(names):

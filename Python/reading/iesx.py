@@ -10,6 +10,7 @@ from ..clouds import Cloud, add_array, make_lines, make_points
 from ..messages import FileError, Reason
 from ..progress import lines_with_progress
 from ..selecting import words_of
+from .nulls import ALL_WITHOUT_DATA
 
 NUMBER = rb"\s*([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?|[-+]?\d+\.)"
 INTEGER = rb"\s+(-?\d+)(?![\d.])"
@@ -68,7 +69,7 @@ def read_points(path, options):
     rows = numpy.concatenate([rows for *_, rows in parts])
     keep = rows[:, 3] < NULL
     if not keep.any():
-        raise FileError(f"{path}: all points have the elevation that marks missing data")
+        raise FileError(f"{path}: {ALL_WITHOUT_DATA}")
     names = [name for name, *_ in parts]
     counts = [len(rows) for *_, rows in parts]
     cloud = Cloud(make_points(rows[keep][:, [0, 1, 3]]), [f"IESX: {', '.join(dict.fromkeys(names))}"])

@@ -58,7 +58,7 @@ AXES = (
     ("z", 4, "time", _words("time zeit temps tiempo tempo tid tijd czas")),
 )
 # Words that may stand next to the name of an axis.
-BESIDE = _words(
+NEXT_TO_AXES = _words(
     "utm coord coords coordinate coordinates koordinate koordinaten koordinat koordinaat "
     "coordinaat coordenada coordenadas coordonnee coordonnees coordinata wspolrzedna wsp point pt "
     "p map world gps wgs etrs epsg local grid proj projected geo m ft feet meter meters metre "
@@ -129,6 +129,8 @@ COMMENT_MARKS = ("#", "%", "//", "!", "*", ">")
 MISSING = set(
     "na n/a #n/a n.a. null none nil nodata no-data missing void - -- ? * -nan nan(ind)".split()
 ) | {""}
+SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", None: "blanks"}
+NUMBERED_NAME = re.compile(r"(?:field|column|col)?\W*(\d+)\s*[:=.)]?\s*(\S.*)", re.I)  # "3: X" in a header
 ESRI_GRID, SURFER_GRID = "an ESRI ASCII grid", "a Surfer grid"  # which GDAL reads
 # How files begin that are not tables, and what they are.
 NO_TABLES = (
@@ -152,16 +154,28 @@ DATE = r"\d{1,2}\.\d{1,2}\.\d{2,4}|\d+(\.\d+){3}"
 COMMA_IN_QUOTES = r"\"\s*[-+]?\d+,\d+\s*\"\s*,"  # "1,5","2,5"
 # What keeps words from being numbers, and what it is.
 BLANK_IN_NUMBER = r"\d[\u00a0\u202f]\d{3}"
+THOUSANDS = "marks between thousands"
 NO_NUMBERS = (
     (
         r"(?<!\w)\d{1,3}(?P<sign>[,.' ])\d{3}(?P=sign)\d{3}|(?<![\d.])\d{1,3},\d{3}\.\d|"
         r"(?<![\d.,])\d{1,3}\.\d{3},\d+(?![\d.])|" + BLANK_IN_NUMBER,
-        "marks between thousands",
+        THOUSANDS,
     ),
     (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", "degrees, minutes and seconds"),
     (r"\d\s?[NSEW]\b", "a letter for north, south, east or west"),
 )
-
+GROUPED = r"[-+]?[1-9]\d{0,2}[.,]\d{3}"  # a number with a mark between thousands, or with three decimals
+# Lines of numbers with blanks between thousands, parted by another sign or all with decimals: (pattern, the share of
+# lines of which more are such).
+_BLANKS = r"\s*[-+]?\d{1,3}( \d{3})*([.,]\d*)?\s*"
+BLANKS_IN_THOUSANDS = (
+    (rf"^(?=.*\d \d{{3}}){_BLANKS}(?P<sign>[\t;|]){_BLANKS}((?P=sign){_BLANKS})*$", 0.5),
+    (r"^(?=.*\b\d{1,3}( \d{3}){2}[.,]\d)\s*([-+]?\d{1,3}( \d{3})*[.,]\d+\s*){3,}$", 0.9),
+)
+# Rows, their words between blanks: whole numbers two by two; degrees, minutes, seconds twice, and a value.
+PAIRS = r"[-+]?\d+ [-+]?\d+( [-+]?\d+ [-+]?\d+)+"
+SEXAGESIMAL = r"([-+]?(0?\d{1,2}|1[0-7]\d|180) [0-5]?\d [0-5]?\d([.,]\d*)? ){2}.*"
+WITH_DECIMALS = r"\S+ \S+ \S*[.,]\S* \S+ \S+ \S*[.,]"
 
 # How a line begins that holds totals of the others, in the languages of the names of columns.
 SUMMARY = re.compile(

@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_FLOAT
 
 from ..clouds import coordinates_of, keep_points
 from .known import NULL_ROWS, NULLS
-from ..messages import Reason, counted, counted_reason
+from ..messages import FileError, Reason, counted, counted_reason
 from ..names import option
 from ..progress import share, items_with_progress
 from ..ranks import all_values, before, summed, together, total, widest
@@ -23,6 +23,7 @@ SAMPLE = 200_000
 CHUNK = 1 << 21  # points at once: arrays of a size that memory is kept for
 SUSPECTS = 1000  # no more are looked at
 NAMED = 5  # that many blunders are named
+ALL_WITHOUT_DATA = "all points have the elevation that marks missing data"
 FAR = 1e100  # no coordinate is that large, and squares of larger ones are infinite
 
 
@@ -84,6 +85,18 @@ def blank_attributes(points):
                 f"taken as NaN; {option('keep_nulls')} keeps them"
             )
     return notes
+
+
+def leave_out(path, cloud, no_data, ranks=None, noun="point", none_left=ALL_WITHOUT_DATA):
+    """Takes the points of this elevation out of a cloud; ranks: see take_out()."""
+    keep = coordinates_of(cloud.points)[:, 2] != no_data
+    lost = number_of(ranks, ~keep)
+    if not number_of(ranks, keep):
+        raise FileError(f"{path}: {none_left}")
+    if lost:
+        cloud.left_out[Reason(noun, "without data")] = lost
+    if not keep.all():
+        keep_points(cloud, numpy.flatnonzero(keep))
 
 
 def number_of(ranks, flags):

@@ -23,7 +23,7 @@ from ..selecting import NothingChosen, Selection, as_option, none_chosen
 from . import NAMES_IN_COLUMNS, check_use
 from .formats import FORMATS, recognise
 from .known import NULLS
-from .nulls import null_rows, usual_nulls
+from .nulls import ALL_WITHOUT_DATA, null_rows, usual_nulls
 from .unpacking import STANDARD_INPUT, is_plain, named, unpacked
 from .upwards import notes_on_range
 
@@ -119,8 +119,7 @@ class SlicedFile:
             cloud.notes += self.selection.check(facts["chosen"])
             self.selection.add_to(cloud.left_out)
             if not facts["count"]:
-                words = "all points have the elevation that marks missing data"
-                raise FileError(f"{self.local}: {getattr(self.reader, 'without_data', words)}")
+                raise FileError(f"{self.local}: {getattr(self.reader, 'without_data', ALL_WITHOUT_DATA)}")
         if facts["chosen"] > facts["count"]:
             cloud.left_out[Reason(noun, "without data")] = facts["chosen"] - facts["count"]
         low, high = min(facts["low"]), max(facts["high"])
