@@ -201,7 +201,7 @@ NULL_ROWS = (0.0, 999.0)
 
 # ---- readings of columns ------------------------------------------------------------------------
 
-INLINES, CROSSLINES = _words("inline il iline"), _words("crossline xline xl")
+LINES_AS_AXES = {"x": _words("inline il iline"), "y": _words("crossline xline xl")}
 MOST_STEP_OF_LINES = 4  # between their numbers
 FINNISH = {"p": "y", "i": "x"}  # pohjoinen, itä
 HIGHEST = 1e5  # no place is as high
