@@ -231,9 +231,10 @@ class Parser:
             "no_numbers": {},  # {index of a column as text: [[count, first line number, word]]}
         }
 
-    def add(self, block, lines, skip):
-        """Takes the lines of a block, but for the first so many, which are not data."""
-        table, layout = self.table, self.table.layout
+    def add(self, block):
+        """Takes the lines of a block."""
+        table, layout, lines = self.table, self.table.layout, lines_of(block)
+        skip = table.first if self.line == 0 and self.blocks.begin == 0 else 0  # lines that are not data
         odd = {i: layout.words(lines[i]) for i in self.odd_lines(block, lines) if i >= skip and table.is_row(lines[i])}
         longer = [[self.number(i), len(words)] for i, words in odd.items() if len(words) > table.words][:1]
         self.facts["ragged"] = self.facts["ragged"] or longer
@@ -429,16 +430,14 @@ def parsed(path, columns, needed, advice, progress, named=False, part=WHOLE, ski
     done = 0.0
     with open(path, "rb") as stream:
         blocks = Blocks(path, stream, part)
-        head = next(iter(blocks if part.is_whole() else Blocks(path, stream)), None)
+        head = next(iter(Blocks(path, stream)), None)
         if head is None:
             raise FileError(f"{path}: is empty")
-        head = lines_of(head[0])
-        table = Table(path, head, columns, needed, advice, skips)
+        table = Table(path, lines_of(head[0]), columns, needed, advice, skips)
         parser = Parser(table, blocks, lambda _: progress(done), named)
         yield parser
         for block, read in blocks:
-            is_first = parser.line == 0 and blocks.begin == 0
-            parser.add(block, head if is_first else lines_of(block), table.first if is_first else 0)
+            parser.add(block)
             done = read
             progress(done)
             yield parser
