@@ -13,9 +13,10 @@ import re
 
 import numpy
 
-from .column_names import Meaning, in_brackets, is_seismic, meaning, plain
+from .column_names import Meaning, in_brackets, meaning, plain
 from .known import (
-    CLEAR, CLEAR_OF_POOR, COLOURS, FINNISH, GOOD, HIGHEST, LINES_AS_AXES, MOST_STEP_OF_LINES, PARTS_OF_TIME, TIMES, WEIGHTS
+    CLEAR, CLEAR_OF_POOR, COLOURS, FINNISH, GOOD, HIGHEST, LINES_AS_AXES, MOST_STEP_OF_LINES, PARTS_OF_TIME, SEISMIC,
+    TIMES, WEIGHTS
 )
 from .nulls import usual_nulls
 from ..messages import FileError
@@ -76,7 +77,7 @@ def choose_columns(path, rows, consecutive, layout, names, width, columns, neede
     choice.name_others()
     if names:
         choice.z_name = names[choice.indices[-1]] if needed == 3 else ""
-        choice.is_horizon = any(map(is_seismic, names))
+        choice.is_horizon = any("".join(plain(name)) in SEISMIC for name in names)
     return choice
 
 

@@ -57,6 +57,7 @@ AXES = (
     )),
     ("z", 4, "time", _words("time zeit temps tiempo tempo tid tijd czas")),
 )
+AXIS_NAMES = {name: (axis, rank, direction) for axis, rank, direction, names in AXES for name in names}
 # Words that may stand next to the name of an axis.
 NEXT_TO_AXES = _words(
     "utm coord coords coordinate coordinates koordinate koordinaten koordinat koordinaat "

@@ -8,10 +8,10 @@ import importlib.util
 import math
 import re
 
-from .column_names import known_names, meaning, stands_beside_axis, unit_of
+from .column_names import known_names, meaning, plain, unit_of
 from .known import (
-    BLANK_IN_NUMBER, BLANKS_IN_THOUSANDS, COMMA_IN_QUOTES, COMMENT_MARKS, DATE, ESRI_GRID, GROUPED, MISSING, NO_NUMBERS,
-    NO_TABLES, NUMBERED_NAME, PAIRS, SEPARATORS, SEXAGESIMAL, SURFER_GRID, THOUSANDS, TOUCHING, WITH_DECIMALS
+    BLANK_IN_NUMBER, BLANKS_IN_THOUSANDS, COMMA_IN_QUOTES, COMMENT_MARKS, DATE, ESRI_GRID, GROUPED, MISSING, NEXT_TO_AXES,
+    NO_NUMBERS, NO_TABLES, NUMBERED_NAME, PAIRS, SEPARATORS, SEXAGESIMAL, SURFER_GRID, THOUSANDS, TOUCHING, WITH_DECIMALS
 )
 from ..messages import FileError
 
@@ -182,7 +182,7 @@ def check_names(path, layout, before, rows, names, width, advice):
             continue
         own = other.separator and other.separator == layout.separator
         meanings = [meaning(name) for name in found]
-        if own or all(m.axis or m.role or stands_beside_axis(name) for m, name in zip(meanings, found)):
+        if own or all(m.axis or m.role or NEXT_TO_AXES.issuperset(plain(name)) for m, name in zip(meanings, found)):
             degrees = any(m.rank == 3 for m in meanings) and width in (5, 7)
             why = "export degrees as plain decimals, if minutes have columns of their own, or " if degrees else ""
             if layout.separator == "," and len(found) < width:

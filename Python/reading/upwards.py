@@ -10,7 +10,7 @@ import os
 
 from ..clouds import heights_of
 from ..names import option
-from .column_names import direction_of, is_of_horizon, says_up
+from .column_names import direction_of, names_horizon, says_up
 
 WHAT = {"depth": "depths", "time": "times"}
 
@@ -26,7 +26,7 @@ def notes_on_up(cloud, depth, path="", ranks=None):
 
 def notes_on_range(cloud, depth, low, high, path=""):
     """The same for z from low to high."""
-    is_horizon = cloud.is_horizon or is_of_horizon(os.path.basename(path))
+    is_horizon = cloud.is_horizon or names_horizon(os.path.basename(path))
     direction, values = direction_of(cloud.z_name), f"from {low:,.6g} to {high:,.6g}"
     if depth:
         if high > 0.0 or low == 0.0:
