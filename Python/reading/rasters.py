@@ -63,8 +63,6 @@ def open_raster(path, options):
             least, most = (float(metadata.get(f"{end}_RESOLUTION_X", "nan")) for end in ("MIN", "MAX"))
             notes = [f"the resolution varies from {least:g} to {most:g}: the nodes of all refined cells are read"]
             data = gdal.OpenEx(path, flags, [kind], settings + ["MODE=RESAMPLED_GRID"])
-        if "UGRID" in data.GetMetadata().get("NC_GLOBAL#Conventions", ""):
-            raise FileError(f"{path}: is a mesh of UGRID whose nodes have no coordinates")
         variables = {name.rsplit(":", 1)[-1].strip('"/'): name for name, _ in data.GetSubDatasets()}
         if data.RasterCount and not (options.layer and variables):
             if options.layer:
