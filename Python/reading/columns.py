@@ -366,8 +366,6 @@ class Choice:
         for k in range(len(columns) - count + 1):
             x, y, *z = columns[k : k + count]
             place = WEIGHTS["a column is left out"] * (k - 1) if k else WEIGHTS["stands first"]
-            if k == 1 and self.is_grid(x, y) and not self.is_grid(*columns[:2]):
-                place += WEIGHTS["x and y are a grid"]
             readings[x, y, *z] = self.score((x, y, *z)) + place
             others = [i for i in columns[k + count :] if self.spans[i] > 0]
             if z and others and self.counts_along(z[0]) and not self.may_count(x, y):
@@ -480,14 +478,6 @@ class Choice:
         found = self.fit(given, wanted)
         wide = all(self.spans[i] >= 10 for i in wanted)
         return bool(found and wide and len(found[0]) >= 10 and abs(found[0]).max() < 0.6)
-
-    def is_grid(self, x, y):
-        """Whether each value of x stands once with each of y, here and there with a gap."""
-        rows = self.values[: self.consecutive, [x, y]]
-        sizes = [len(numpy.unique(column)) for column in rows.T]
-        if min(sizes) < 2 or sizes[0] * sizes[1] > 1.5 * len(rows):
-            return False
-        return len(numpy.unique(rows, axis=0)) == len(rows)
 
     def may_count(self, x, y):
         """Whether columns may be line and trace: small, whole, in small steps."""

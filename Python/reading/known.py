@@ -220,7 +220,6 @@ WEIGHTS = {
     "a column is left out": -4,  # before x, behind the first, for no reason
     "x and y are of UTM": 16,
     "x and y count": -11,  # as line and trace do
-    "x and y are a grid": 7,
     "z rises along lines": -10,  # whole numbers, as those of lines are
     "z behind lines": -8,
 }
