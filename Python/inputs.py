@@ -35,7 +35,7 @@ from .reading.columns import choose_columns
 from .reading.layouts import Layout
 from .reading.nulls import leave_out, take_out
 from .reading.upwards import notes_on_up
-from .reading.vtk_files import points_of_grid
+from .reading.vtk_files import grid_points
 
 SAMPLE = 3000  # rows by which the columns of a table are recognised
 
@@ -146,7 +146,7 @@ def grid_clouds(grids, array, ranks):
             copy.ShallowCopy(grid)
             grid = copy
             grid.GetPointData().SetActiveScalars(array)
-        clouds.append(points_of_grid("input", grid, nodes_of(extents, i) if ranks else None))
+        clouds.append(grid_points("input", grid, nodes_of(extents, i) if ranks else None))
         clouds[-1].crs = crs_of(grid)
     if ranks and not total(ranks, sum(cloud.points.GetNumberOfPoints() for cloud in clouds)):
         raise ElevationSurfaceError("input: all pixels are without data")

@@ -82,13 +82,13 @@ def read_whole(path, options):
     return cloud
 
 
-def frame_of(path):
+def raster_frame(path):
     """(the Frame of the raster in a file, its coordinate reference system or None). Raises FileError
     where it holds none."""
     with unpacked(os.fspath(path)) as (local, _):
         kind, _ = recognise(local)
         if kind.module == "rasters":
-            from .rasters import frame_of as read_frame
+            from .rasters import raster_frame as read_frame
 
             frame, crs = read_frame(local)
         else:
@@ -183,7 +183,7 @@ def read_lines(path, singular, what, read_text_lines, progress):
         return kind.line_reader()(local, singular, progress)
 
 
-def lines_of_text(path, table, what):
+def text_lines(path, table, what):
     """The lines of a text file as vtkPolyData: table is what read_table() gives of it."""
     rows, numbers, starts, _ = table
     bad = numpy.flatnonzero(~numpy.isfinite(rows).all(axis=1))
@@ -197,8 +197,8 @@ def lines_of_text(path, table, what):
 
 
 def text_faults(path, progress):
-    return lines_of_text(path, read_line_table(path, progress), "a point of a fault")
+    return text_lines(path, read_line_table(path, progress), "a point of a fault")
 
 
 def text_boundary(path, progress):
-    return lines_of_text(path, read_table(path, 2, progress), "a boundary point")
+    return text_lines(path, read_table(path, 2, progress), "a boundary point")

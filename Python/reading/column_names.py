@@ -74,14 +74,14 @@ def _axis_meaning(words, joined, inside):
     return Meaning(axis, rank, max(direction for *_, direction in found), "", tuple(sorted(beside)))
 
 
-def unit_of(name):
+def length_unit(name):
     """The unit of length in a column's name, as "feet" for "Z (ft)" and "elev_ft", or ""."""
     outside, inside = in_brackets(name)
     words = plain(inside) or plain(outside)[1:]
     return next((unit for unit, names in UNITS.items() if words and words[-1] in names), "")
 
 
-def direction_of(name):
+def z_direction(name):
     """"depth" or "time" where a name, or its unit in brackets, says that z counts downwards, or ""."""
     is_time = "".join(plain(in_brackets(name)[1])) in UNITS_OF_TIME
     return meaning(name).direction or ("time" if is_time else "")
@@ -90,7 +90,7 @@ def direction_of(name):
 def says_up(name):
     """Whether a name says that z counts upwards, as "Elevation" does and "Z" does not."""
     found = meaning(name)
-    return found.axis == "z" and found.rank == 1 and not direction_of(name)
+    return found.axis == "z" and found.rank == 1 and not z_direction(name)
 
 
 def names_horizon(name):

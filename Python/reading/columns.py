@@ -37,7 +37,7 @@ def advice_on_columns():
 
 
 @numpy.errstate(all="ignore")
-def is_of_heights(values):
+def are_heights(values):
     """Whether rows of numbers look like a grid of heights: few rows, whose neighbours are near each other, or which
     have many columns, all alike, as those of x, y and z are not."""
     values = numpy.asarray(values, "f8")
@@ -298,7 +298,7 @@ class Choice:
     def ask_for_grid(self):
         """Asks where rows may be those of a grid."""
         is_wide, layout = self.width > MOST_COLUMNS, self.layout
-        if is_wide or is_of_heights(self.values):
+        if is_wide or are_heights(self.values):
             lines = "(line.replace(',', '.') for line in open('{}'))" if layout.decimal_comma else "'{}'"
             between = f", delimiter={layout.separator!r}" if layout.separator else ""
             source = f"numpy.loadtxt({lines.format(self.path)}{between})"

@@ -40,7 +40,7 @@ def profiles(path, progress):
             is_over = line.strip() == b"EOD"
             if head or is_over or not line.strip() or line.startswith((b"SNAPPING", b"#", b"!")):
                 continue
-            row = found and row_of(line, ROWS[found[-1][1]])
+            row = found and parse_row(line, ROWS[found[-1][1]])
             if not row:
                 shown = line.decode("latin-1").strip()[:40]
                 raise FileError(f"{path}, line {number}: '{shown}' is not a row of an IESX profile")
@@ -52,7 +52,7 @@ def profiles(path, progress):
     return found
 
 
-def row_of(line, patterns):
+def parse_row(line, patterns):
     """(x, y, segment, z), or None."""
     for pattern in patterns:
         try:

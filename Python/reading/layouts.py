@@ -8,7 +8,7 @@ import importlib.util
 import math
 import re
 
-from .column_names import known_names, meaning, plain, unit_of
+from .column_names import known_names, meaning, plain, length_unit
 from .known import (
     BLANK_IN_NUMBER, BLANKS_IN_THOUSANDS, COMMA_IN_QUOTES, COMMENT_MARKS, DATE, ESRI_GRID, GROUPED, MISSING, NEXT_TO_AXES,
     NO_NUMBERS, NO_TABLES, NUMBERED_NAME, PAIRS, SEPARATORS, SEXAGESIMAL, SURFER_GRID, THOUSANDS, TOUCHING, WITH_DECIMALS
@@ -264,10 +264,10 @@ def doubtful_units(layout, head, names, indices):
     The units stand in the names, as in "Z (ft)", in a line of their own, as in "m,m,ft", or where
     Petrel writes them.
     """
-    rows = [[unit_of(name) for name in names or []]]
-    rows += [[unit_of(f"({word.strip('()[]')})") for word in layout.words(line)] for line in head]
+    rows = [[length_unit(name) for name in names or []]]
+    rows += [[length_unit(f"({word.strip('()[]')})") for word in layout.words(line)] for line in head]
     pattern = re.compile(r"unit in (x and y direction|depth):\s*(\w+)", re.I)
-    petrel = {where.lower(): unit_of(f"({unit})") for where, unit in pattern.findall("\n".join(head))}
+    petrel = {where.lower(): length_unit(f"({unit})") for where, unit in pattern.findall("\n".join(head))}
     named = [[row[i] if i < len(row) else "" for i in indices] for row in rows]
     across = petrel.get("x and y direction", "")
     for units in [*named, [across, across, petrel.get("depth", "")]]:

@@ -40,11 +40,11 @@ def take_out(cloud, options, ranks=None):
     axes, progress = numpy.array(coordinates_of(cloud.points).T, dtype="f8"), options.progress
     null, counts = numpy.zeros(axes.shape[1], dtype=bool), {}
     for name, value, found in nulls_in(*axes, ranks, share(progress, 0.0, 0.35)):
-        count = number_of(ranks, found & ~null)
+        count = count_set(ranks, found & ~null)
         null |= found
         reason = Reason("null value", f"({name} = {value:.9g})") if name else Reason("row", " ".join([f"{value:g}"] * 3))
         counts.update({reason: count} if count else {})
-    if counts and number_of(ranks, ~null):
+    if counts and count_set(ranks, ~null):
         if options.keep_nulls:
             words = ", ".join(counted_reason(count, name) for name, count in counts.items())
             cloud.notes.append(f"kept: {words}")
@@ -88,8 +88,8 @@ def blank_attributes(points):
 def leave_out(path, cloud, no_data, ranks=None, noun="point", none_left=ALL_WITHOUT_DATA):
     """Takes the points of this elevation out of a cloud; ranks: see take_out()."""
     keep = coordinates_of(cloud.points)[:, 2] != no_data
-    lost = number_of(ranks, ~keep)
-    if not number_of(ranks, keep):
+    lost = count_set(ranks, ~keep)
+    if not count_set(ranks, keep):
         raise FileError(f"{path}: {none_left}")
     if lost:
         cloud.left_out[Reason(noun, "without data")] = lost
@@ -97,7 +97,7 @@ def leave_out(path, cloud, no_data, ranks=None, noun="point", none_left=ALL_WITH
         keep_points(cloud, numpy.flatnonzero(keep))
 
 
-def number_of(ranks, flags):
+def count_set(ranks, flags):
     """How many are set, on all ranks."""
     return total(ranks, numpy.count_nonzero(flags))
 
@@ -146,7 +146,7 @@ def far_off(x, y, z, numbers):
     far = numpy.zeros(len(z), dtype=bool)
     for values in (x, y, z):
         far |= (abs(values) >= FAR) & numpy.isfinite(values)
-    count = number_of(numbers.ranks, far)
+    count = count_set(numbers.ranks, far)
     if not count:
         return []
     rows = numpy.flatnonzero(far)
@@ -182,7 +182,7 @@ def stands_apart(value, count, others, width, ranks):
     Near is half the width that most others span; a tenth where the value occurs often, as nulls do.
     """
     reach = max((0.1 if count > 2 else 0.5) * width, 0.05 * abs(value))
-    near = number_of(ranks, (others > value - reach) & (others < value + reach))
+    near = count_set(ranks, (others > value - reach) & (others < value + reach))
     return near <= count // 20
 
 
@@ -197,7 +197,7 @@ def usual_nulls(values, is_place=False, ranks=None):
         slack = 1e-5 * abs(value) if abs(value) >= 1e20 else 0.0  # as text or single precision wrote it
         if low - slack <= value <= high + slack:
             found = numpy.abs(values - value) <= slack
-            present.update({value: found} if number_of(ranks, found) else {})
+            present.update({value: found} if count_set(ranks, found) else {})
     if not present:
         return []
     others = values[numpy.isfinite(values) & ~numpy.logical_or.reduce(list(present.values()))]
@@ -206,7 +206,7 @@ def usual_nulls(values, is_place=False, ranks=None):
         return []
     return [
         (value, found) for value, found in present.items()
-        if stands_apart(value, number_of(ranks, found), others, width, ranks)
+        if stands_apart(value, count_set(ranks, found), others, width, ranks)
     ]
 
 
@@ -216,10 +216,10 @@ def null_rows(x, y, z, ranks=None):
     others, result = ~numpy.logical_or.reduce([found for _, found in present]), []
     for value, found in present:
         near = others.copy()
-        if number_of(ranks, found) and number_of(ranks, others):
+        if count_set(ranks, found) and count_set(ranks, others):
             for values in (x, y):
                 near &= numpy.abs(values - value) < max(body(values[others], ranks), 1e-300)
-        if number_of(ranks, found) and not number_of(ranks, near):
+        if count_set(ranks, found) and not count_set(ranks, near):
             result.append((value, found))
     return result
 
@@ -230,7 +230,7 @@ def repeated_extremes(z, progress, ranks):
     for i, value in enumerate(limits(z, ranks)):
         progress(0.5 * i)
         is_it = z == value
-        count = number_of(ranks, is_it)
+        count = count_set(ranks, is_it)
         if 3 <= count < total(ranks, len(z)) // 2:
             others = z[~is_it]
             if stands_apart(value, 1, others, body(others, ranks), ranks):

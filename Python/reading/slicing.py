@@ -151,7 +151,7 @@ def check_nulls(path, points):
         raise FileError(f"{path}: {what}{advice}--keep-nulls keeps them")
 
 
-def parts_of(paths, rank, ranks):
+def file_parts(paths, rank, ranks):
     """{number of a file: the Part of it} that a rank reads of all files."""
     for path in paths:
         if path != "-":
@@ -189,7 +189,7 @@ def read_files(paths, cloud, take, ranks=None, **options):
     reference systems differ.
     """
     rank, count = rank_and_count(ranks)
-    parts = agreed(ranks, lambda: parts_of(paths, rank, count))
+    parts = agreed(ranks, lambda: file_parts(paths, rank, count))
     options, files = ReadOptions(**options), {}
     for i, (number, part) in enumerate(parts.items()):
         of_file = share(options.progress, i / len(parts), (i + 1) / len(parts))

@@ -29,7 +29,7 @@ from .layouts import (
     touching_in,
 )
 from .nulls import leave_out
-from .text_blocks import Blocks, lines_of
+from .text_blocks import Blocks, block_lines
 from ..messages import FileError, counted
 from ..progress import no_progress, items_with_progress
 from ..projecting import note_on_degrees
@@ -233,7 +233,7 @@ class Parser:
 
     def add(self, block):
         """Takes the lines of a block."""
-        table, layout, lines = self.table, self.table.layout, lines_of(block)
+        table, layout, lines = self.table, self.table.layout, block_lines(block)
         skip = table.first if self.line == 0 and self.blocks.begin == 0 else 0  # lines that are not data
         odd = {i: layout.words(lines[i]) for i in self.odd_lines(block, lines) if i >= skip and table.is_row(lines[i])}
         longer = [[self.number(i), len(words)] for i, words in odd.items() if len(words) > table.words][:1]
@@ -433,7 +433,7 @@ def parsed(path, columns, needed, advice, progress, named=False, part=WHOLE, ski
         head = next(iter(Blocks(path, stream)), None)
         if head is None:
             raise FileError(f"{path}: is empty")
-        table = Table(path, lines_of(head[0]), columns, needed, advice, skips)
+        table = Table(path, block_lines(head[0]), columns, needed, advice, skips)
         parser = Parser(table, blocks, lambda _: progress(done), named)
         yield parser
         for block, read in blocks:

@@ -77,7 +77,7 @@ def plain(data):
     return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").replace(b"\xe2\x88\x92", b"-")
 
 
-def lines_of(block):
+def block_lines(block):
     """The lines of a block: UTF-8, or Latin-1 where it is not."""
     try:
         text = block.decode("utf-8")

@@ -11,7 +11,7 @@ from ..clouds import Cloud, make_points
 from ..gdal_common import choose_layer, gdal_module, one_line, quiet
 from ..messages import FileError, Reason
 from ..names import option
-from .column_names import direction_of, meaning
+from .column_names import z_direction, meaning
 
 AXES = {"longitude": 0, "projection_x_coordinate": 0, "latitude": 1, "projection_y_coordinate": 1}
 NAMES = tuple(re.compile(rf"(^|_)({names})$", re.IGNORECASE) for names in ("x|lon|longitude", "y|lat|latitude"))
@@ -91,7 +91,7 @@ def z_name(array):
     """What the variable says that its values are."""
     if text(array, "positive") == "down":
         return "depth"
-    return next((name for name in all_names(array) if name and direction_of(name)), "")
+    return next((name for name in all_names(array) if name and z_direction(name)), "")
 
 
 def node_values(path, array, count):
