@@ -31,7 +31,7 @@ from .clouds import (
 )
 from .messages import ElevationSurfaceError, Reason
 from .ranks import before, together, total
-from .reading.columns import choose_columns
+from .reading.columns import Choice
 from .reading.layouts import Layout
 from .reading.nulls import leave_out, take_out
 from .reading.upwards import notes_on_up
@@ -236,9 +236,7 @@ def table_clouds(tables, options, ranks):
     head = numpy.arange(min(count, SAMPLE))
     some = numpy.unique(numpy.linspace(0, count - 1, min(count, SAMPLE)).astype("i8"))
     rows = together(ranks, lambda: rows_at(head)) + together(ranks, lambda: rows_at(some))
-    choice = choose_columns(
-        "input", rows, len(head), Layout(None), names, len(names), options.columns, 3, None
-    )
+    choice = Choice("input", rows, len(head), Layout(None), names, len(names), options.columns, 3, None)
     clouds = []
     for table, columns, begin in zip(tables, every, begins.tolist()):
         chosen = [numbers_of(columns[names[i]], names[i], begin) for i in choice.indices]

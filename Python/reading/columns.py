@@ -57,32 +57,8 @@ def as_grid(path, source):
     return f"""python3 -c "import numpy; numpy.savez('{target}', z={source})" and then {target}"""
 
 
-@numpy.errstate(all="ignore")
-def choose_columns(path, rows, consecutive, layout, names, width, columns, needed, advice):
-    """Finds the columns of x, y and z, or of x and y. Returns a Choice. Raises FileError.
-
-    rows         some rows as words; the first so many (consecutive) follow each other in the file
-    layout       the Layout of lines
-    names, width  of the columns; names may be None
-    columns      None, or what the user said: names or numbers
-    needed       3 or 2
-    advice       what a user can do where no choice is sure; None: choose columns
-    """
-    choice = Choice(path, rows, consecutive, layout, names, width, needed, advice)
-    if columns:
-        choice.use_given(columns)
-    elif not choice.by_names():
-        choice.by_values()
-    choice.look_at_values()
-    choice.name_others()
-    if names:
-        choice.z_name = names[choice.indices[-1]] if needed == 3 else ""
-        choice.is_horizon = any("".join(plain(name)) in SEISMIC for name in names)
-    return choice
-
-
 class Choice:
-    """What was found out about the columns.
+    """Which columns are x, y and z, or x and y, and what was found out about the others.
 
     indices     of x, y and z
     extras      {index: name} of the other columns of numbers
@@ -97,7 +73,17 @@ class Choice:
     with fewer words than numbers.
     """
 
-    def __init__(self, path, rows, consecutive, layout, names, width, needed, advice):
+    @numpy.errstate(all="ignore")
+    def __init__(self, path, rows, consecutive, layout, names, width, columns, needed, advice):
+        """Raises FileError.
+
+        rows         some rows as words; the first so many (consecutive) follow each other in the file
+        layout       the Layout of lines
+        names, width  of the columns; names may be None
+        columns      None, or what the user said: names or numbers
+        needed       3 or 2
+        advice       what a user can do where no choice is sure; None: choose columns
+        """
         self.path, self.layout, self.names, self.width, self.needed = path, layout, names, width, needed
         self.rows = [row[:width] + [""] * (width - len(row)) for row in rows]
         self.consecutive, self.axes = consecutive, "xyz"[:needed]
@@ -106,6 +92,15 @@ class Choice:
         self.z_name, self.is_horizon, self.angles, self.has_swapped = "", False, "no", False
         self.judge_values()
         self.judge_names()
+        if columns:
+            self.use_given(columns)
+        elif not self.by_names():
+            self.by_values()
+        self.look_at_values()
+        self.name_others()
+        if names:
+            self.z_name = names[self.indices[-1]] if needed == 3 else ""
+            self.is_horizon = any("".join(plain(name)) in SEISMIC for name in names)
 
     def judge_values(self):
         table = [list(map(self.layout.number, row)) for row in self.rows]

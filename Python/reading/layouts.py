@@ -16,7 +16,7 @@ from .known import (
 from ..messages import FileError
 
 
-FORTRAN = re.compile(r"^([-+.\d]+)[dD]([-+]?\d+)$")  # 1.5D+03
+FORTRAN = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+))[dD]([-+]?\d+)")  # 1.5D+03
 
 
 @dataclasses.dataclass(frozen=True)
@@ -43,9 +43,11 @@ class Layout:
         """The word's value; NaN where a value is missing; None for text."""
         plain = word.replace(",", ".") if self.decimal_comma else word
         try:
-            return float(FORTRAN.sub(r"\1e\2", plain.replace("_", "?")))  # Python takes 1_000 for a number
+            return float(plain if "_" not in plain else "")  # Python takes 1_000 for a number
         except ValueError:
-            return math.nan if word.lower() in MISSING else None
+            if fortran := FORTRAN.fullmatch(plain):
+                return float("e".join(fortran.groups()))
+        return math.nan if word.lower() in MISSING else None
 
     def numbers(self, line):
         """How many words of the line are written as numbers."""

@@ -13,8 +13,8 @@ import re
 
 import numpy
 
-from ..clouds import WHOLE, Cloud, add_array, make_points
-from .columns import advice_on_columns, choose_columns
+from ..clouds import WHOLE, Cloud, ReadOptions, add_array, make_points
+from .columns import Choice, advice_on_columns
 from .known import COMMENT_MARKS, SUMMARY
 from .layouts import (
     are_touching,
@@ -37,7 +37,6 @@ from ..selecting import MOST_VALUES, WordReader
 from ..names import option
 
 TAIL = 50  # lines at the end of a block among which summaries are looked for
-CHUNK = 1000  # lines that are tried at once where a block is not all numbers
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED, MOST_SUMMARIES = 3, 5  # that many lines of other kinds, and of summaries, are named
 MOST_UNEVEN = 0.2  # lines of numbers that are left out, as a share of rows
@@ -68,9 +67,9 @@ class Table:
                      before the data
     """
 
-    def __init__(self, path, lines, columns, needed, advice, skips):
+    def __init__(self, path, lines, options, needed, advice):
         self.path, self.needed, self.advice = path, needed, advice or advice_on_columns()
-        self.skips, self.can_skip, self.bad_lines = skips, advice is None, []
+        self.skips, self.can_skip, self.bad_lines = options.skip_bad_lines, advice is None, []
         self.layout, self.head_lines, self.has_summaries = find_layout(path, lines[:5000], needed), set(), False
         head, preamble = self.read_head(lines)
         near = self.first + SAMPLE
@@ -83,12 +82,10 @@ class Table:
         self.head_lines = {line for _, line in preamble}
         rows, consecutive = self.sample(lines)
         self.name_columns(head, rows)
-        if not columns:
+        if not options.columns:
             before = [line for _, line in preamble]
             check_names(path, self.layout, before, rows[:400], self.names, self.width, self.advice)
-        self.choice = choose_columns(
-            path, rows, consecutive, self.layout, self.names, self.width, columns, needed, advice
-        )
+        self.choice = Choice(path, rows, consecutive, self.layout, self.names, self.width, options.columns, needed, advice)
         self.indices, self.notes = self.choice.indices, self.choice.notes
         check_marks(path, rows, self.choice.of_numbers)
         if needed == 3:
@@ -219,7 +216,7 @@ class Parser:
         self.table, self.blocks, self.alive, self.named = table, blocks, alive, named
         self.texts = {index: WordReader() for index in table.choice.texts}
         self.used = [*table.indices, *table.choice.extras]
-        self.parts, self.numbers, self.starts = [], [], []
+        self.parts, self.starts = [], []
         self.line, self.after_blank = 0, True
         self.before = None  # lines before this part of the file, once a message needs their number
         first = table.bad_lines if blocks.begin == 0 else []
@@ -273,7 +270,7 @@ class Parser:
             self.after_blank = False
             return range(len(lines))
         rows = []
-        for i, line in enumerate(items_with_progress(lines, self.alive, len(lines), 20 * CHUNK)):
+        for i, line in enumerate(items_with_progress(lines, self.alive, len(lines), 20_000)):
             kind = table.kind(line) if i >= skip else "head"
             if kind == "row":
                 self.starts += [facts["count"] + len(rows)] * self.after_blank
@@ -287,13 +284,14 @@ class Parser:
         return rows
 
     def add_rows(self, lines, places, short, quoted):
-        """Adds the lines at some places of a block, of which numpy reads all or none: then it tries fewer at once, and
-        the last are read one by one. Those that are too short it would read wrongly."""
+        """Adds the lines at some places of a block. numpy reads all or none: then a tenth at once, and the last one by
+        one. Those that are too short it would read wrongly."""
         rows = self.load([lines[i] for i in places], quoted) if short.isdisjoint(places) else None
-        if rows is None and len(places) > CHUNK:
-            for start in range(0, len(places), CHUNK):
-                self.add_rows(lines, places[start : start + CHUNK], short, quoted)
-                self.alive(0.0)
+        if rows is None and len(places) > 10:
+            step = -(-len(places) // 10)
+            for start in range(0, len(places), step):
+                self.add_rows(lines, places[start : start + step], short, quoted)
+            self.alive(0.0)
             return
         if rows is None:
             rows, places = self.rows(lines, places)
@@ -301,8 +299,7 @@ class Parser:
             return
         if self.texts:
             self.keep_words([lines[i] for i in places])
-        self.parts.append(rows)
-        self.numbers.append(self.line + 1 + numpy.array(places))
+        self.parts.append((rows, self.line + 1 + numpy.fromiter(places, "i8", len(places))))
         self.facts["count"] += len(rows)
 
     def load(self, lines, quoted):
@@ -381,12 +378,9 @@ class Parser:
 
     def take(self):
         """(rows, line numbers) since the last call. There must be some."""
-        taken = [
-            parts[0] if len(parts) == 1 else numpy.concatenate(parts)
-            for parts in (self.parts, self.numbers)
-        ]
-        self.parts, self.numbers = [], []
-        return taken
+        rows, numbers = map(numpy.concatenate, zip(*self.parts))
+        self.parts = []
+        return rows, numbers
 
     def final_notes(self):
         """Notes, once all lines are read. Raises FileError where many rows have other numbers of columns."""
@@ -425,30 +419,30 @@ class Parser:
         return notes
 
 
-def parsed(path, columns, needed, advice, progress, named=False, part=WHOLE, skips=False):
+def parsed(path, options, needed=3, advice=None, part=WHOLE):
     """Yields the Parser of a text file, or of a part of it, before and after each block of lines."""
     done = 0.0
     with open(path, "rb") as stream:
-        blocks = Blocks(path, stream, part)
         head = next(iter(Blocks(path, stream)), None)
         if head is None:
             raise FileError(f"{path}: is empty")
-        table = Table(path, block_lines(head[0]), columns, needed, advice, skips)
-        parser = Parser(table, blocks, lambda _: progress(done), named)
+        table = Table(path, block_lines(head[0]), options, needed, advice)
+        is_named = bool(options.where or options.layer)
+        parser = Parser(table, Blocks(path, stream, part), lambda _: options.progress(done), is_named)
         yield parser
-        for block, read in blocks:
+        for block, read in parser.blocks:
             parser.add(block)
             done = read
-            progress(done)
+            options.progress(done)
             yield parser
 
 
-def parse(path, columns, needed, advice, progress, named=False, skips=False):
-    """(parser, rows, line numbers, notes) of a text file."""
-    for parser in parsed(path, columns, needed, advice, progress, named, skips=skips):
+def parse(*arguments):
+    """(parser, rows, line numbers, notes) of a text file; arguments as of parsed()."""
+    for parser in parsed(*arguments):
         pass
     if not parser.parts:
-        raise FileError(f"{path}: no line is a row of x, y and z")
+        raise FileError(f"{parser.table.path}: no line is a row of x, y and z")
     return (parser, *parser.take(), parser.final_notes())
 
 
@@ -459,7 +453,7 @@ def read_table(path, needed=3, progress=no_progress):
     the index of a row that follows a blank line or one that begins with ">".
     """
     advice = f"a header line with {', '.join('xyz'[:needed])} names the columns"
-    parser, rows, numbers, notes = parse(path, None, needed, advice, progress)
+    parser, rows, numbers, notes = parse(path, ReadOptions(progress=progress), needed, advice)
     return rows[:, :needed].copy(), numbers, parser.starts, notes
 
 
@@ -469,7 +463,7 @@ def read_line_table(path, progress):
         return read_table(path, 3, progress)
     except FileError:
         with contextlib.suppress(FileError):
-            table = parse(path, None, 2, "", progress)[0].table
+            table = parse(path, ReadOptions(progress=progress), 2, "")[0].table
             if len(table.choice.of_numbers) == 2:
                 return read_table(path, 2, progress)
         raise
@@ -480,9 +474,7 @@ def read_text(path, options):
 
     Returns a Cloud. Ten million lines of x, y and z take some five seconds of one core and 0.8 GB.
     """
-    parser, rows, numbers, notes = parse(
-        path, options.columns, 3, None, options.progress, bool(options.where or options.layer), options.skip_bad_lines
-    )
+    parser, rows, numbers, notes = parse(path, options)
     choice = parser.table.choice
     cloud = Cloud(make_points(rows[:, :3]), notes, lines=numbers)
     add_arrays(cloud.points, choice.extras, rows[:, 3:])
@@ -499,10 +491,7 @@ class TextSlices:
     noun, without_data = "row", WITHOUT_DATA
 
     def __init__(self, path, options, part):
-        self.parsed = parsed(
-            path, options.columns, 3, None, options.progress, bool(options.where), part,
-            options.skip_bad_lines,
-        )
+        self.parsed = parsed(path, options, part=part)
         self.parser = next(self.parsed)
 
     def __iter__(self):
