@@ -69,7 +69,7 @@ class Choice:
     angles      as of a Cloud
     reasons     {index: why a column is no coordinate}, by its values
 
-    By column, without nulls: values, finite, spans, decimals, whole (all values are); numeric are the columns
+    By column, without nulls: values, finite, low, high, largest, spans, decimals, whole (all are); numeric are columns
     with fewer words than numbers.
     """
 
@@ -112,7 +112,10 @@ class Choice:
             for _, found in usual_nulls(column):
                 column[found] = numpy.nan
         self.finite = [column[numpy.isfinite(column)] for column in self.values.T]
-        self.spans = [float(numpy.ptp(values)) if len(values) else 0.0 for values in self.finite]
+        self.low = [values.min(initial=math.inf) for values in self.finite]
+        self.high = [values.max(initial=-math.inf) for values in self.finite]
+        self.spans = [float(max(high - low, 0.0)) for low, high in zip(self.low, self.high)]
+        self.largest = [max(abs(low), abs(high)) for low, high in zip(self.low, self.high)]
         self.decimals = [max(len(NOT_DECIMALS.sub("", word)) for word in words) for words in zip(*self.rows[:500])]
         self.whole = [
             count == 0 and len(values) > 0 and bool((values == numpy.rint(values)).all())
@@ -406,7 +409,7 @@ class Choice:
     def is_class(self, i, beside):
         """A few small whole numbers next to a column of quite other ones."""
         values = self.finite[i]
-        if len(values) < 20 or not self.whole[i] or values.min() < 0 or values.max() > 255:
+        if len(values) < 20 or not self.whole[i] or self.low[i] < 0 or self.high[i] > 255:
             return False
         few = len(numpy.unique(values)) <= min(32, len(values) // 10)
         other = self.spans[beside] > 30 * numpy.ptp(values)
@@ -426,14 +429,14 @@ class Choice:
                 even &= part == "second" or self.whole[i]
                 moment = moment + factor * values
             goes_on = even and self.consecutive > 1 and (numpy.diff(moment) >= 0).mean() >= 0.99
-            small = "year" not in parts and self.finite[found[-1]].max(initial=0) < 30
+            small = "year" not in parts and self.high[found[-1]] < 30
             if goes_on and len(moment) > 2 and numpy.ptp(moment) > 0 and not small:
                 return found
         return []
 
     def may_be_place(self, i):
         """Whether a column may be a line, trace, latitude or longitude in addition to x and y."""
-        return self.whole[i] or self.decimals[i] >= 4 and abs(self.finite[i]).max(initial=0) <= 360
+        return self.whole[i] or self.decimals[i] >= 4 and self.largest[i] <= 360
 
     def place_in_grid(self, columns):
         """The two columns from which two others follow, as from line and trace or in degrees."""
@@ -443,40 +446,30 @@ class Choice:
             if set(place) & set(pair) or not others or not all(map(self.may_be_place, place)):
                 continue
             is_larger = math.prod(self.spans[k] for k in pair) > math.prod(self.spans[k] for k in place) > 0
-            is_rounded = all(self.whole[k] for k in place) and self.are_rounded(pair, place)
-            if is_larger and (is_rounded or self.follow_from(place, pair)):
+            if is_larger and (self.follow_from(place, pair) or self.follow_from(pair, place, are_rounded=True)):
                 if not self.follow_from(place, [pair[0], others[0]]):  # as in a plane
                     return place
         return ()
 
-    def fit(self, given, wanted):
-        """(what columns leave of others when turned and stretched, the others), or None."""
+    def follow_from(self, given, wanted, are_rounded=False):
+        """Whether columns are a turned and stretched copy of others, to a hundredth; or are rounded: the whole numbers
+        nearest to one, as lines near points."""
         rows = self.values[numpy.isfinite(self.values[:, [*given, *wanted]]).all(axis=1)]
         if len(rows) < 6:
-            return None
-        base = rows[:, list(given)] - rows[:, list(given)].mean(axis=0)
-        goal = rows[:, list(wanted)] - rows[:, list(wanted)].mean(axis=0)
-        factors, _, rank, _ = numpy.linalg.lstsq(base, goal, rcond=1e-9)
-        turned = abs(numpy.linalg.det(factors)) > 1e-6 * (numpy.abs(factors) ** 2).sum()
-        return (goal - base @ factors, goal) if rank == 2 and turned else None
-
-    def follow_from(self, given, wanted):
-        """Whether columns are a turned and stretched copy of others, to a hundredth."""
-        found = self.fit(given, wanted)
-        if not found:
             return False
-        rest, spread = found[0].std(axis=0), found[1].std(axis=0)
-        return bool((spread > 0).all() and (rest < 0.01 * spread).all())
-
-    def are_rounded(self, given, wanted):
-        """Whether whole numbers are the nearest to those that follow from others, as lines near points."""
-        found = self.fit(given, wanted)
-        wide = all(self.spans[i] >= 10 for i in wanted)
-        return bool(found and wide and len(found[0]) >= 10 and abs(found[0]).max() < 0.6)
+        base, goal = (rows[:, list(some)] - rows[:, list(some)].mean(axis=0) for some in (given, wanted))
+        factors, _, rank, _ = numpy.linalg.lstsq(base, goal, rcond=1e-9)
+        is_turned = abs(numpy.linalg.det(factors)) > 1e-6 * (numpy.abs(factors) ** 2).sum()
+        rest, spread = goal - base @ factors, goal.std(axis=0)
+        if are_rounded:
+            fits = len(rows) >= 10 and all(self.whole[i] and self.spans[i] >= 10 for i in wanted) and abs(rest).max() < 0.6
+        else:
+            fits = (spread > 0).all() and (rest.std(axis=0) < 0.01 * spread).all()
+        return bool(rank == 2 and is_turned and fits)
 
     def may_count(self, x, y):
         """Whether columns may be line and trace: small, whole, in small steps."""
-        if not all(self.whole[i] and abs(self.finite[i]).max() < 1e5 for i in (x, y)):
+        if not all(self.whole[i] and self.largest[i] < 1e5 for i in (x, y)):
             return False
         steps = [abs(self.steps(i)) for i in (x, y)]
         usual = [numpy.median(s[s > 0]) if (s > 0).any() else 0.0 for s in steps]
@@ -528,9 +521,7 @@ class Choice:
 
     def may_be_latitude(self, x, y, z):
         """Whether columns may be latitude and longitude in this order, and not the other way."""
-        xs, ys = abs(self.finite[x]), abs(self.finite[y])
-        small = len(xs) and len(ys) and xs.max() <= 90 and ys.max() <= 180
-        if not small or min(self.decimals[x], self.decimals[y]) < 4:
+        if self.largest[x] > 90 or self.largest[y] > 180 or min(self.decimals[x], self.decimals[y]) < 4:
             return False
         wide = max(self.spans[x], self.spans[y])
         dated = any(re.search(r"\d{4}-\d\d-\d\d|\d:\d\d", word) for row in self.rows[:SHOWN] for word in row)
@@ -538,10 +529,8 @@ class Choice:
 
     def is_utm(self, x, y):
         """Whether columns are easting and northing of UTM by their sizes, in metres."""
-        x, y = self.finite[x], self.finite[y]
-        if not len(x) or not len(y):
-            return False
-        return bool(160e3 < x.min() and x.max() < 840e3 and 1.1e6 < y.min() and y.max() < 10e6)
+        low, high = self.low, self.high
+        return bool(160e3 < low[x] <= high[x] < 840e3 and 1.1e6 < low[y] <= high[y] < 10e6)
 
     # -- what the values say about the choice
 
@@ -554,17 +543,12 @@ class Choice:
                     f"{self.path}: column {i + 1} has {' and '.join(sorted(letters))} for the signs of the "
                     "numbers before it; export signed decimals"
                 )
-        xs, ys = self.finite[x], self.finite[y]
-        if not len(xs) or not len(ys):
-            return
         by_name = [i for i in (x, y) if self.meanings[i].rank == 3]
-        for i, values, limit, what in ((x, xs, 360, "longitude"), (y, ys, 90, "latitude")):
-            if i in by_name and abs(values).max() > limit:
-                self.note(
-                    f"column {self.called(i)} is a {what} by its name, but holds "
-                    f"{values[abs(values).argmax()]:.9g}, which no {what} can be"
-                )
-        if self.needed == 3 and abs(xs).max() <= 360 and abs(ys).max() <= 90:
+        for i, limit, what in ((x, 360, "longitude"), (y, 90, "latitude")):
+            if i in by_name and limit < self.largest[i] < math.inf:
+                worst = max(self.low[i], self.high[i], key=abs)
+                self.note(f"column {self.called(i)} is a {what} by its name, but holds {worst:.9g}, which no {what} can be")
+        if self.needed == 3 and self.largest[x] <= 360 and self.largest[y] <= 90:
             fine = min(self.decimals[x], self.decimals[y]) >= 4
             if by_name or fine and 0 < max(self.spans[x], self.spans[y]) < 0.1 * self.spans[self.indices[2]]:
                 self.angles = "look like degrees"
