@@ -311,10 +311,8 @@ class Choice:
         if self.names:
             self.note(f"no column is named as {'x, y or z' if self.needed == 3 else 'x or y'}: {self.taken()}")
         if self.needed == 3 and not any(m.axis or m.role for m in self.meanings):
-            first = self.is_utm(0, 1) or self.is_utm(1, 0)
             for other in ((1, 2, 0), (2, 1, 0)):  # as z, x, y
-                if self.is_utm(*other[:2]) and not first:
-                    readings[other] = GOOD
+                readings.update({other: GOOD} if self.is_utm(*other[:2]) else {})
             if self.may_be_latitude(*order):
                 readings = {(1, 0, 2): GOOD, order: GOOD}
             if len(readings) == 1 and len(self.finite[2]) and abs(self.finite[2]).min() > HIGHEST:

@@ -79,11 +79,11 @@ class Table:
         # Points may have such names; then they are many.
         self.has_summaries = summaries < len(behind) and summaries <= 5 + len(behind) // 100
         self.sees_summaries = self.has_summaries and summaries > 0
-        self.head_lines = {line for _, line in preamble}
+        before = [line for _, line in preamble]
+        self.head_lines = set(map(str.strip, before))
         rows, consecutive = self.sample(lines)
         self.name_columns(head, rows)
         if not options.columns:
-            before = [line for _, line in preamble]
             check_names(path, self.layout, before, rows[:400], self.names, self.width, self.advice)
         self.choice = Choice(path, rows, consecutive, self.layout, self.names, self.width, options.columns, needed, advice)
         self.indices, self.notes = self.choice.indices, self.choice.notes
@@ -94,20 +94,20 @@ class Table:
         begin = next((number for number, line in preamble if self.is_data(number, line)), self.first + 1)
         self.first = begin - 1
         before = [line for number, line in preamble if number < begin]
-        self.head_lines, self.headers = set(before), len(before) - len(self.bad_lines)
+        self.head_lines, self.headers = set(map(str.strip, before)), len(before) - len(self.bad_lines)
 
     def read_head(self, lines):
         """(lines before the data, [(number, line)] of those of them that are not comments). Sets first and
         comments."""
         head, preamble, self.comments = [], [], 0
-        for self.first, line in enumerate(map(str.strip, lines)):
+        for self.first, line in enumerate(lines):
             if is_comment(line):
-                head.append(line.lstrip("#%/!*> "))
+                head.append(line.strip().lstrip("#%/!*> "))
                 self.comments += 1
             elif self.is_like(line) and not known_axes(self.layout.words(line)) >= set("xyz"):  # as x,y,z,0,1
                 break
-            elif line:
-                head.append(line)
+            elif line.strip():
+                head.append(line.strip())
                 preamble.append((self.first + 1, line))
         return head, preamble
 
@@ -180,7 +180,7 @@ class Table:
         except BadLine:
             if not self.skips:
                 raise
-            self.bad_lines.append([number, line])
+            self.bad_lines.append([number, line.strip()])
             return False
 
     def lacks_a_value(self, number, line):
