@@ -22,7 +22,7 @@ from .nulls import usual_nulls
 from ..messages import FileError
 from ..names import option
 
-SHOWN, MOST_SHOWN = 3, 12  # rows and columns, below a question
+SHOWN_ROWS, SHOWN_COLUMNS = 3, 12  # below a question
 MOST_COLUMNS = 12  # of rows of points without names; with more, they are a grid
 ROWS_OF_GRID = 20  # times its columns, and no more
 NOT_DECIMALS = re.compile(r"^[^.,]*[.,]?|[eEdD].*$")
@@ -183,8 +183,8 @@ class Choice:
         if not self.can_be_chosen:
             raise FileError(f"{self.path}: {why}; {self.advice}")
         ways = [f"{option('columns')} {self.numbered(one)}" for one in readings] + [other] * bool(other)
-        width = min(self.width, max([MOST_SHOWN, *(max(one) + 1 for one in readings)]))
-        shown = [[str(i + 1) for i in range(width)], *([self.names] if self.names else []), *self.rows[:SHOWN]]
+        width = min(self.width, max([SHOWN_COLUMNS, *(max(one) + 1 for one in readings)]))
+        shown = [[str(i + 1) for i in range(width)], *([self.names] if self.names else []), *self.rows[:SHOWN_ROWS]]
         shown = [[word[:16] for word in row[:width]] for row in shown]
         widths = [max(map(len, column)) for column in zip(*shown)]
         lines = ["  ".join(word.rjust(w) for word, w in zip(row, widths)) for row in shown]
@@ -522,7 +522,7 @@ class Choice:
         if self.largest[x] > 90 or self.largest[y] > 180 or min(self.decimals[x], self.decimals[y]) < 4:
             return False
         wide = max(self.spans[x], self.spans[y])
-        dated = any(re.search(r"\d{4}-\d\d-\d\d|\d:\d\d", word) for row in self.rows[:SHOWN] for word in row)
+        dated = any(re.search(r"\d{4}-\d\d-\d\d|\d:\d\d", word) for row in self.rows[:SHOWN_ROWS] for word in row)
         return PART_OF_TIME in self.reasons.values() or dated or wide < 0.1 * self.spans[z]
 
     def is_utm(self, x, y):
