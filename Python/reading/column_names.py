@@ -66,7 +66,8 @@ def _axis_meaning(words, joined, inside):
         return None
     axis, rank, _ = min(found)
     beside = [w for w in words if w not in AXIS_NAMES and joined not in AXIS_NAMES]
-    is_old = axis == "z" and "alt" in words and any(AXIS_NAMES[w][0] == "z" for w in named if w != "alt")  # "Höhe_alt"
+    heights = [w for w in named if AXIS_NAMES[w][0] == axis == "z"]
+    is_old = "alt" in heights and len(set(heights)) > 1  # "Höhe_alt"
     if is_old or not NEXT_TO_AXES.issuperset(beside):
         if max(map(len, named), default=0) < 2 or rank == 4:
             return None  # a single letter among words that mean something else
@@ -95,8 +96,9 @@ def says_up(name):
 
 def names_horizon(name):
     """Whether the name of a file says that it holds a horizon, or depths."""
-    words = plain(name)
-    return not HORIZONS.isdisjoint(words) or any(len(w) > 4 and meaning(w).direction == "depth" for w in words)
+    return any(
+        word in HORIZONS or len(word) > 4 and meaning(word).direction == "depth" for word in plain(name)
+    )
 
 
 def known_names(names):

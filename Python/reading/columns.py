@@ -69,8 +69,8 @@ class Choice:
     angles      as of a Cloud
     reasons     {index: why a column is no coordinate}, by its values
 
-    By column, without nulls: values, finite, low, high, largest, spans, decimals, whole (all are); numeric are columns
-    with fewer words than numbers.
+    By column, without nulls: values, finite, low, high, largest, spans, decimals, whole (all values
+    are); numeric are columns with fewer words than numbers.
     """
 
     @numpy.errstate(all="ignore")
@@ -106,7 +106,8 @@ class Choice:
         table = [list(map(self.layout.number, row)) for row in self.rows]
         self.values = numpy.array(table, "f8")
         self.share_of_text = numpy.equal(numpy.array(table, object), None).mean(axis=0)
-        self.of_numbers = numpy.flatnonzero(numpy.isfinite(self.values).mean(axis=0) > self.share_of_text).tolist()
+        shares = numpy.isfinite(self.values).mean(axis=0)
+        self.of_numbers = numpy.flatnonzero(shares > self.share_of_text).tolist()
         self.numeric = [i for i, share in enumerate(self.share_of_text) if share < 0.5]
         for column in self.values.T:
             for _, found in usual_nulls(column):
@@ -116,7 +117,8 @@ class Choice:
         self.high = [values.max(initial=-math.inf) for values in self.finite]
         self.spans = [float(max(high - low, 0.0)) for low, high in zip(self.low, self.high)]
         self.largest = [max(abs(low), abs(high)) for low, high in zip(self.low, self.high)]
-        self.decimals = [max(len(NOT_DECIMALS.sub("", word)) for word in words) for words in zip(*self.rows[:500])]
+        decimals = [[len(NOT_DECIMALS.sub("", word)) for word in row] for row in self.rows[:500]]
+        self.decimals = numpy.max(decimals, axis=0).tolist()
         self.whole = [
             count == 0 and len(values) > 0 and bool((values == numpy.rint(values)).all())
             for count, values in zip(self.decimals, self.finite)
@@ -184,8 +186,8 @@ class Choice:
             raise FileError(f"{self.path}: {why}; {self.advice}")
         ways = [f"{option('columns')} {self.numbered(one)}" for one in readings] + [other] * bool(other)
         width = min(self.width, max([SHOWN_COLUMNS, *(max(one) + 1 for one in readings)]))
-        shown = [[str(i + 1) for i in range(width)], *([self.names] if self.names else []), *self.rows[:SHOWN_ROWS]]
-        shown = [[word[:16] for word in row[:width]] for row in shown]
+        numbers, names = [str(i + 1) for i in range(width)], [self.names] if self.names else []
+        shown = [[word[:16] for word in row[:width]] for row in [numbers, *names, *self.rows[:SHOWN_ROWS]]]
         widths = [max(map(len, column)) for column in zip(*shown)]
         lines = ["  ".join(word.rjust(w) for word, w in zip(row, widths)) for row in shown]
         choose = f"choose {' or '.join(ways)}" if ways else self.advice
@@ -444,14 +446,14 @@ class Choice:
             if set(place) & set(pair) or not others or not all(map(self.may_be_place, place)):
                 continue
             is_larger = math.prod(self.spans[k] for k in pair) > math.prod(self.spans[k] for k in place) > 0
-            if is_larger and (self.follow_from(place, pair) or self.follow_from(pair, place, are_rounded=True)):
-                if not self.follow_from(place, [pair[0], others[0]]):  # as in a plane
-                    return place
+            follow = self.follow_from(place, pair) or self.follow_from(pair, place, are_rounded=True)
+            if is_larger and follow and not self.follow_from(place, [pair[0], others[0]]):  # as in a plane
+                return place
         return ()
 
     def follow_from(self, given, wanted, are_rounded=False):
-        """Whether columns are a turned and stretched copy of others, to a hundredth; or are rounded: the whole numbers
-        nearest to one, as lines near points."""
+        """Whether columns are a turned and stretched copy of others, to a hundredth; or are rounded: the
+        whole numbers nearest to one, as lines near points."""
         rows = self.values[numpy.isfinite(self.values[:, [*given, *wanted]]).all(axis=1)]
         if len(rows) < 6:
             return False
@@ -459,10 +461,10 @@ class Choice:
         factors, _, rank, _ = numpy.linalg.lstsq(base, goal, rcond=1e-9)
         is_turned = abs(numpy.linalg.det(factors)) > 1e-6 * (numpy.abs(factors) ** 2).sum()
         rest, spread = goal - base @ factors, goal.std(axis=0)
+        fits = (spread > 0).all() and (rest.std(axis=0) < 0.01 * spread).all()
         if are_rounded:
-            fits = len(rows) >= 10 and all(self.whole[i] and self.spans[i] >= 10 for i in wanted) and abs(rest).max() < 0.6
-        else:
-            fits = (spread > 0).all() and (rest.std(axis=0) < 0.01 * spread).all()
+            are_wide = all(self.whole[i] and self.spans[i] >= 10 for i in wanted)
+            fits = are_wide and len(rows) >= 10 and abs(rest).max() < 0.6
         return bool(rank == 2 and is_turned and fits)
 
     def may_count(self, x, y):
@@ -506,7 +508,8 @@ class Choice:
         """
         x, y, z = self.indices
         texts = [i for i in range(self.width) if self.share_of_text[i] > 0.5]
-        has_ids = any(i < min(x, y, z) for i in texts) or not {COUNTS_UP, EACH_ONCE}.isdisjoint(self.reasons.values())
+        has_ids = any(i < min(x, y, z) for i in texts)
+        has_ids |= any(reason in (COUNTS_UP, EACH_ONCE) for reason in self.reasons.values())
         coded = any(i > max(x, y, z) for i in texts)
         if has_ids and self.is_utm(y, x):
             self.has_swapped, self.indices = True, [y, x, z]
@@ -522,7 +525,8 @@ class Choice:
         if self.largest[x] > 90 or self.largest[y] > 180 or min(self.decimals[x], self.decimals[y]) < 4:
             return False
         wide = max(self.spans[x], self.spans[y])
-        dated = any(re.search(r"\d{4}-\d\d-\d\d|\d:\d\d", word) for row in self.rows[:SHOWN_ROWS] for word in row)
+        words = " ".join(word for row in self.rows[:SHOWN_ROWS] for word in row)
+        dated = re.search(r"\d{4}-\d\d-\d\d|\d:\d\d", words) is not None
         return PART_OF_TIME in self.reasons.values() or dated or wide < 0.1 * self.spans[z]
 
     def is_utm(self, x, y):
@@ -545,7 +549,10 @@ class Choice:
         for i, limit, what in ((x, 360, "longitude"), (y, 90, "latitude")):
             if i in by_name and limit < self.largest[i] < math.inf:
                 worst = max(self.low[i], self.high[i], key=abs)
-                self.note(f"column {self.called(i)} is a {what} by its name, but holds {worst:.9g}, which no {what} can be")
+                self.note(
+                    f"column {self.called(i)} is a {what} by its name, but holds {worst:.9g}, which no "
+                    f"{what} can be"
+                )
         if self.needed == 3 and self.largest[x] <= 360 and self.largest[y] <= 90:
             fine = min(self.decimals[x], self.decimals[y]) >= 4
             if by_name or fine and 0 < max(self.spans[x], self.spans[y]) < 0.1 * self.spans[self.indices[2]]:

@@ -74,15 +74,17 @@ def find_layout(path, lines, needed):
             what += ", not a table of points" * (":" not in what)
             raise FileError(f"{path}: is {what.replace('{path}', path)}{advice}")
     counts = {layout: [layout.numbers(line) for line in sample] for layout in LAYOUTS}
-    scores = {layout: (sum(count >= needed for count in found), sum(found)) for layout, found in counts.items()}
-    best, most = max(LAYOUTS, key=scores.get), max(max(found, default=0) for found in counts.values())
+    if not sample:
+        raise FileError(f"{path}: holds no data, only blank or comment lines")
+
+    def rows_and_numbers(layout):
+        return sum(count >= needed for count in counts[layout]), sum(counts[layout])
 
     def share(pattern):
         return sum(bool(re.search(pattern, line)) for line in sample) / len(sample)
 
-    if not sample:
-        raise FileError(f"{path}: holds no data, only blank or comment lines")
-    if scores[best][0] and not share(BLANK_IN_NUMBER):
+    best, most = max(LAYOUTS, key=rows_and_numbers), max(map(max, counts.values()))
+    if rows_and_numbers(best)[0] and not share(BLANK_IN_NUMBER):
         if not best.separator and any(share(pattern) > least for pattern, least in BLANKS_IN_THOUSANDS):
             raise no_plain_decimals(path)
         return best
@@ -184,7 +186,8 @@ def check_names(path, layout, before, rows, names, width, advice):
             continue
         own = other.separator and other.separator == layout.separator
         meanings = [meaning(name) for name in found]
-        if own or all(m.axis or m.role or NEXT_TO_AXES.issuperset(plain(name)) for m, name in zip(meanings, found)):
+        others = [name for m, name in zip(meanings, found) if not m.axis and not m.role]
+        if own or NEXT_TO_AXES.issuperset(plain(" ".join(others))):
             degrees = any(m.rank == 3 for m in meanings) and width in (5, 7)
             why = "export degrees as plain decimals, if minutes have columns of their own, or " if degrees else ""
             if layout.separator == "," and len(found) < width:

@@ -42,7 +42,9 @@ def take_out(cloud, options, ranks=None):
     for name, value, found in nulls_in(*axes, ranks, share(progress, 0.0, 0.35)):
         count = count_set(ranks, found & ~null)
         null |= found
-        reason = Reason("null value", f"({name} = {value:.9g})") if name else Reason("row", " ".join([f"{value:g}"] * 3))
+        reason = Reason("row", f"{value:g} {value:g} {value:g}")
+        if name:
+            reason = Reason("null value", f"({name} = {value:.9g})")
         counts.update({reason: count} if count else {})
     if counts and count_set(ranks, ~null):
         if options.keep_nulls:
@@ -60,7 +62,8 @@ def take_out(cloud, options, ranks=None):
 
 
 def nulls_in(x, y, z, ranks=None, progress=no_progress):
-    """Yields (name of the axis, or "" for all of them, value, (n,) of bool) of usual null values that stand apart."""
+    """Yields (name of the axis, or "" for all of them, value, (n,) of bool) of usual null values that
+    stand apart."""
     for done, (name, values) in enumerate((("z", z), ("x", x), ("y", y))):
         progress(done / 3)
         for value, found in usual_nulls(values, name != "z", ranks):
@@ -133,8 +136,9 @@ def doubts(x, y, z, numbers, progress):
     notes += far_off(x, y, z, numbers)
     single = blunders(x, y, z, numbers, share(progress, 0.25, 1.0))
     if single:
-        words = [f"{value:.7g} where others have {low:.7g} to {high:.7g}" for _, value, low, high in single[:NAMED]]
-        named = numbers.named([point for point, *_ in single[:NAMED]], words, len(single))
+        ids = [point for point, *_ in single[:NAMED]]
+        words = ["{:.7g} where others have {:.7g} to {:.7g}".format(*one) for _, *one in single[:NAMED]]
+        named = numbers.named(ids, words, len(single))
         least = "at least " if len(single) == SUSPECTS else ""
         plural = " is" if len(single) == 1 else "s are"
         notes.append(f"{least}{len(single):,} single elevation{plural} far from all around: {named}")
@@ -241,7 +245,7 @@ def repeated_extremes(z, progress, ranks):
 class Cells:
     """A grid of some 16 points a cell over x and y. Its rim stays empty but for points far off.
 
-    columns, count  of the cells; the last one is for points that are not finite. 0: there are too few points
+    columns, count  of the cells; the last one is for points that are not finite. No cells: too few points
     """
 
     def __init__(self, x, y, ranks):
@@ -255,7 +259,8 @@ class Cells:
             return
         self.low, high = numpy.percentile(sample, (0.5, 99.5), axis=0)
         extent = high - self.low
-        self.side = (max(extent[0], 1e-3 * extent[1]) * max(extent[1], 1e-3 * extent[0]) / (count / 16.0)) ** 0.5
+        area = max(extent[0], 1e-3 * extent[1]) * max(extent[1], 1e-3 * extent[0])
+        self.side = (area / (count / 16.0)) ** 0.5
         if self.side > 0 and numpy.isfinite(self.side):
             self.columns, self.rows = (int(length) + 3 for length in extent / self.side)
             self.count = self.columns * self.rows + 1

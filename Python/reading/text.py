@@ -70,7 +70,8 @@ class Table:
     def __init__(self, path, lines, options, needed, advice):
         self.path, self.needed, self.advice = path, needed, advice or advice_on_columns()
         self.skips, self.can_skip, self.bad_lines = options.skip_bad_lines, advice is None, []
-        self.layout, self.head_lines, self.has_summaries = find_layout(path, lines[:5000], needed), set(), False
+        self.layout = find_layout(path, lines[:5000], needed)
+        self.head_lines, self.has_summaries = set(), False
         head, preamble = self.read_head(lines)
         near = self.first + SAMPLE
         behind = lines[self.first : near] + lines[max(near, len(lines) - TAIL) :]
@@ -85,7 +86,9 @@ class Table:
         self.name_columns(head, rows)
         if not options.columns:
             check_names(path, self.layout, before, rows[:400], self.names, self.width, self.advice)
-        self.choice = Choice(path, rows, consecutive, self.layout, self.names, self.width, options.columns, needed, advice)
+        self.choice = Choice(
+            path, rows, consecutive, self.layout, self.names, self.width, options.columns, needed, advice
+        )
         self.indices, self.notes = self.choice.indices, self.choice.notes
         check_marks(path, rows, self.choice.of_numbers)
         if needed == 3:
@@ -97,8 +100,8 @@ class Table:
         self.head_lines, self.headers = set(map(str.strip, before)), len(before) - len(self.bad_lines)
 
     def read_head(self, lines):
-        """(lines before the data, [(number, line)] of those of them that are not comments). Sets first and
-        comments."""
+        """(lines before the data, [(number, line)] of those of them that are not comments). Sets first
+        and comments."""
         head, preamble, self.comments = [], [], 0
         for self.first, line in enumerate(lines):
             if is_comment(line):
@@ -116,10 +119,10 @@ class Table:
         start = self.first + SAMPLE
         step = max(1, (len(lines) - start) // SAMPLE)
         data, later = (
-            [self.layout.words(line) for line in some if self.is_row(line) and (self.is_like(line) or not self.skips)]
+            [line for line in some if self.is_row(line) and (self.is_like(line) or not self.skips)]
             for some in (lines[self.first : start], lines[start::step])
         )
-        return data + later, len(data)
+        return [self.layout.words(line) for line in data + later], len(data)
 
     def is_like(self, line):
         """Whether a line holds enough numbers for a row."""
@@ -173,8 +176,8 @@ class Table:
             self.names = find_names(self.layout, head, self.width)
 
     def is_data(self, number, line):
-        """Whether a line before the data is a row that lacks one of its values. One that looks like a row but for
-        a word is no header, but a bad line."""
+        """Whether a line before the data is a row that lacks one of its values. One that looks like a row
+        but for a word is no header, but a bad line."""
         try:
             return self.lacks_a_value(number, line)
         except BadLine:
@@ -230,14 +233,14 @@ class Parser:
 
     def add(self, block):
         """Takes the lines of a block."""
-        table, layout, lines = self.table, self.table.layout, block_lines(block)
+        table, lines = self.table, block_lines(block)
         skip = table.first if self.line == 0 and self.blocks.begin == 0 else 0  # lines that are not data
-        odd = {i: layout.words(lines[i]) for i in self.odd_lines(block, lines) if i >= skip and table.is_row(lines[i])}
-        longer = [[self.number(i), len(words)] for i, words in odd.items() if len(words) > table.words][:1]
-        self.facts["ragged"] = self.facts["ragged"] or longer
-        short = {i for i, words in odd.items() if self.is_short(words)}
-        places = self.rows_among(block, lines, skip)
-        self.add_rows(lines, places, short, b'"' in block)
+        odd = [i for i in self.odd_lines(block, lines) if i >= skip and table.is_row(lines[i])]
+        words = {i: table.layout.words(lines[i]) for i in odd}
+        longer = [[self.number(i), len(words[i])] for i in odd if len(words[i]) > table.words]
+        self.facts["ragged"] = self.facts["ragged"] or longer[:1]
+        short = {i for i in odd if self.is_short(words[i])}
+        self.add_rows(lines, self.rows_among(block, lines, skip), short, b'"' in block)
         self.line += len(lines)
 
     def odd_lines(self, block, lines):
@@ -264,8 +267,9 @@ class Parser:
     def rows_among(self, block, lines, skip):
         """The places of the rows. Counts other lines, and notes where a row follows a blank line."""
         table, facts = self.table, self.facts
-        plain = not skip and not table.sees_summaries and not any(mark.encode() in block for mark in COMMENT_MARKS)
-        if plain and not any(map(table.summary, lines[-TAIL:])) and all(map(str.strip, lines)):
+        plain = not skip and not any(mark.encode() in block for mark in COMMENT_MARKS)
+        plain = plain and not table.sees_summaries and not any(map(table.summary, lines[-TAIL:]))
+        if plain and all(map(str.strip, lines)):
             self.starts += [facts["count"]] * self.after_blank
             self.after_blank = False
             return range(len(lines))
@@ -284,8 +288,8 @@ class Parser:
         return rows
 
     def add_rows(self, lines, places, short, quoted):
-        """Adds the lines at some places of a block. numpy reads all or none: then a tenth at once, and the last one by
-        one. Those that are too short it would read wrongly."""
+        """Adds the lines at some places of a block. numpy reads all or none: then a tenth at once, and the
+        last one by one. Those that are too short it would read wrongly."""
         rows = self.load([lines[i] for i in places], quoted) if short.isdisjoint(places) else None
         if rows is None and len(places) > 10:
             step = -(-len(places) // 10)
@@ -402,7 +406,8 @@ class Parser:
             notes.append(f"header lines that come again are left out: {facts['repeated']:,}")
         for line, words in facts["ragged"][:1]:
             notes.append(
-                f"line {line:,} has {words} columns where others have {table.words}: they are counted from the left"
+                f"line {line:,} has {words} columns where others have {table.words}: they are counted from "
+                "the left"
             )
         for what, lines, count, most in (
             ("summary lines", facts["summary"], len(facts["summary"]), MOST_SUMMARIES),
