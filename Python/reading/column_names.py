@@ -7,7 +7,7 @@ import re
 import unicodedata
 
 from .known import (
-    ABBREVIATED, AXIS_NAMES, HORIZONS, LETTERS, LETTERS_OF_AXES, NEXT_TO_AXES, ROLES, UNITS, UNITS_OF_TIME
+    AXIS_NAMES, HORIZONS, LETTERS, LETTERS_OF_AXES, NEXT_TO_AXES, ROLES, UNITS, UNITS_OF_TIME
 )
 
 
@@ -45,7 +45,6 @@ def meaning(name):
     joined = "".join(words)
     for role, names in ROLES:
         whole = joined in names and (len(words) == 1 or len(joined) > 3)  # "X L" is no "xl"
-        whole |= joined in ABBREVIATED & names
         if whole or role == "a measure" and names.intersection(words):
             return Meaning(role=role)
     roles = [role for role, names in ROLES if names.intersection(words) and min(map(len, words)) > 1]

@@ -79,7 +79,7 @@ ROLES = (
         "id fid oid objectid nr no num nummer number numero point pt pkt punkt punktnr "
         "punktnummer ptnr punto ponto punti punt puntnr puntnummer pnr pno name matricule station "
         "index row pid ptid ident uid gid serial nome nombre nom nazwa numer naam pointid "
-        "pointnumber pointno pointname p idx piste pistenumero pistenro bod cislo cislobodu cb eb"
+        "pointnumber pointno pointname p idx piste pistenumero pistenro bod cislo cislobodu"
     )),
     ("a line, trace or place in a grid", _words(
         "line inline il iline xline crossline xl trace tr cdp cmp sp shotpoint shot bin ffid "
@@ -105,7 +105,6 @@ ROLES = (
         "antenna ant target instrument prism rod pole vel vx vy vz"
     )),
 )
-ABBREVIATED = _words("cb eb")  # "č.b.", also as read from another code page
 COLOURS = {
     "red": _words("red r rot rouge"),
     "green": _words("green g gruen grun vert"),
@@ -152,18 +151,22 @@ NO_TABLES = (
 # Numbers of fixed width without a blank between, and what looks like them.
 TOUCHING = r"[-+]?\d+\.\d+([-+]\d*\.\d+|\.\d+)+"
 DATE = r"\d{1,2}\.\d{1,2}\.\d{2,4}|\d+(\.\d+){3}"
-COMMA_IN_QUOTES = r"\"\s*[-+]?\d+,\d+\s*\"\s*,"  # "1,5","2,5"
-# What keeps words from being numbers, and what it is.
+# What keeps words from being numbers, and what an error says of it.
 BLANK_IN_NUMBER = r"\d[\u00a0\u202f]\d{3}"
-THOUSANDS = "marks between thousands"
+_EXPORT = "numbers with {} cannot be read; export plain decimals"
+THOUSANDS = _EXPORT.format("marks between thousands")
+COMMAS_TWICE = (
+    "commas stand for decimals and between columns; export it with semicolons between columns, or with decimal points"
+)
 NO_NUMBERS = (
     (
         r"(?<!\w)\d{1,3}(?P<sign>[,.' ])\d{3}(?P=sign)\d{3}|(?<![\d.])\d{1,3},\d{3}\.\d|"
         r"(?<![\d.,])\d{1,3}\.\d{3},\d+(?![\d.])|" + BLANK_IN_NUMBER,
         THOUSANDS,
     ),
-    (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", "degrees, minutes and seconds"),
-    (r"\d\s?[NSEW]\b", "a letter for north, south, east or west"),
+    (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", _EXPORT.format("degrees, minutes and seconds")),
+    (r"\d\s?[NSEW]\b", _EXPORT.format("a letter for north, south, east or west")),
+    (r"\"\s*[-+]?\d+,\d+\s*\"\s*,", COMMAS_TWICE),  # "1,5","2,5"
 )
 GROUPED = r"[-+]?[1-9]\d{0,2}[.,]\d{3}"  # a number with a mark between thousands, or with three decimals
 # Lines of numbers with blanks between thousands, parted by another sign or all with decimals: (pattern, the share of

@@ -10,7 +10,7 @@ import re
 
 from .column_names import known_names, meaning, plain, length_unit
 from .known import (
-    BLANK_IN_NUMBER, BLANKS_IN_THOUSANDS, COMMA_IN_QUOTES, COMMENT_MARKS, DATE, ESRI_GRID, GROUPED, MISSING, NEXT_TO_AXES,
+    BLANK_IN_NUMBER, BLANKS_IN_THOUSANDS, COMMAS_TWICE, COMMENT_MARKS, DATE, ESRI_GRID, GROUPED, MISSING, NEXT_TO_AXES,
     NO_NUMBERS, NO_TABLES, NUMBERED_NAME, PAIRS, SEPARATORS, SEXAGESIMAL, SURFER_GRID, THOUSANDS, TOUCHING, WITH_DECIMALS
 )
 from ..messages import FileError
@@ -86,13 +86,11 @@ def find_layout(path, lines, needed):
     best, most = max(LAYOUTS, key=rows_and_numbers), max(map(max, counts.values()))
     if rows_and_numbers(best)[0] and not share(BLANK_IN_NUMBER):
         if not best.separator and any(share(pattern) > least for pattern, least in BLANKS_IN_THOUSANDS):
-            raise no_plain_decimals(path)
+            raise FileError(f"{path}: {THOUSANDS}")
         return best
-    for pattern, what in NO_NUMBERS:
+    for pattern, words in NO_NUMBERS:
         if share(pattern):
-            raise no_plain_decimals(path, what)
-    if share(COMMA_IN_QUOTES):
-        raise commas_twice(path)
+            raise FileError(f"{path}: {words}")
     touching = [word for word in map(touching_in, sample) if word]
     if 2 * len(touching) > len(sample):
         raise FileError(f"{path}: {are_touching(touching[0])}")
@@ -101,17 +99,6 @@ def find_layout(path, lines, needed):
     raise FileError(
         f"{path}: no line holds {needed} numbers; the most is {most}. "
         f"{'x, y and z' if needed == 3 else 'x and y'} are needed in columns of their own"
-    )
-
-
-def no_plain_decimals(path, what=THOUSANDS):
-    return FileError(f"{path}: numbers with {what} cannot be read; export plain decimals")
-
-
-def commas_twice(path):
-    return FileError(
-        f"{path}: commas stand for decimals and between columns; export it with semicolons between columns, or "
-        "with decimal points"
     )
 
 
@@ -146,7 +133,7 @@ def check_marks(path, rows, columns):
     if all(signs.values()):
         proved |= any(all(map(grouped.fullmatch, found)) for found in signs.values())
     if proved:
-        raise no_plain_decimals(path)
+        raise FileError(f"{path}: {THOUSANDS}")
 
 
 def doubtful_marks(rows, x, y, z):
@@ -170,7 +157,7 @@ def check_names(path, layout, before, rows, names, width, advice):
     """
     rows = [" ".join(row) for row in rows if len(row) == width]
     if layout.separator == "," and are_parted_by_commas(rows):
-        raise commas_twice(path)
+        raise FileError(f"{path}: {COMMAS_TWICE}")
     if not names and len(rows) > 1 and all(re.fullmatch(SEXAGESIMAL, row) for row in rows):
         if any(re.match(WITH_DECIMALS, row) for row in rows):
             raise FileError(
