@@ -6,7 +6,8 @@ Of files, .npy and .npz, and as reconstruct() takes them."""
 import numpy
 
 from ..clouds import Cloud, add_array, make_points, slices
-from .columns import MOST_COLUMNS, as_grid, are_heights, meaning
+from .column_names import meaning
+from .columns import MOST_COLUMNS, are_heights, as_grid
 from ..messages import FileError
 from .rasters import raster_cloud
 

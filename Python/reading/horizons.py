@@ -9,7 +9,7 @@ import warnings
 import numpy
 
 from ..clouds import Cloud, add_array, make_lines, make_points
-from .columns import meaning
+from .column_names import meaning
 from .formats import HEAD
 from ..messages import FileError, Reason, counted
 from ..progress import no_progress, lines_with_progress

@@ -216,15 +216,13 @@ def find_names(layout, head, width, one_may_lack=True):
     They stand in one line, with the separator of the data or another; or a line each, numbered as
     "3: X", or between BEGIN HEADER and END HEADER.
     """
-    candidates = []
+    matches = [match for match in map(NUMBERED_NAME.match, head) if match]
+    found = {int(match.group(1)): match.group(2).strip('" ') for match in matches}
+    candidates = [[found[i] for i in range(1, width + 1) if i in found]]
     upper = [line.upper() for line in head]
     if "BEGIN HEADER" in upper and "END HEADER" in upper:
         part = head[upper.index("BEGIN HEADER") + 1 : upper.index("END HEADER")]
         candidates.append([name.split(",")[-1] for name in part])
-    matches = [match for match in map(NUMBERED_NAME.match, head) if match]
-    found = {int(match.group(1)): match.group(2).strip('" ') for match in matches}
-    if set(found) >= set(range(1, width + 1)):
-        candidates.append([found[i] for i in range(1, width + 1)])
     for line in reversed(head):
         for other, words in splittings(layout, line):
             candidates.append(words)

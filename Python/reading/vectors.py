@@ -8,7 +8,7 @@ import os
 import numpy
 
 from ..clouds import Cloud, add_array, make_lines, make_points, set_crs
-from .columns import meaning
+from .column_names import meaning
 from .formats import HEAD, is_table_with_geometry
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError, Reason
