@@ -31,12 +31,11 @@ from .clouds import (
 )
 from .messages import ElevationSurfaceError, Reason
 from .ranks import before, together, total
-from .reading import leave_out
-from .reading.columns import choose_columns
+from .reading.columns import Choice
 from .reading.layouts import Layout
-from .reading.nulls import take_out
+from .reading.nulls import leave_out, take_out
 from .reading.upwards import notes_on_up
-from .reading.vtk_files import points_of_grid
+from .reading.vtk_files import grid_points
 
 SAMPLE = 3000  # rows by which the columns of a table are recognised
 
@@ -147,7 +146,7 @@ def grid_clouds(grids, array, ranks):
             copy.ShallowCopy(grid)
             grid = copy
             grid.GetPointData().SetActiveScalars(array)
-        clouds.append(points_of_grid("input", grid, nodes_of(extents, i) if ranks else None))
+        clouds.append(grid_points("input", grid, nodes_of(extents, i) if ranks else None))
         clouds[-1].crs = crs_of(grid)
     if ranks and not total(ranks, sum(cloud.points.GetNumberOfPoints() for cloud in clouds)):
         raise ElevationSurfaceError("input: all pixels are without data")
@@ -237,9 +236,7 @@ def table_clouds(tables, options, ranks):
     head = numpy.arange(min(count, SAMPLE))
     some = numpy.unique(numpy.linspace(0, count - 1, min(count, SAMPLE)).astype("i8"))
     rows = together(ranks, lambda: rows_at(head)) + together(ranks, lambda: rows_at(some))
-    choice = choose_columns(
-        "input", rows, len(head), Layout(None), names, len(names), options.columns, 3, None
-    )
+    choice = Choice("input", rows, len(head), Layout(None), names, len(names), options.columns, 3, None)
     clouds = []
     for table, columns, begin in zip(tables, every, begins.tolist()):
         chosen = [numbers_of(columns[names[i]], names[i], begin) for i in choice.indices]

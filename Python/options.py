@@ -216,7 +216,7 @@ def check_options(options):
         if options.picture is not None:
             check_suffix(options.picture, (".png",), "written as a picture")
         if like:
-            reading.frame_of(like)
+            reading.raster_frame(like)
         for path in options.files:
             reading.check_options(path, **read_options(options))
         if options.in_pieces:

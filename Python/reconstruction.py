@@ -31,8 +31,8 @@ from .paths import check_suffix
 from .planes import in_plane, turn_back
 from .properties import COLOURS, PROPERTIES, checked
 from .ranks import extremes, total
-from .reading.arrays import cloud_of_columns, cloud_of_grid, columns_of
-from .reading.facing import faces_of, notes_on_faces
+from .reading.arrays import column_cloud, grid_cloud, named_columns
+from .reading.facing import find_faces, notes_on_faces
 from .spreading import ORIGINAL_IDS, follow_points, last_id, original_ids, without_unused
 from .steps import Step, triangulate, trim_along, trim_few
 from .vtkElevationSurface import vtkFillElevationHoles
@@ -43,7 +43,7 @@ from .vtkElevationSurface import vtkFillElevationHoles
 def as_cloud(points: Points, x: Any = None, y: Any = None) -> Cloud:
     """Points of any accepted kind as a Cloud; x and y are those of a grid."""
     if x is not None or y is not None:
-        return cloud_of_grid("points", array_of(points, "points", None), x, y)
+        return grid_cloud("points", array_of(points, "points", None), x, y)
     if isinstance(points, Cloud):
         return points
     if isinstance(points, vtkPointSet):
@@ -53,14 +53,14 @@ def as_cloud(points: Points, x: Any = None, y: Any = None) -> Cloud:
     if isinstance(points, (str, os.PathLike)):
         raise TypeError(f"points: a file's name; use reconstruct(read({os.fspath(points)!r}))")
     if isinstance(points, (vtkImageData, vtkRectilinearGrid)) and points.GetNumberOfPoints():
-        from .reading.vtk_files import points_of_grid
+        from .reading.vtk_files import grid_points
 
-        return points_of_grid("points", points)
+        return grid_points("points", points)
     if isinstance(points, vtkDataSet):
         raise TypeError(f"points: {points.GetClassName()} has no elevations; a vtkPointSet has")
     fields = getattr(getattr(points, "dtype", None), "names", None)
     if fields or hasattr(points, "keys"):
-        return cloud_of_columns("points", *columns_of("points", points))
+        return column_cloud("points", *named_columns("points", points))
     array = array_of(points, "points", None)
     if array.shape[1] != 3:
         raise ValueError(
@@ -74,7 +74,7 @@ def mesh_cloud(points):
     """
     from .reading.vtk_files import with_hidden_nodes
 
-    faces = faces_of(points)
+    faces = find_faces(points)
     try:
         return Cloud(with_hidden_nodes(points), notes_on_faces(faces) if faces else ())
     except ElevationSurfaceError as error:

@@ -10,7 +10,6 @@ its own.
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
-from vtkmodules.util.vtkConstants import VTK_ID_TYPE, VTK_INT, VTK_LONG, VTK_LONG_LONG, VTK_SHORT
 from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints, vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
@@ -21,7 +20,6 @@ from .ranks import agreed, all_values, before, collected, packed, shared, togeth
 from .vtkElevationSurface import vtkTrimOutwardTriangles
 
 ORIGINAL_IDS = "OriginalPointIds"  # of points of the input, in a surface without unused points
-ID_TYPES = (VTK_ID_TYPE, VTK_LONG_LONG, VTK_LONG, VTK_INT, VTK_SHORT)
 IDS = "PlaceInInput"  # made for the way, where points have no global ids
 GHOSTS = vtkDataSetAttributes.GhostArrayName()
 RANK_FIELDS = ("WorkOfRank", "WorkOfTrim")  # field data
@@ -108,11 +106,13 @@ def follow_points(ranks, earlier, reasons, later, points):
 
 
 def original_ids(data):
-    """The array OriginalPointIds of points, (n,) of the integers that UsedPoints.cxx knows, or None."""
-    array = data.GetPointData().GetAbstractArray(ORIGINAL_IDS)
-    if array is None or array.GetDataType() not in ID_TYPES or array.GetNumberOfComponents() != 1:
+    """The array OriginalPointIds of points, (n,) of signed integers longer than a byte, as the filters take
+    them, or None."""
+    array = data.GetPointData().GetArray(ORIGINAL_IDS)
+    if array is None or array.GetNumberOfComponents() != 1 or array.GetDataTypeSize() < 2:
         return None
-    return vtk_to_numpy(array)
+    values = vtk_to_numpy(array)
+    return values if values.dtype.kind == "i" else None
 
 
 def without_unused(ranks, surface, last):

@@ -168,7 +168,6 @@ def triangulate(run, lines, error):
         hidden = marked_points(points, vtkDataSetAttributes.HIDDENPOINT)
         why = why_no_triangle(ranks, coordinates_of(points)[~hidden], limit, result.warnings)
         count = total(ranks, numpy.count_nonzero(hidden))
-        why = why.rstrip(".") if count else why
         why += f"; {counted(count, 'point is', 'points are')} marked as hidden" if count else ""
         raise ElevationSurfaceError(together(ranks, lambda: [why])[0])
 
@@ -314,12 +313,12 @@ def why_no_triangle(ranks, xyz, limit, warnings):
                if any(one.code == "PointsOnWall" for one in warnings) else "")
         )
     name = argument("maximum_edge_length")
-    words = f"no surface: no triangle has edges of at most {limit:g}; use a larger {name}."
+    words = f"no surface: no triangle has edges of at most {limit:g}; use a larger {name}"
     for one in warnings:
         if one.code == "FewTrianglesAdvice":
             words += (
-                f" Between neighbours, the shortest edge is {one.values['shortest']} long, the median "
+                f". Between neighbours, the shortest edge is {one.values['shortest']} long, the median "
                 f"{one.values['median']}. A {name} of {one.values['better']} keeps a triangle at 95 % of "
-                "the points."
+                "the points"
             )
     return words

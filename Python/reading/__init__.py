@@ -11,16 +11,15 @@ from typing import Any, Union
 
 import numpy
 
-from ..clouds import Cloud, ReadOptions, coordinates_of, keep_points, make_lines, turn_over
+from ..clouds import Cloud, ReadOptions, make_lines, turn_over
 from ..description import DESCRIBED, listing
 from .formats import recognise
 from ..messages import FileError, Reason, did_you_mean
 from ..names import option
 from ..progress import no_progress, share
 from ..projecting import notes_on_degrees, project
-from ..ranks import total
 from ..selecting import columns_in, layer_condition, select
-from .nulls import blank_attributes, take_out
+from .nulls import blank_attributes, leave_out, take_out
 from .text import read_line_table, read_table
 from .unpacking import STANDARD_INPUT, is_plain, unpacked
 from .upwards import notes_on_up
@@ -83,13 +82,13 @@ def read_whole(path, options):
     return cloud
 
 
-def frame_of(path):
+def raster_frame(path):
     """(the Frame of the raster in a file, its coordinate reference system or None). Raises FileError
     where it holds none."""
     with unpacked(os.fspath(path)) as (local, _):
         kind, _ = recognise(local)
         if kind.module == "rasters":
-            from .rasters import frame_of as read_frame
+            from .rasters import raster_frame as read_frame
 
             frame, crs = read_frame(local)
         else:
@@ -147,18 +146,6 @@ def upright_note(points):
     ]
 
 
-def leave_out(path, cloud, no_data, ranks=None):
-    """Takes the points of this elevation out of a cloud; ranks: see take_out()."""
-    keep = coordinates_of(cloud.points)[:, 2] != no_data
-    lost = total(ranks, numpy.count_nonzero(~keep))
-    if not total(ranks, numpy.count_nonzero(keep)):
-        raise FileError(f"{path}: all points have the elevation that marks missing data")
-    if lost:
-        cloud.left_out[Reason("point", "without data")] = lost
-    if not keep.all():
-        keep_points(cloud, numpy.flatnonzero(keep))
-
-
 def read_faults(path, depth=False, progress=no_progress):
     """The faults or breaklines of a file as vtkPolyData with lines or polygons.
 
@@ -196,7 +183,7 @@ def read_lines(path, singular, what, read_text_lines, progress):
         return kind.line_reader()(local, singular, progress)
 
 
-def lines_of_text(path, table, what):
+def text_lines(path, table, what):
     """The lines of a text file as vtkPolyData: table is what read_table() gives of it."""
     rows, numbers, starts, _ = table
     bad = numpy.flatnonzero(~numpy.isfinite(rows).all(axis=1))
@@ -210,8 +197,8 @@ def lines_of_text(path, table, what):
 
 
 def text_faults(path, progress):
-    return lines_of_text(path, read_line_table(path, progress), "a point of a fault")
+    return text_lines(path, read_line_table(path, progress), "a point of a fault")
 
 
 def text_boundary(path, progress):
-    return lines_of_text(path, read_table(path, 2, progress), "a boundary point")
+    return text_lines(path, read_table(path, 2, progress), "a boundary point")

@@ -9,7 +9,7 @@ import numpy
 from ..clouds import Cloud, make_points
 from ..messages import FileError
 from ..progress import items_with_progress
-from .facing import check_faces, made_of
+from .facing import check_faces, make_faces
 
 
 def are_numbers(words, width):
@@ -19,7 +19,7 @@ def are_numbers(words, width):
         return False
 
 
-def rows_of(path, stream, number, count, width, what):
+def read_rows(path, stream, number, count, width, what):
     """(count, width) numbers of the next lines of a file, which may go on behind them."""
     try:
         lines = [line.split()[:width] for line in itertools.islice(stream, count)]
@@ -39,8 +39,8 @@ def read_points(path, options):
         if len(counts) < 2 or not all(word.isdigit() for word in counts[:2]) or not int(counts[1]):
             raise FileError(f"{path}, line 2: does not give the number of elements and nodes, as an ADCIRC mesh does")
         elements, count = map(int, counts[:2])
-        nodes = rows_of(path, items_with_progress(stream, options.progress, count), 3, count, 4, "nodes")
-        faces = rows_of(path, stream, 3 + count, elements, 5, "elements")
+        nodes = read_rows(path, items_with_progress(stream, options.progress, count), 3, count, 4, "nodes")
+        faces = read_rows(path, stream, 3 + count, elements, 5, "elements")
     places = {node: place for place, node in enumerate(nodes[:, 0])}
     xyz = nodes[:, 1:] * (1.0, 1.0, 1.0 if options.depth else -1.0)
     cloud = Cloud(make_points(xyz), [f"ADCIRC mesh '{title.decode('latin-1').strip()[:40]}'"])
@@ -54,5 +54,5 @@ def read_points(path, options):
         node = f"{error.args[0]:g}"
         raise FileError(f"{path}: is damaged: an element has the node {node}, which is not there") from None
     if len(corners) and not options.points_only:
-        cloud.notes += check_faces(path, made_of(xyz, corners), options)
+        cloud.notes += check_faces(path, make_faces(xyz, corners), options)
     return cloud

@@ -6,9 +6,10 @@ Of files, .npy and .npz, and as reconstruct() takes them."""
 import numpy
 
 from ..clouds import Cloud, add_array, make_points, slices
-from .columns import MOST_COLUMNS, as_grid, is_of_heights, meaning
+from .column_names import meaning
+from .columns import MOST_COLUMNS, are_heights, as_grid
 from ..messages import FileError
-from .rasters import points_of_raster
+from .rasters import raster_cloud
 
 
 def loaded(path):
@@ -31,7 +32,7 @@ def without_mask(values):
     return values.astype("f8").filled(numpy.nan) if is_masked else numpy.asarray(values)
 
 
-def columns_of(path, array):
+def named_columns(path, array):
     """({name: column}, notes) of an array of rows, or with fields, or of a dictionary of arrays."""
     notes = []
     if hasattr(array, "keys"):
@@ -67,11 +68,11 @@ def by_axis(path, columns):
     return {axis_of.get(name, name): values for name, values in columns.items()}
 
 
-def cloud_of_columns(path, columns, notes=()):
+def column_cloud(path, columns, notes=()):
     """A Cloud of columns: points, or the nodes of a grid where z is two-dimensional."""
     z = columns["z"]
     if z.ndim == 2:
-        return cloud_of_grid(path, z, columns.get("x"), columns.get("y"))
+        return grid_cloud(path, z, columns.get("x"), columns.get("y"))
     wrong = [name for name, values in columns.items() if values.shape != z.shape and name in "xy"]
     if wrong or z.ndim != 1:
         shapes = ", ".join(f"{name} {' x '.join(map(str, columns[name].shape))}" for name in "xyz")
@@ -85,7 +86,7 @@ def cloud_of_columns(path, columns, notes=()):
     return cloud
 
 
-def cloud_of_grid(path, z, x=None, y=None):
+def grid_cloud(path, z, x=None, y=None):
     """The nodes of a grid, z of (rows, columns), as a Cloud. NaN is not a node.
 
     x, y  vectors, for the columns and the rows, or arrays like z; None: numbers from 0
@@ -102,7 +103,7 @@ def cloud_of_grid(path, z, x=None, y=None):
         shapes = ", ".join(f"{name} {' x '.join(map(str, v.shape))}" for name, v in zip("xyz", (x, y, z)))
         needed = f"x needs {columns} values and y {rows}, or each as many as z"
         raise FileError(f"{path}: {needed}; the shapes are {shapes}")
-    cloud = points_of_raster(path, *(v.astype("f8") for v in (x, y, z)))
+    cloud = raster_cloud(path, *(v.astype("f8") for v in (x, y, z)))
     cloud.notes += notes
     return cloud
 
@@ -117,7 +118,7 @@ def check_certain(path, array):
         raise FileError(f"{shape}, as x and y without z; if it is a grid of elevations, {as_grid(path, load)}")
     if rows == 3 and columns > MOST_COLUMNS:
         way = points.format(load + ".T")
-    elif not are_rows(array) or not is_of_heights(array):
+    elif not are_rows(array) or not are_heights(array):
         return
     raise FileError(f"{shape}, points or a grid of elevations; if points, {way}; if a grid, {as_grid(path, load)}")
 
@@ -135,16 +136,16 @@ def read_array(path, options):
         shape = " x ".join(map(str, array.shape)) or "one"
         if array.ndim != 2 or array.dtype.kind not in "fiu" or min(array.shape) < 2:
             raise FileError(f"{path}: holds {shape} of {array.dtype}; rows of x, y and z, or a grid, are needed")
-        return cloud_of_grid(path, array)
-    return cloud_of_columns(path, *columns_of(path, array))
+        return grid_cloud(path, array)
+    return column_cloud(path, *named_columns(path, array))
 
 
-def columns_of_rows(path):
+def row_columns(path):
     """({name: column}, notes) of an array of rows, or with fields, which is not read yet."""
     array = loaded(path)
     if hasattr(array, "keys") or not array.dtype.names and not are_rows(array):
         raise FileError(f"{path}: is not an array of rows of x, y and z, so it is not read in pieces")
-    return columns_of(path, array)
+    return named_columns(path, array)
 
 
 class ArraySlices:
@@ -152,7 +153,7 @@ class ArraySlices:
 
     def __init__(self, path, options, part):
         self.path, self.progress = path, options.progress
-        columns, self.notes = columns_of_rows(path)
+        columns, self.notes = row_columns(path)
         self.part = part.rows(len(columns["x"]))
         self.others = [name for name in columns if name not in "xyz"]
 
@@ -160,7 +161,7 @@ class ArraySlices:
         begin, end = self.part.start, self.part.stop
         for part in slices(end, first=begin):
             # Opened anew, as what has been read through a mapped file counts as memory in use.
-            columns = columns_of_rows(self.path)[0]
+            columns = row_columns(self.path)[0]
             points = numpy.column_stack([columns[axis][part].astype("f8") for axis in "xyz"])
             yield points, {name: columns[name][part] for name in self.others}
             self.progress((part.stop - begin) / (end - begin))

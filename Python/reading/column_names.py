@@ -7,7 +7,7 @@ import re
 import unicodedata
 
 from .known import (
-    ABBREVIATED, AXES, BESIDE, HORIZONS, LETTERS, LETTERS_OF_AXES, ROLES, SEISMIC, UNITS, UNITS_OF_TIME
+    AXIS_NAMES, HORIZONS, LETTERS, LETTERS_OF_AXES, NEXT_TO_AXES, ROLES, UNITS, UNITS_OF_TIME
 )
 
 
@@ -45,57 +45,43 @@ def meaning(name):
     joined = "".join(words)
     for role, names in ROLES:
         whole = joined in names and (len(words) == 1 or len(joined) > 3)  # "X L" is no "xl"
-        whole |= joined in names & ABBREVIATED
-        if whole or role == "a measure" and any(word in names for word in words):
+        if whole or role == "a measure" and names.intersection(words):
             return Meaning(role=role)
-    extra = [w for w in plain(inside) if any(w in names and r == 1 for _, r, _, names in AXES)]
-    axis = _axis_of(words, joined, extra)
-    if axis:
-        return axis
-    for role, names in ROLES:
-        if words and any(word in names for word in words) and not any(len(w) == 1 for w in words):
-            return Meaning(role=role)
-    return Meaning()
+    roles = [role for role, names in ROLES if names.intersection(words) and min(map(len, words)) > 1]
+    return _axis_meaning(words, joined, plain(inside)) or Meaning(role=(roles or [""])[0])
 
 
-def _axis_of(words, joined, extra):
-    whole = [(a, r, d) for a, r, d, names in AXES if joined in names]
-    found = [(a, r, d, w) for a, r, d, names in AXES for w in words if w in names]
+def _axis_meaning(words, joined, inside):
+    """The Meaning of a name of an axis, or None."""
+    named = [word for word in words if word in AXIS_NAMES]
     # "Longitude_E": the word says more than the letter.
-    found = [one for one in found if one[3] not in LETTERS_OF_AXES] or found
-    found = whole or [one[:3] for one in found]
-    found += [(a, r, d) for a, r, d, names in AXES for w in extra if w in names]
-    if not found:
-        return None
-    if len({axis for axis, _, _ in found}) > 1:
+    found = [joined] if joined in AXIS_NAMES else [w for w in named if w not in LETTERS_OF_AXES] or named
+    found = [AXIS_NAMES[word] for word in found]
+    found += [AXIS_NAMES[word] for word in inside if word in AXIS_NAMES and AXIS_NAMES[word][1] == 1]
+    if len({axis for axis, *_ in found}) > 1:
         # "X (Nord)": the word says more than the letter.
-        found = [(a, r, d) for a, r, d in found if r == 1 and a != "z"]
-        if len({axis for axis, _, _ in found}) != 1:
-            return None
-    axis, rank, direction = min(found)
-    direction = max(d for _, _, d in found)
-    known = frozenset().union(*(names for _, _, _, names in AXES))
-    beside = tuple(w for w in words if w not in known) if not whole else ()
-    strange = [word for word in beside if word not in BESIDE]
-    if axis == "z" and "alt" in words and len(words) > 1 and any(
-        w != "alt" and w in names for a, _, _, names in AXES if a == "z" for w in words
-    ):
-        strange.append("alt")  # "Höhe_alt": the old one
-    if strange:
-        if max(len(word) for word in words if word in known) < 2 or rank == 4:
+        found = [one for one in found if one[1] == 1 and one[0] != "z"]
+    if len({axis for axis, *_ in found}) != 1:
+        return None
+    axis, rank, _ = min(found)
+    beside = [w for w in words if w not in AXIS_NAMES and joined not in AXIS_NAMES]
+    heights = [w for w in named if AXIS_NAMES[w][0] == axis == "z"]
+    is_old = "alt" in heights and len(set(heights)) > 1  # "Höhe_alt"
+    if is_old or not NEXT_TO_AXES.issuperset(beside):
+        if max(map(len, named), default=0) < 2 or rank == 4:
             return None  # a single letter among words that mean something else
         rank += 5
-    return Meaning(axis, rank, direction, "", tuple(sorted(beside)))
+    return Meaning(axis, rank, max(direction for *_, direction in found), "", tuple(sorted(beside)))
 
 
-def unit_of(name):
+def length_unit(name):
     """The unit of length in a column's name, as "feet" for "Z (ft)" and "elev_ft", or ""."""
     outside, inside = in_brackets(name)
     words = plain(inside) or plain(outside)[1:]
     return next((unit for unit, names in UNITS.items() if words and words[-1] in names), "")
 
 
-def direction_of(name):
+def z_direction(name):
     """"depth" or "time" where a name, or its unit in brackets, says that z counts downwards, or ""."""
     is_time = "".join(plain(in_brackets(name)[1])) in UNITS_OF_TIME
     return meaning(name).direction or ("time" if is_time else "")
@@ -104,25 +90,14 @@ def direction_of(name):
 def says_up(name):
     """Whether a name says that z counts upwards, as "Elevation" does and "Z" does not."""
     found = meaning(name)
-    return found.axis == "z" and found.rank == 1 and not direction_of(name)
+    return found.axis == "z" and found.rank == 1 and not z_direction(name)
 
 
-def is_of_horizon(name):
+def names_horizon(name):
     """Whether the name of a file says that it holds a horizon, or depths."""
     return any(
-        word in HORIZONS or len(word) > 4 and meaning(word).direction == "depth"
-        for word in plain(name)
+        word in HORIZONS or len(word) > 4 and meaning(word).direction == "depth" for word in plain(name)
     )
-
-
-def is_seismic(name):
-    """Whether a name is that of a line or trace of a seismic survey."""
-    return "".join(plain(name)) in SEISMIC
-
-
-def is_beside(name):
-    """Whether a word may stand next to the name of an axis, as "coordinate" does."""
-    return all(word in BESIDE for word in plain(name))
 
 
 def known_names(names):

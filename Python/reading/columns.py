@@ -6,7 +6,6 @@ Names, or the places of columns, give the readings that are possible; each has a
 better than the next, a note says what it rests on. If not, an error shows both, with the first rows.
 """
 
-import dataclasses
 import itertools
 import math
 import os
@@ -14,38 +13,22 @@ import re
 
 import numpy
 
-from .column_names import Meaning, in_brackets, is_seismic, meaning, plain
+from .column_names import Meaning, in_brackets, meaning, plain
 from .known import (
-    CLEAR, CLEAR_OF_POOR, COLOURS, CROSSLINES, FINNISH, GOOD, HIGHEST, INLINES, MOST_STEP_OF_LINES,
-    PARTS_OF_TIME, TIMES, WEIGHTS
+    CLEAR, CLEAR_OF_POOR, COLOURS, FINNISH, GOOD, HIGHEST, LINES_AS_AXES, MOST_STEP_OF_LINES, PARTS_OF_TIME, SEISMIC,
+    TIMES, WEIGHTS
 )
 from .nulls import usual_nulls
 from ..messages import FileError
 from ..names import option
 
-SHOWN, MOST_SHOWN = 3, 12  # rows and columns, below a question
+SHOWN_ROWS, SHOWN_COLUMNS = 3, 12  # below a question
 MOST_COLUMNS = 12  # of rows of points without names; with more, they are a grid
 ROWS_OF_GRID = 20  # times its columns, and no more
-
-
-@dataclasses.dataclass
-class Choice:
-    """What was found out about the columns.
-
-    indices     of x, y and z
-    extras      {index: name} of the other columns of numbers
-    texts       {index: name} of the columns of text
-    of_numbers  indices of all columns that hold more numbers than text
-    """
-
-    indices: list
-    extras: dict
-    of_numbers: list
-    notes: list
-    z_name: str = ""  # what z is called, with its unit
-    is_horizon: bool = False  # whether lines and traces of a seismic survey stand next to them
-    texts: dict = dataclasses.field(default_factory=dict)
-    angles: str = "no"  # as of a Cloud
+NOT_DECIMALS = re.compile(r"^[^.,]*[.,]?|[eEdD].*$")
+# Why a column is no coordinate, where that counts for others.
+COUNTS_UP, EACH_ONCE = "an id: it counts up by one", "an id: whole numbers, each once"
+PART_OF_TIME = "a part of a date or time"
 
 
 def advice_on_columns():
@@ -54,7 +37,7 @@ def advice_on_columns():
 
 
 @numpy.errstate(all="ignore")
-def is_of_heights(values):
+def are_heights(values):
     """Whether rows of numbers look like a grid of heights: few rows, whose neighbours are near each other, or which
     have many columns, all alike, as those of x, y and z are not."""
     values = numpy.asarray(values, "f8")
@@ -74,104 +57,114 @@ def as_grid(path, source):
     return f"""python3 -c "import numpy; numpy.savez('{target}', z={source})" and then {target}"""
 
 
-@numpy.errstate(all="ignore")
-def choose_columns(path, rows, consecutive, layout, names, width, columns, needed, advice):
-    """Finds the columns of x, y and z, or of x and y. Returns a Choice. Raises FileError.
+class Choice:
+    """Which columns are x, y and z, or x and y, and what was found out about the others.
 
-    rows         some rows as words; the first so many (consecutive) follow each other in the file
-    layout       the Layout of lines
-    names, width  of the columns; names may be None
-    columns      None, or what the user said: names or numbers
-    needed       3 or 2
-    advice       what a user can do where no choice is sure; None: choose columns
+    indices     of x, y and z
+    extras      {index: name} of the other columns of numbers
+    texts       {index: name} of the columns of text
+    of_numbers  indices of all columns that hold more numbers than text
+    z_name      what z is called, with its unit
+    is_horizon  whether lines and traces of a seismic survey stand next to them
+    angles      as of a Cloud
+    reasons     {index: why a column is no coordinate}, by its values
+
+    By column, without nulls: values, finite, low, high, largest, spans, decimals, whole (all values
+    are); numeric are columns with fewer words than numbers.
     """
-    search = Search(path, rows, consecutive, layout, names, width, needed, advice)
-    if columns:
-        search.use_given(columns)
-    elif not search.by_names():
-        search.by_values()
-    search.look_at_values()
-    extras = search.extras()
-    shares = numpy.isfinite(search.read).mean(axis=0)
-    of_numbers = [i for i in range(width) if shares[i] > search.share_of_text[i]]
-    z_name = names[search.indices[-1]] if names and needed == 3 else ""
-    is_horizon = any(map(is_seismic, names)) if names else search.has_line_and_trace
-    return Choice(
-        search.indices, extras, of_numbers, search.notes, z_name, is_horizon, search.texts, search.angles
-    )
 
+    @numpy.errstate(all="ignore")
+    def __init__(self, path, rows, consecutive, layout, names, width, columns, needed, advice):
+        """Raises FileError.
 
-class Search:
-    """The state of choose_columns()."""
-
-    def __init__(self, path, rows, consecutive, layout, names, width, needed, advice):
+        rows         some rows as words; the first so many (consecutive) follow each other in the file
+        layout       the Layout of lines
+        names, width  of the columns; names may be None
+        columns      None, or what the user said: names or numbers
+        needed       3 or 2
+        advice       what a user can do where no choice is sure; None: choose columns
+        """
         self.path, self.layout, self.names, self.width, self.needed = path, layout, names, width, needed
-        self.axes, self.has_line_and_trace, self.has_swapped = "xyz"[:needed], False, False
-        self.has_times = False
-        self.ids = set()  # columns that are so by their values
+        self.rows = [row[:width] + [""] * (width - len(row)) for row in rows]
+        self.consecutive, self.axes = consecutive, "xyz"[:needed]
         self.can_be_chosen, self.advice = advice is None, advice or advice_on_columns()
-        self.first_rows, self.rows = rows[:SHOWN], rows
-        table = [[layout.number(w) for w in row[:width]] + [math.nan] * (width - len(row)) for row in rows]
-        text = numpy.array([[value is None for value in row] for row in table], dtype=bool)
-        self.read = numpy.array(
-            [[math.nan if value is None else value for value in row] for row in table], dtype="f8"
-        )
-        self.values = self.read.copy()  # without nulls, by which columns are judged
+        self.indices, self.extras, self.texts, self.reasons, self.notes = [], {}, {}, {}, []
+        self.z_name, self.is_horizon, self.angles, self.has_swapped = "", False, "no", False
+        self.judge_values()
+        self.judge_names()
+        if columns:
+            self.use_given(columns)
+        elif not self.by_names():
+            self.by_values()
+        self.look_at_values()
+        self.name_others()
+        if names:
+            self.z_name = names[self.indices[-1]] if needed == 3 else ""
+            self.is_horizon = any("".join(plain(name)) in SEISMIC for name in names)
+
+    def judge_values(self):
+        table = [list(map(self.layout.number, row)) for row in self.rows]
+        self.values = numpy.array(table, "f8")
+        self.share_of_text = numpy.equal(numpy.array(table, object), None).mean(axis=0)
+        shares = numpy.isfinite(self.values).mean(axis=0)
+        self.of_numbers = numpy.flatnonzero(shares > self.share_of_text).tolist()
+        self.numeric = [i for i, share in enumerate(self.share_of_text) if share < 0.5]
         for column in self.values.T:
             for _, found in usual_nulls(column):
                 column[found] = numpy.nan
-        self.consecutive = consecutive
-        self.share_of_text = text.mean(axis=0)
-        self.decimals = [
-            max(len(re.sub(r"^[^.,]*[.,]?|[eEdD].*$", "", row[i])) if i < len(row) else 0
-                for row in rows[:500])
-            for i in range(width)
+        self.finite = [column[numpy.isfinite(column)] for column in self.values.T]
+        self.low = [values.min(initial=math.inf) for values in self.finite]
+        self.high = [values.max(initial=-math.inf) for values in self.finite]
+        self.spans = [float(max(high - low, 0.0)) for low, high in zip(self.low, self.high)]
+        self.largest = [max(abs(low), abs(high)) for low, high in zip(self.low, self.high)]
+        decimals = [[len(NOT_DECIMALS.sub("", word)) for word in row] for row in self.rows[:500]]
+        self.decimals = numpy.max(decimals, axis=0).tolist()
+        self.whole = [
+            count == 0 and len(values) > 0 and bool((values == numpy.rint(values)).all())
+            for count, values in zip(self.decimals, self.finite)
         ]
-        self.meanings = [meaning(name) for name in names] if names else [Meaning()] * width
-        letters = ["".join(plain(name)) for name in names or [""] * width]
+
+    def judge_names(self):
+        """Sets meanings; some names have another one next to some others."""
+        letters = ["".join(plain(name)) for name in self.names or [""] * self.width]
+        self.meanings = [meaning(name) for name in self.names or [""] * self.width]
+
+        def mean(others):
+            self.meanings = [others.get(name, m) for name, m in zip(letters, self.meanings)]
+
         if not {"r", "g", "b"} <= set(letters):  # single letters are colours only together
-            self.mean({letter: Meaning() for letter in "rgb"}, letters)
+            mean({letter: Meaning() for letter in "rgb"})
         if set(FINNISH) <= set(letters) and not set(letters) & set("nexy"):
-            self.mean({letter: Meaning(axis, 2) for letter, axis in FINNISH.items()}, letters)
+            mean({letter: Meaning(axis, 2) for letter, axis in FINNISH.items()})
         self.is_in_lines = not any(m.axis in ("x", "y") for m in self.meanings) and all(
-            words & set(letters) for words in (INLINES, CROSSLINES)
+            words & set(letters) for words in LINES_AS_AXES.values()
         )
         if self.is_in_lines:
-            of_lines = [(words, axis) for words, axis in ((INLINES, "x"), (CROSSLINES, "y"))]
-            self.mean({word: Meaning(axis, 8) for words, axis in of_lines for word in words}, letters)
-        self.indices, self.notes, self.texts, self.angles = None, [], {}, "no"
-
-    def mean(self, meanings, letters):
-        """Gives columns of some names another meaning."""
-        self.meanings = [meanings.get(name, m) for name, m in zip(letters, self.meanings)]
+            mean({word: Meaning(axis, 8) for axis, words in LINES_AS_AXES.items() for word in words})
 
     # -- what the user said
 
     def use_given(self, columns):
-        plain_names = ["".join(plain(in_brackets(name)[0])) for name in self.names or []]
-        self.indices = []
+        names = self.names or []
+        joined = ["".join(plain(in_brackets(name)[0])) for name in names]
         for axis, column in zip(self.axes, columns):
             if re.fullmatch(r"\d+", column):
-                index = int(column) - 1
-                if not 0 <= index < self.width:
-                    raise FileError(
-                        f"{self.path}: there is no column {column} for {axis}; "
-                        f"lines have {self.width}"
-                    )
-            elif column in (self.names or []):
-                index = self.names.index(column)
-            elif "".join(plain(column)) in plain_names:
-                index = plain_names.index("".join(plain(column)))
+                found = [int(column) - 1] if 0 < int(column) <= self.width else []
+                error = f"there is no column {column} for {axis}; lines have {self.width}"
             else:
-                known = ", ".join(self.names or []) or "none: the file has no header line"
-                raise FileError(f"{self.path}: there is no column named {column}; names: {known}")
-            if index in self.indices:
-                other = self.axes[self.indices.index(index)]
+                found = [i for i, name in enumerate(names) if name == column]
+                found = found or [i for i, name in enumerate(joined) if name == "".join(plain(column))]
+                known = ", ".join(names) or "none: the file has no header line"
+                error = f"there is no column named {column}; names: {known}"
+            if not found:
+                raise FileError(f"{self.path}: {error}")
+            if found[0] in self.indices:
+                other = self.axes[self.indices.index(found[0])]
                 raise FileError(
                     f"{self.path}: {option('columns')} takes both {other} and {axis} from column "
-                    f"{self.called(index)}; each needs a column of its own"
+                    f"{self.called(found[0])}; each needs a column of its own"
                 )
-            self.indices.append(index)
+            self.indices.append(found[0])
 
     # -- readings
 
@@ -192,11 +185,9 @@ class Search:
         if not self.can_be_chosen:
             raise FileError(f"{self.path}: {why}; {self.advice}")
         ways = [f"{option('columns')} {self.numbered(one)}" for one in readings] + [other] * bool(other)
-        width = min(self.width, max([MOST_SHOWN, *(max(one) + 1 for one in readings)]))
-        shown = [[str(i + 1) for i in range(width)]]
-        shown += [self.names[:width]] if self.names else []
-        shown += [row[:width] + [""] * (width - len(row)) for row in self.first_rows]
-        shown = [[word[:16] for word in row] for row in shown]
+        width = min(self.width, max([SHOWN_COLUMNS, *(max(one) + 1 for one in readings)]))
+        numbers, names = [str(i + 1) for i in range(width)], [self.names] if self.names else []
+        shown = [[word[:16] for word in row[:width]] for row in [numbers, *names, *self.rows[:SHOWN_ROWS]]]
         widths = [max(map(len, column)) for column in zip(*shown)]
         lines = ["  ".join(word.rjust(w) for word, w in zip(row, widths)) for row in shown]
         choose = f"choose {' or '.join(ways)}" if ways else self.advice
@@ -215,10 +206,11 @@ class Search:
         why = f"the names give {known}, but not {' and '.join(missing)}"
         if len(free) < len(missing):
             self.ask([], f"{why}; no column is left for it")
-        readings = {}
-        for indices in itertools.product(*(named[axis] or free for axis in self.axes)):
-            if len(set(indices)) == self.needed:
-                readings[indices] = GOOD + WEIGHTS["one pair"] * self.is_pair(*indices[:2])
+        readings = {
+            indices: GOOD + WEIGHTS["one pair"] * self.is_pair(*indices[:2])
+            for indices in itertools.product(*(named[axis] or free for axis in self.axes))
+            if len(set(indices)) == self.needed
+        }
         doubtful = [axis for axis in self.axes if len(named[axis]) > 1]
         if missing:
             why += f"; it may be {self.listed(free)}"
@@ -232,7 +224,7 @@ class Search:
     def best_named(self, axis):
         """The columns whose names are the best for an axis; those of numbers before others."""
         found = [i for i, m in enumerate(self.meanings) if m.axis == axis]
-        found = [i for i in found if self.share_of_text[i] < 0.5] or found
+        found = [i for i in found if i in self.numeric] or found
         best = min((self.meanings[i].rank for i in found), default=0)
         return [i for i in found if self.meanings[i].rank == best]
 
@@ -243,10 +235,7 @@ class Search:
 
     def free_columns(self, taken, count):
         """Columns for axes that have no name of their own."""
-        free = [
-            i for i in range(self.width)
-            if i not in taken and self.share_of_text[i] < 0.5 and not self.meanings[i].axis
-        ]
+        free = [i for i in self.numeric if i not in taken and not self.meanings[i].axis]
         for roles in (("",), ("a measure", "a code")):
             others = [i for i in free if self.meanings[i].role in roles]
             if others:
@@ -256,28 +245,18 @@ class Search:
         return []
 
     def look_at_names(self, missing):
-        text = ", ".join(f"{a} = {self.called(i)}" for a, i in zip(self.axes, self.indices))
+        x, y = self.indices[:2]
         if self.is_in_lines:
-            self.notes.append(
-                f"no column is named as x or y: {text}; lengths count lines and traces, not metres "
-                f"(see {option('columns')})"
-            )
+            self.note(f"no column is named as x or y: {self.taken()}; lengths count lines and traces, not metres")
         elif missing or self.indices != list(range(self.width)):
             left = f"; {missing[0]} is the only column left" if missing else ""
-            self.notes.append(f"columns by their names: {text}{left} (see {option('columns')})")
-        z = self.meanings[self.indices[-1]]
-        x, y = self.indices[:2]
-        if self.needed == 3:
-            others = [
-                i for i, m in enumerate(self.meanings)
-                if m.axis == "z" and m.rank not in (4, 9) and i not in self.indices
-                and self.share_of_text[i] < 0.5
-            ]
-            if others and z.axis:
-                self.notes.append(
-                    f"z is {self.called(self.indices[2])}; {self.listed(others)} could be too "
-                    f"(see {option('columns')})"
-                )
+            self.note(f"columns by their names: {self.taken()}{left}")
+        others = [
+            i for i in self.numeric
+            if self.meanings[i].axis == "z" and self.meanings[i].rank not in (4, 9) and i not in self.indices
+        ]
+        if self.needed == 3 and others and self.meanings[self.indices[2]].axis:
+            self.note(f"z is {self.called(self.indices[2])}; {self.listed(others)} could be too")
         if self.indices[-1] > x > y and self.meanings[x].rank == self.meanings[y].rank == 0:
             self.notes.append(
                 "Y stands before X, as where X is north; x and y are taken as named "
@@ -288,50 +267,38 @@ class Search:
 
     def by_values(self):
         """Sets the indices from the values of the columns."""
-        every = list(range(self.width))
-        if self.width == self.needed:
+        count = self.needed
+        if self.width == count:
             self.in_their_order()
             return
-        numbers = [i for i in every if self.share_of_text[i] < 0.5 and len(self.finite(i))]
+        numbers = [i for i in self.numeric if len(self.finite[i])]
         usable = [i for i in numbers if not self.meanings[i].role and not self.meanings[i].axis]
-        if len(usable) < self.needed:
-            usable = numbers
-        if len(usable) < self.needed:
+        usable = usable if len(usable) >= count else numbers
+        if len(usable) < count:
             are = "is" if len(usable) == 1 else "are"
-            self.ask([], f"{self.needed} columns of numbers are needed, and there {are} {len(usable)}")
-        if not self.names and len(usable) == self.width and self.needed == 3:
+            self.ask([], f"{count} columns of numbers are needed, and there {are} {len(usable)}")
+        if not self.names and len(usable) == self.width and count == 3:
             self.ask_for_grid()
-        left, reasons = self.without_others(usable)
+        left = self.without_others(usable)
         self.decide(self.scored(left))
-        chosen = self.indices
-        for i in left[: left.index(chosen[0])]:
-            values = self.finite(i)
-            each = self.is_whole(i) and len(numpy.unique(values)) == len(values)
-            self.ids |= {i} if each else set()
-            reasons[i] = (
-                "an id: whole numbers, each once" if each else "no coordinate next to the next"
-            )
-        if self.needed == 3:
-            self.east_and_north(reasons)
-        taken = ", ".join(f"{a} = {self.called(i)}" for a, i in zip(self.axes, self.indices))
-        if self.indices == every[: self.needed]:
-            self.notes.append(
-                f"the first {self.needed} of {self.width} columns are taken as "
-                f"{', '.join(self.axes)} (see {option('columns')})"
-            )
+        for i in left[: left.index(self.indices[0])]:
+            each = self.whole[i] and len(numpy.unique(self.finite[i])) == len(self.finite[i])
+            self.reasons[i] = EACH_ONCE if each else "no coordinate next to the next"
+        if count == 3:
+            self.east_and_north()
+        if self.indices == list(range(count)):
+            self.note(f"the first {count} of {self.width} columns are taken as {', '.join(self.axes)}")
             return
-        why = [
+        why = "".join(
             f"column {self.called(i)} is {reason}; "
-            for i, reason in sorted(reasons.items()) if i < max(self.indices)
-        ]
-        self.notes.append(
-            f"columns by their values: {''.join(why)}{taken} (see {option('columns')})"
+            for i, reason in sorted(self.reasons.items()) if i < max(self.indices)
         )
+        self.note(f"columns by their values: {why}{self.taken()}")
 
     def ask_for_grid(self):
         """Asks where rows may be those of a grid."""
         is_wide, layout = self.width > MOST_COLUMNS, self.layout
-        if is_wide or is_of_heights(self.values):
+        if is_wide or are_heights(self.values):
             lines = "(line.replace(',', '.') for line in open('{}'))" if layout.decimal_comma else "'{}'"
             between = f", delimiter={layout.separator!r}" if layout.separator else ""
             source = f"numpy.loadtxt({lines.format(self.path)}{between})"
@@ -340,53 +307,49 @@ class Search:
 
     def in_their_order(self):
         """Takes columns that are no more than needed as they stand."""
-        order = tuple(range(self.width))
+        self.indices = list(range(self.width))
+        order = tuple(self.indices)
         readings = {order: GOOD}
         if self.names:
-            axes = "x, y or z" if self.needed == 3 else "x or y"
-            taken = ", ".join(f"{a} = {self.called(i)}" for i, a in enumerate(self.axes))
-            self.notes.append(f"no column is named as {axes}: {taken} (see {option('columns')})")
+            self.note(f"no column is named as {'x, y or z' if self.needed == 3 else 'x or y'}: {self.taken()}")
         if self.needed == 3 and not any(m.axis or m.role for m in self.meanings):
-            first = self.is_utm(0, 1) or self.is_utm(1, 0)
             for other in ((1, 2, 0), (2, 1, 0)):  # as z, x, y
-                if self.is_utm(*other[:2]) and not first:
-                    readings[other] = GOOD
+                readings.update({other: GOOD} if self.is_utm(*other[:2]) else {})
             if self.may_be_latitude(*order):
                 readings = {(1, 0, 2): GOOD, order: GOOD}
-            if len(readings) == 1 and len(self.finite(2)) and abs(self.finite(2)).min() > HIGHEST:
+            if len(readings) == 1 and len(self.finite[2]) and abs(self.finite[2]).min() > HIGHEST:
                 self.ask([order, (1, 2, 0)], "the last column is higher than any place, so z may lack or stand first")
         self.decide(readings)
 
     def without_others(self, columns):
-        """(columns that may be coordinates, {column: what it is else}), by the values."""
-        left, reasons = list(columns), {}
-        for i in self.times(left):
-            if len(left) > self.needed:
+        """The columns that may be coordinates, by their values; sets the reasons of the others."""
+        left = list(columns)
+
+        def leave(columns, reason):
+            for i in columns:
                 left.remove(i)
-                reasons[i], self.has_times = "a part of a date or time", True
+                self.reasons[i] = reason
+
+        leave(self.times(left)[: len(left) - self.needed], PART_OF_TIME)
         while len(left) > self.needed:
             first, second = left[:2]
-            if self.is_id(first):
-                self.ids.add(first)
-                reason = "an id: it counts up by one"
-            elif numpy.ptp(self.finite(first)) == 0:
-                reason = "the same in all rows"
-            elif self.is_class(first, second):
-                reason = "a class or line: few whole numbers"
-            else:
+            reason = (
+                COUNTS_UP if self.is_id(first)
+                else "the same in all rows" if self.spans[first] == 0
+                else "a class or line: few whole numbers" if self.is_class(first, second)
+                else ""
+            )
+            if not reason:
                 break
-            reasons[left.pop(0)] = reason
-        for i in left[2:-1] if len(left) > self.needed else ():
-            if self.is_distance(i, *left[:2]):
-                left.remove(i)
-                reasons[i] = "the distance along a line: it grows as x and y go on"
-                break
+            leave([first], reason)
+        between = left[2:-1] if len(left) > self.needed else []
+        along = [i for i in between if self.is_distance(i, *left[:2])]
+        leave(along[:1], "the distance along a line: it grows as x and y go on")
         if self.needed == 3 and len(left) >= 5:
-            for i in self.place_in_grid(left):
-                left.remove(i)
-                reasons[i] = "a line, trace or place in a grid: others follow from it"
-                self.has_line_and_trace = True
-        return left, reasons
+            place = self.place_in_grid(left)
+            leave(place, "a line, trace or place in a grid: others follow from it")
+            self.is_horizon = len(place) > 0
+        return left
 
     def is_distance(self, i, x, y):
         """Whether a column grows by the way between rows, in metres or kilometres, but where a line begins. With even
@@ -401,10 +364,8 @@ class Search:
         for k in range(len(columns) - count + 1):
             x, y, *z = columns[k : k + count]
             place = WEIGHTS["a column is left out"] * (k - 1) if k else WEIGHTS["stands first"]
-            if k == 1 and self.is_grid(x, y) and not self.is_grid(*columns[:2]):
-                place += WEIGHTS["x and y are a grid"]
             readings[x, y, *z] = self.score((x, y, *z)) + place
-            others = [i for i in columns[k + count :] if numpy.ptp(self.finite(i)) > 0]
+            others = [i for i in columns[k + count :] if self.spans[i] > 0]
             if z and others and self.counts_along(z[0]) and not self.may_count(x, y):
                 readings[x, y, *z] += WEIGHTS["z rises along lines"]
                 for other in others:
@@ -416,7 +377,7 @@ class Search:
     def score(self, reading):
         """How much columns look like x, y and z."""
         x, y, *z = reading
-        spans = [float(numpy.ptp(self.finite(i))) if len(self.finite(i)) else 0.0 for i in reading]
+        spans = [self.spans[i] for i in reading]
         alike = abs(self.decimals[x] - self.decimals[y]) <= 1
         alike &= (self.decimals[x] == 0) == (self.decimals[y] == 0)
         found = {
@@ -428,26 +389,18 @@ class Search:
             "x and y are of UTM": self.is_utm(x, y) or self.is_utm(y, x),
         }
         if z:
-            heights = abs(self.finite(z[0]))
+            heights = abs(self.finite[z[0]])
             found["z spans less"] = spans[2] <= 10 * max(spans[:2])
             found["z is higher than any place"] = len(heights) > 0 and heights.min() > HIGHEST
         return sum(WEIGHTS[what] for what, is_so in found.items() if is_so)
 
-    def finite(self, i):
-        values = self.values[:, i]
-        return values[numpy.isfinite(values)]
-
     def steps(self, i):
         return numpy.diff(self.values[: self.consecutive, i])
-
-    def is_whole(self, i):
-        values = self.finite(i)
-        return self.decimals[i] == 0 and len(values) > 0 and (values == numpy.rint(values)).all()
 
     def is_id(self, i):
         """Whole numbers that count up by one, here and there with a gap, and never go back."""
         values = self.values[:, i]
-        if len(values) < 3 or not numpy.isfinite(values).all() or not self.is_whole(i):
+        if len(values) < 3 or not numpy.isfinite(values).all() or not self.whole[i]:
             return False
         steps = numpy.diff(values)
         near = steps[: max(self.consecutive - 1, 1)]
@@ -455,12 +408,12 @@ class Search:
 
     def is_class(self, i, beside):
         """A few small whole numbers next to a column of quite other ones."""
-        values = self.finite(i)
-        if len(values) < 20 or not self.is_whole(i) or values.min() < 0 or values.max() > 255:
+        values = self.finite[i]
+        if len(values) < 20 or not self.whole[i] or self.low[i] < 0 or self.high[i] > 255:
             return False
         few = len(numpy.unique(values)) <= min(32, len(values) // 10)
-        other = numpy.ptp(self.finite(beside)) > 30 * numpy.ptp(values)
-        return few and (other or not self.is_whole(beside))
+        other = self.spans[beside] > 30 * numpy.ptp(values)
+        return few and (other or not self.whole[beside])
 
     def times(self, columns):
         """Columns that are years, months, days, hours, minutes and seconds, in which time goes on."""
@@ -473,75 +426,50 @@ class Search:
                 low, high, factor = PARTS_OF_TIME[part]
                 values = self.values[: self.consecutive, i]
                 even &= bool((values >= low).all() and (values <= high).all())
-                even &= part == "second" or self.is_whole(i)
+                even &= part == "second" or self.whole[i]
                 moment = moment + factor * values
             goes_on = even and self.consecutive > 1 and (numpy.diff(moment) >= 0).mean() >= 0.99
-            small = "year" not in parts and self.finite(found[-1]).max(initial=0) < 30
+            small = "year" not in parts and self.high[found[-1]] < 30
             if goes_on and len(moment) > 2 and numpy.ptp(moment) > 0 and not small:
                 return found
         return []
 
     def may_be_place(self, i):
         """Whether a column may be a line, trace, latitude or longitude in addition to x and y."""
-        return self.is_whole(i) or self.decimals[i] >= 4 and abs(self.finite(i)).max(initial=0) <= 360
+        return self.whole[i] or self.decimals[i] >= 4 and self.largest[i] <= 360
 
     def place_in_grid(self, columns):
         """The two columns from which two others follow, as from line and trace or in degrees."""
-        for i, j in zip(columns, columns[1:]):
-            if not all(self.may_be_place(k) and numpy.ptp(self.finite(k)) > 0 for k in (i, j)):
+        pairs = list(zip(columns, columns[1:]))
+        for place, pair in itertools.product(pairs, pairs):
+            others = [k for k in columns if k > pair[1] and k not in place]
+            if set(place) & set(pair) or not others or not all(map(self.may_be_place, place)):
                 continue
-            rest = [k for k in columns if k not in (i, j)]
-            for pair in zip(columns, columns[1:]):
-                if not set(pair) <= set(rest):
-                    continue
-                larger = self.size(pair) > self.size([i, j])
-                others = [k for k in rest if k > pair[1]][:1]
-                whole = self.is_whole(i) and self.is_whole(j)
-                follow = self.follow_from([i, j], list(pair)) or whole and self.are_rounded(pair, [i, j])
-                if larger and others and follow:
-                    if not self.follow_from([i, j], [pair[0], *others]):  # as in a plane
-                        return [i, j]
-        return []
+            is_larger = math.prod(self.spans[k] for k in pair) > math.prod(self.spans[k] for k in place) > 0
+            follow = self.follow_from(place, pair) or self.follow_from(pair, place, are_rounded=True)
+            if is_larger and follow and not self.follow_from(place, [pair[0], others[0]]):  # as in a plane
+                return place
+        return ()
 
-    def size(self, columns):
-        return float(numpy.prod([numpy.ptp(self.finite(i)) for i in columns]))
-
-    def fit(self, given, wanted):
-        """(what columns leave of others when turned and stretched, the others), or None."""
+    def follow_from(self, given, wanted, are_rounded=False):
+        """Whether columns are a turned and stretched copy of others, to a hundredth; or are rounded: the
+        whole numbers nearest to one, as lines near points."""
         rows = self.values[numpy.isfinite(self.values[:, [*given, *wanted]]).all(axis=1)]
         if len(rows) < 6:
-            return None
-        base = rows[:, given] - rows[:, given].mean(axis=0)
-        goal = rows[:, wanted] - rows[:, wanted].mean(axis=0)
+            return False
+        base, goal = (rows[:, list(some)] - rows[:, list(some)].mean(axis=0) for some in (given, wanted))
         factors, _, rank, _ = numpy.linalg.lstsq(base, goal, rcond=1e-9)
-        turned = abs(numpy.linalg.det(factors)) > 1e-6 * (numpy.abs(factors) ** 2).sum()
-        return (goal - base @ factors, goal) if rank == 2 and turned else None
-
-    def follow_from(self, given, wanted):
-        """Whether columns are a turned and stretched copy of others, to a hundredth."""
-        found = self.fit(given, wanted)
-        if not found:
-            return False
-        rest, spread = found[0].std(axis=0), found[1].std(axis=0)
-        return bool((spread > 0).all() and (rest < 0.01 * spread).all())
-
-    def are_rounded(self, given, wanted):
-        """Whether whole numbers are the nearest to those that follow from others, as lines near points."""
-        found = self.fit(list(given), wanted)
-        wide = all(numpy.ptp(self.finite(i)) >= 10 for i in wanted)
-        return bool(found and wide and len(found[0]) >= 10 and abs(found[0]).max() < 0.6)
-
-    def is_grid(self, x, y):
-        """Whether each value of x stands once with each of y, here and there with a gap."""
-        rows = self.values[: self.consecutive, [x, y]]
-        sizes = [len(numpy.unique(column)) for column in rows.T]
-        if min(sizes) < 2 or sizes[0] * sizes[1] > 1.5 * len(rows):
-            return False
-        return len(numpy.unique(rows, axis=0)) == len(rows)
+        is_turned = abs(numpy.linalg.det(factors)) > 1e-6 * (numpy.abs(factors) ** 2).sum()
+        rest, spread = goal - base @ factors, goal.std(axis=0)
+        fits = (spread > 0).all() and (rest.std(axis=0) < 0.01 * spread).all()
+        if are_rounded:
+            are_wide = all(self.whole[i] and self.spans[i] >= 10 for i in wanted)
+            fits = are_wide and len(rows) >= 10 and abs(rest).max() < 0.6
+        return bool(rank == 2 and is_turned and fits)
 
     def may_count(self, x, y):
         """Whether columns may be line and trace: small, whole, in small steps."""
-        if not all(self.is_whole(i) and abs(self.finite(i)).max() < 1e5 for i in (x, y)):
+        if not all(self.whole[i] and self.largest[i] < 1e5 for i in (x, y)):
             return False
         steps = [abs(self.steps(i)) for i in (x, y)]
         usual = [numpy.median(s[s > 0]) if (s > 0).any() else 0.0 for s in steps]
@@ -551,7 +479,7 @@ class Search:
         """Whether numbers go one way, in even steps within their rounding, but where a line begins."""
         steps = self.steps(i)
         steps = steps[steps != 0]
-        if len(self.finite(i)) < 10 or not len(steps):
+        if len(self.finite[i]) < 10 or not len(steps):
             return False
         one_way = max((steps > 0).mean(), (steps < 0).mean()) >= 0.8
         rounding = 1.01 * 10.0 ** -self.decimals[i] if self.decimals[i] else 0.0
@@ -559,19 +487,19 @@ class Search:
         return bool(one_way and are_even.mean() >= 0.6)
 
     def always_rises(self, i):
-        values = self.finite(i)
+        values = self.finite[i]
         return len(values) > 9 and bool((numpy.diff(values) > 0).all())
 
     def is_line(self, i, beside):
         """The same whole number along runs of rows, through which others go in no even steps."""
         steps = numpy.column_stack((self.steps(i), self.steps(beside)))
         within = steps[steps[:, 0] == 0, 1]
-        if not self.is_whole(i) or not 0.7 * len(steps) < len(within) < len(steps):
+        if not self.whole[i] or not 0.7 * len(steps) < len(within) < len(steps):
             return False
         even = abs(within - numpy.median(within)) <= 0.01 * abs(numpy.median(within))
         return bool(even.mean() < 0.5)
 
-    def east_and_north(self, reasons):
+    def east_and_north(self):
         """x and y of points with numbers: surveyors write the northing first.
 
         Metres of UTM decide it. Otherwise a code behind z speaks for point, northing,
@@ -579,9 +507,10 @@ class Search:
         latitude and longitude stand.
         """
         x, y, z = self.indices
-        named = [i for i in range(min(x, y, z)) if self.share_of_text[i] > 0.5]
-        has_ids = named or not self.ids.isdisjoint(reasons)
-        coded = any(self.share_of_text[i] > 0.5 for i in range(max(x, y, z) + 1, self.width))
+        texts = [i for i in range(self.width) if self.share_of_text[i] > 0.5]
+        has_ids = any(i < min(x, y, z) for i in texts)
+        has_ids |= any(reason in (COUNTS_UP, EACH_ONCE) for reason in self.reasons.values())
+        coded = any(i > max(x, y, z) for i in texts)
         if has_ids and self.is_utm(y, x):
             self.has_swapped, self.indices = True, [y, x, z]
             self.notes.append(
@@ -593,49 +522,40 @@ class Search:
 
     def may_be_latitude(self, x, y, z):
         """Whether columns may be latitude and longitude in this order, and not the other way."""
-        xs, ys = abs(self.finite(x)), abs(self.finite(y))
-        small = len(xs) and len(ys) and xs.max() <= 90 and ys.max() <= 180
-        if not small or min(self.decimals[x], self.decimals[y]) < 4:
+        if self.largest[x] > 90 or self.largest[y] > 180 or min(self.decimals[x], self.decimals[y]) < 4:
             return False
-        wide = max(numpy.ptp(self.finite(x)), numpy.ptp(self.finite(y)))
-        dated = any(
-            re.search(r"\d{4}-\d\d-\d\d|\d:\d\d", word) for row in self.first_rows for word in row)
-        return self.has_times or dated or wide < 0.1 * numpy.ptp(self.finite(z))
+        wide = max(self.spans[x], self.spans[y])
+        words = " ".join(word for row in self.rows[:SHOWN_ROWS] for word in row)
+        dated = re.search(r"\d{4}-\d\d-\d\d|\d:\d\d", words) is not None
+        return PART_OF_TIME in self.reasons.values() or dated or wide < 0.1 * self.spans[z]
 
     def is_utm(self, x, y):
         """Whether columns are easting and northing of UTM by their sizes, in metres."""
-        x, y = self.finite(x), self.finite(y)
-        if not len(x) or not len(y):
-            return False
-        return bool(160e3 < x.min() and x.max() < 840e3 and 1.1e6 < y.min() and y.max() < 10e6)
+        low, high = self.low, self.high
+        return bool(160e3 < low[x] <= high[x] < 840e3 and 1.1e6 < low[y] <= high[y] < 10e6)
 
     # -- what the values say about the choice
 
     def look_at_values(self):
         x, y = self.indices[:2]
         for i in (x + 1, y + 1):  # behind a latitude or longitude without its sign
-            letters = {row[i].strip().upper() for row in self.rows if i < len(row)} - {""}
+            letters = {row[i].strip().upper() for row in self.rows if i < self.width} - {""}
             if letters and letters <= set("NSEW") and letters & set("SW"):
                 raise FileError(
                     f"{self.path}: column {i + 1} has {' and '.join(sorted(letters))} for the signs of the "
                     "numbers before it; export signed decimals"
                 )
-        xs, ys = self.finite(x), self.finite(y)
-        if not len(xs) or not len(ys):
-            return
-        for i, values, limit, what in ((x, xs, 360, "longitude"), (y, ys, 90, "latitude")):
-            if self.meanings[i].rank == 3 and abs(values).max() > limit:
-                self.notes.append(
-                    f"column {self.called(i)} is a {what} by its name, but holds "
-                    f"{values[abs(values).argmax()]:.9g}, which no {what} can be (see {option('columns')})"
+        by_name = [i for i in (x, y) if self.meanings[i].rank == 3]
+        for i, limit, what in ((x, 360, "longitude"), (y, 90, "latitude")):
+            if i in by_name and limit < self.largest[i] < math.inf:
+                worst = max(self.low[i], self.high[i], key=abs)
+                self.note(
+                    f"column {self.called(i)} is a {what} by its name, but holds {worst:.9g}, which no "
+                    f"{what} can be"
                 )
-        by_name = 3 in (self.meanings[x].rank, self.meanings[y].rank)
-        degrees = abs(xs).max() <= 360 and abs(ys).max() <= 90
-        if self.needed == 3 and degrees:
-            z = self.finite(self.indices[2])
-            wide = max(numpy.ptp(xs), numpy.ptp(ys))
+        if self.needed == 3 and self.largest[x] <= 360 and self.largest[y] <= 90:
             fine = min(self.decimals[x], self.decimals[y]) >= 4
-            if by_name or fine and len(z) and 0 < wide < 0.1 * numpy.ptp(z):
+            if by_name or fine and 0 < max(self.spans[x], self.spans[y]) < 0.1 * self.spans[self.indices[2]]:
                 self.angles = "look like degrees"
         if self.is_utm(y, x) and not self.has_swapped:
             self.notes.append(
@@ -644,6 +564,12 @@ class Search:
             )
 
     # -- words
+
+    def note(self, words):
+        self.notes.append(f"{words} (see {option('columns')})")
+
+    def taken(self):
+        return ", ".join(f"{axis} = {self.called(i)}" for axis, i in zip(self.axes, self.indices))
 
     def called(self, i):
         name = self.names[i] if self.names else ""
@@ -659,25 +585,22 @@ class Search:
 
     # -- the other columns
 
-    def extras(self):
-        """{index: name} of the columns of numbers that are not coordinates."""
-        result, text = {}, []
+    def name_others(self):
+        """Sets extras and texts."""
+        left_out = []
         for i in range(self.width):
             if i in self.indices or self.needed == 2:
                 continue
             name = (self.names[i].strip() if self.names else "") or f"column {i + 1}"
-            if not len(self.finite(i)) or self.share_of_text[i] > 0.1:
-                text.append(name)
-                if self.share_of_text[i] > 0:
-                    known = name in (*result.values(), *self.texts.values())
-                    self.texts[i] = f"{name} (column {i + 1})" if known else name
-                continue
-            for colour, words in COLOURS.items():
-                if "".join(plain(name)) in words:
-                    name = colour if colour not in result.values() else name
-            known = name in (*result.values(), *self.texts.values())
-            result[i] = f"{name} (column {i + 1})" if known else name
-        if text:
+            others = self.extras
+            if not len(self.finite[i]) or self.share_of_text[i] > 0.1:
+                left_out.append(name)
+                others = self.texts if self.share_of_text[i] > 0 else {}
+            else:
+                colours = [colour for colour, words in COLOURS.items() if "".join(plain(name)) in words]
+                name = next((colour for colour in colours if colour not in self.extras.values()), name)
+            is_known = name in (*self.extras.values(), *self.texts.values())
+            others[i] = f"{name} (column {i + 1})" if is_known else name
+        if left_out:
             chosen = f"; {option('where')} chooses points by them" if self.texts else ""
-            self.notes.append(f"columns without numbers are left out: {', '.join(text)}{chosen}")
-        return result
+            self.notes.append(f"columns without numbers are left out: {', '.join(left_out)}{chosen}")

@@ -26,7 +26,7 @@ def check_faces(path, data, options):
     it is not an elevation surface, unless options say that the points are wanted all the same."""
     if options.points_only or data is None:
         return []
-    faces = faces_of(data)
+    faces = find_faces(data)
     if faces is None:
         return []
     try:
@@ -58,7 +58,7 @@ def notes_on_faces(faces):
     )
 
 
-def faces_of(data):
+def find_faces(data):
     """vtkPolyData with the faces of a data set; None where it has none, or cells with a volume."""
     if not isinstance(data, vtkPolyData):
         if not isinstance(data, vtkDataSet) or not data.GetNumberOfCells():
@@ -83,7 +83,7 @@ def faces_of(data):
     return faces
 
 
-def made_of(points, corners):
+def make_faces(points, corners):
     """vtkPolyData of (n, 3) points and (m, 3) corners of triangles, or a vtkCellArray."""
     faces = make_points(points)
     faces.SetPolys(corners if isinstance(corners, vtkCellArray) else cells_of(corners))

@@ -70,7 +70,7 @@ def is_stl(head, path):
     return facets > 0 and os.path.getsize(path) == 84 + 50 * facets
 
 
-def numbers_of(line):
+def count_numbers(line):
     """How many words of a line of bytes are numbers, in quotes or not, also 1.5D+03 of Fortran."""
     found = 0
     for word in re.split(rb"[\s,;]+", line.strip()):
@@ -82,7 +82,7 @@ def numbers_of(line):
     return found
 
 
-def lines_of(head):
+def first_lines(head):
     """The first lines of a text that are neither blank nor comments; the last may be cut."""
     lines = [line for line in re.split(rb"[\r\n]+", head) if line.strip()]
     return [line for line in lines if not line.lstrip().startswith((b"#", b"%", b"//", b"!", b"*"))]
@@ -100,17 +100,17 @@ def is_plain_text(head):
 
 def is_table(head, path):
     """Text that begins with numbers, or names of columns and numbers. Asked early: so usual."""
-    lines = lines_of(head)
+    lines = first_lines(head)
     if not is_text(head) or not lines or len(lines[0]) > 1000 or lines[0].lstrip()[:1] in b"{[<":
         return False
-    if len(lines) > 1 and len(re.split(rb"[,;\t]", lines[0])) > 2 and not numbers_of(lines[0]):
+    if len(lines) > 1 and len(re.split(rb"[,;\t]", lines[0])) > 2 and not count_numbers(lines[0]):
         del lines[0]  # names of columns
-    return numbers_of(lines[0]) >= max(2, len(lines[0].split()) / 2)
+    return count_numbers(lines[0]) >= max(2, len(lines[0].split()) / 2)
 
 
 def is_numbers(head, path):
     """Text with numbers in it."""
-    return is_text(head) and any(numbers_of(line) > 1 for line in lines_of(head))
+    return is_text(head) and any(count_numbers(line) > 1 for line in first_lines(head))
 
 
 def is_table_with_geometry(head, path):
@@ -146,7 +146,7 @@ def is_segments(head, path):
     """Text of lines that are marked where they begin, or by the mark at the end of the last one."""
     if re.match(SEGMENTS, head, re.DOTALL):
         return True
-    if not numbers_of(head.partition(b"\n")[0]):
+    if not count_numbers(head.partition(b"\n")[0]):
         return False
     with open(path, "rb") as stream:
         stream.seek(max(0, os.path.getsize(path) - 99))
@@ -169,7 +169,7 @@ def is_ugrid(head, path):
         return False
 
 
-def is_of_gdal(what):
+def gdal_reads(what):
     def is_it(_head, path):
         try:
             from ..gdal_common import kind_of
@@ -233,7 +233,7 @@ FORMATS = (
     Format(
         "a vector file",
         ".gpkg .shp .geojson .json .dxf .gml .kml .kmz .fgb .gpx .tab .mif .dgn .dwg .gdb",
-        is_of_gdal("vectors"),
+        gdal_reads("vectors"),
         "vectors",
         "vectors",
     ),
@@ -241,7 +241,7 @@ FORMATS = (
     Format(
         "a raster",
         ".tif .tiff .dem .asc .grd .nc .bag .vrt .img .hgt .flt .bil",
-        is_of_gdal("raster"),
+        gdal_reads("raster"),
         "rasters",
     ),
     Format("a text table", TEXT, is_numbers, "text.read_text", slices="text.TextSlices"),

@@ -11,7 +11,7 @@ from ..clouds import Cloud, add_array, make_points
 from ..messages import FileError
 from ..progress import lines_with_progress
 from ..selecting import words_of
-from .facing import check_faces, made_of
+from .facing import check_faces, make_faces
 
 KINDS = ("TSurf", "VSet", "PLine")
 NAME = re.compile(r'(?:HEADER *\{)? *name: *"?([^"}]*)')
@@ -128,7 +128,7 @@ def check_objects(gocad, options):
         name = gocad.objects[i][0]
         if not wanted or name in wanted:
             called = f"{gocad.path}, {name}" if name and len(gocad.objects) > 1 else gocad.path
-            notes += check_faces(called, made_of(points, triangles[owner == i]), options)
+            notes += check_faces(called, make_faces(points, triangles[owner == i]), options)
     return notes
 
 

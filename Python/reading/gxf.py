@@ -8,7 +8,7 @@ import numpy
 
 from ..messages import FileError
 from .horizons import numbers, read_bytes
-from .irap import cloud_of
+from .irap import rowwise_cloud
 
 KEYWORD = re.compile(rb"(?m)^#([A-Z]+)[ \t]*\r?\n[ \t]*([^\r\n#]*)")
 GRID = re.compile(rb"(?m)^#GRID[ \t]*\r?\n")
@@ -39,6 +39,6 @@ def read_grid(path, options):
     if sense == -2 and len(z) == rows * columns:
         z = z.reshape(int(rows), int(columns))[::-1].ravel()
     ends = x, x + dx * (columns - 1), y, y + dy * (rows - 1)
-    cloud = cloud_of(path, "GXF grid", (rows, dx, dy, *ends, columns, turned, x, y), z)
+    cloud = rowwise_cloud(path, "GXF grid", (rows, dx, dy, *ends, columns, turned, x, y), z)
     cloud.is_horizon = False
     return cloud

@@ -9,11 +9,11 @@ import warnings
 import numpy
 
 from ..clouds import Cloud, add_array, make_lines, make_points
-from .columns import meaning
+from .column_names import meaning
 from .formats import HEAD
 from ..messages import FileError, Reason, counted
 from ..progress import no_progress, lines_with_progress
-from .rasters import points_of_raster
+from .rasters import raster_cloud
 
 AT_ONCE = 1 << 22  # bytes
 BLANK = re.compile(rb"\s")
@@ -63,7 +63,7 @@ def check_count(path, found, count):
 
 def grid_cloud(path, x, y, z, note):
     """Nodes of a grid as points. x, y, z: arrays of one shape; NaN is not data."""
-    cloud = points_of_raster(path, x, y, z)
+    cloud = raster_cloud(path, x, y, z)
     cloud.is_horizon = True
     cloud.notes.append(f"{note}, {z.shape[1]} x {z.shape[0]} nodes")
     return cloud
@@ -75,7 +75,7 @@ def roughness(z):
     return float(numpy.nanmean(steps)) if min(z.shape) > 9 and not numpy.isnan(steps).all() else 0.0
 
 
-def cloud_of_columns(path, x, y, values, is_null, name):
+def columnwise_cloud(path, x, y, values, is_null, name):
     """A grid whose columns go from west to east, each from north to south, as a Cloud. Its points are in the
     order of y."""
     check_count(path, len(values), len(x) * len(y))
@@ -108,7 +108,7 @@ def read_cps3_grid(path, options):
     values = numbers(text[head.end() :], options.progress)
     null = 0.999 * min((value for value in words[b"FSASCI"] if value >= 1e20), default=1e30)
     x, y = x_min + dx * numpy.arange(columns), y_min + dy * numpy.arange(rows)
-    return cloud_of_columns(path, x, y, values, lambda z: z >= null, "CPS-3 grid")
+    return columnwise_cloud(path, x, y, values, lambda z: z >= null, "CPS-3 grid")
 
 
 def read_zmap(path, options):
@@ -132,7 +132,7 @@ def read_zmap(path, options):
         fields = (line[i : i + width] for line in lines for i in range(0, len(line), width))
         values = numpy.array(list(floats(fields)))
     x, y = numpy.linspace(x_min, x_max, columns), numpy.linspace(y_max, y_min, rows)
-    cloud = cloud_of_columns(path, x, y, values, lambda z: numpy.isclose(z, null, 1e-6, 0.0), "ZMAP+ grid")
+    cloud = columnwise_cloud(path, x, y, values, lambda z: numpy.isclose(z, null, 1e-6, 0.0), "ZMAP+ grid")
     if b"." not in body and form[3].strip(b"0"):
         cloud.notes.append(
             f"none of its numbers has a decimal sign, though the header says {form[3].decode()} decimals: they are read as "

@@ -10,6 +10,7 @@ from ..clouds import Cloud, add_array, make_lines, make_points
 from ..messages import FileError, Reason
 from ..progress import lines_with_progress
 from ..selecting import words_of
+from .nulls import ALL_WITHOUT_DATA
 
 NUMBER = rb"\s*([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?|[-+]?\d+\.)"
 INTEGER = rb"\s+(-?\d+)(?![\d.])"
@@ -39,7 +40,7 @@ def profiles(path, progress):
             is_over = line.strip() == b"EOD"
             if head or is_over or not line.strip() or line.startswith((b"SNAPPING", b"#", b"!")):
                 continue
-            row = found and row_of(line, ROWS[found[-1][1]])
+            row = found and parse_row(line, ROWS[found[-1][1]])
             if not row:
                 shown = line.decode("latin-1").strip()[:40]
                 raise FileError(f"{path}, line {number}: '{shown}' is not a row of an IESX profile")
@@ -51,7 +52,7 @@ def profiles(path, progress):
     return found
 
 
-def row_of(line, patterns):
+def parse_row(line, patterns):
     """(x, y, segment, z), or None."""
     for pattern in patterns:
         try:
@@ -68,7 +69,7 @@ def read_points(path, options):
     rows = numpy.concatenate([rows for *_, rows in parts])
     keep = rows[:, 3] < NULL
     if not keep.any():
-        raise FileError(f"{path}: all points have the elevation that marks missing data")
+        raise FileError(f"{path}: {ALL_WITHOUT_DATA}")
     names = [name for name, *_ in parts]
     counts = [len(rows) for *_, rows in parts]
     cloud = Cloud(make_points(rows[keep][:, [0, 1, 3]]), [f"IESX: {', '.join(dict.fromkeys(names))}"])

@@ -18,7 +18,7 @@ def read_grid(path, options):
     values = numbers(read_bytes(path), options.progress)
     if len(values) < 19:
         raise FileError(f"{path}: is cut off within the header of an IRAP classic grid")
-    return cloud_of(path, "IRAP classic grid", values[1:12], values[19:])
+    return rowwise_cloud(path, "IRAP classic grid", values[1:12], values[19:])
 
 
 def read_binary_grid(path, options):
@@ -40,10 +40,10 @@ def read_binary_grid(path, options):
         at += 8 + length
         options.progress(at / len(data))
     values = numpy.concatenate([numpy.empty(0), *parts])
-    return cloud_of(path, "binary IRAP grid", header, values)
+    return rowwise_cloud(path, "binary IRAP grid", header, values)
 
 
-def cloud_of(path, name, header, values):
+def rowwise_cloud(path, name, header, values):
     """Rows from south to north, which may be turned about a point, as a Cloud."""
     rows, dx, dy, x_min, x_max, y_min, _, columns, turned, x0, y0 = header
     if not (rows >= 1 and columns >= 1 and dx > 0 and dy > 0 and rows * columns < 1e12):

@@ -57,8 +57,9 @@ AXES = (
     )),
     ("z", 4, "time", _words("time zeit temps tiempo tempo tid tijd czas")),
 )
+AXIS_NAMES = {name: (axis, rank, direction) for axis, rank, direction, names in AXES for name in names}
 # Words that may stand next to the name of an axis.
-BESIDE = _words(
+NEXT_TO_AXES = _words(
     "utm coord coords coordinate coordinates koordinate koordinaten koordinat koordinaat "
     "coordinaat coordenada coordenadas coordonnee coordonnees coordinata wspolrzedna wsp point pt "
     "p map world gps wgs etrs epsg local grid proj projected geo m ft feet meter meters metre "
@@ -78,7 +79,7 @@ ROLES = (
         "id fid oid objectid nr no num nummer number numero point pt pkt punkt punktnr "
         "punktnummer ptnr punto ponto punti punt puntnr puntnummer pnr pno name matricule station "
         "index row pid ptid ident uid gid serial nome nombre nom nazwa numer naam pointid "
-        "pointnumber pointno pointname p idx piste pistenumero pistenro bod cislo cislobodu cb eb"
+        "pointnumber pointno pointname p idx piste pistenumero pistenro bod cislo cislobodu"
     )),
     ("a line, trace or place in a grid", _words(
         "line inline il iline xline crossline xl trace tr cdp cmp sp shotpoint shot bin ffid "
@@ -104,7 +105,6 @@ ROLES = (
         "antenna ant target instrument prism rod pole vel vx vy vz"
     )),
 )
-ABBREVIATED = _words("cb eb")  # "č.b.", also as read from another code page
 COLOURS = {
     "red": _words("red r rot rouge"),
     "green": _words("green g gruen grun vert"),
@@ -129,6 +129,8 @@ COMMENT_MARKS = ("#", "%", "//", "!", "*", ">")
 MISSING = set(
     "na n/a #n/a n.a. null none nil nodata no-data missing void - -- ? * -nan nan(ind)".split()
 ) | {""}
+SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", None: "blanks"}
+NUMBERED_NAME = re.compile(r"(?:field|column|col)?\W*(\d+)\s*[:=.)]?\s*(\S.*)", re.I)  # "3: X" in a header
 ESRI_GRID, SURFER_GRID = "an ESRI ASCII grid", "a Surfer grid"  # which GDAL reads
 # How files begin that are not tables, and what they are.
 NO_TABLES = (
@@ -149,19 +151,35 @@ NO_TABLES = (
 # Numbers of fixed width without a blank between, and what looks like them.
 TOUCHING = r"[-+]?\d+\.\d+([-+]\d*\.\d+|\.\d+)+"
 DATE = r"\d{1,2}\.\d{1,2}\.\d{2,4}|\d+(\.\d+){3}"
-COMMA_IN_QUOTES = r"\"\s*[-+]?\d+,\d+\s*\"\s*,"  # "1,5","2,5"
-# What keeps words from being numbers, and what it is.
+# What keeps words from being numbers, and what an error says of it.
 BLANK_IN_NUMBER = r"\d[\u00a0\u202f]\d{3}"
+_EXPORT = "numbers with {} cannot be read; export plain decimals"
+THOUSANDS = _EXPORT.format("marks between thousands")
+COMMAS_TWICE = (
+    "commas stand for decimals and between columns; export it with semicolons between columns, or with decimal points"
+)
 NO_NUMBERS = (
     (
         r"(?<!\w)\d{1,3}(?P<sign>[,.' ])\d{3}(?P=sign)\d{3}|(?<![\d.])\d{1,3},\d{3}\.\d|"
         r"(?<![\d.,])\d{1,3}\.\d{3},\d+(?![\d.])|" + BLANK_IN_NUMBER,
-        "marks between thousands",
+        THOUSANDS,
     ),
-    (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", "degrees, minutes and seconds"),
-    (r"\d\s?[NSEW]\b", "a letter for north, south, east or west"),
+    (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", _EXPORT.format("degrees, minutes and seconds")),
+    (r"\d\s?[NSEW]\b", _EXPORT.format("a letter for north, south, east or west")),
+    (r"\"\s*[-+]?\d+,\d+\s*\"\s*,", COMMAS_TWICE),  # "1,5","2,5"
 )
-
+GROUPED = r"[-+]?[1-9]\d{0,2}[.,]\d{3}"  # a number with a mark between thousands, or with three decimals
+# Lines of numbers with blanks between thousands, parted by another sign or all with decimals: (pattern, the share of
+# lines of which more are such).
+_BLANKS = r"\s*[-+]?\d{1,3}( \d{3})*([.,]\d*)?\s*"
+BLANKS_IN_THOUSANDS = (
+    (rf"^(?=.*\d \d{{3}}){_BLANKS}(?P<sign>[\t;|]){_BLANKS}((?P=sign){_BLANKS})*$", 0.5),
+    (r"^(?=.*\b\d{1,3}( \d{3}){2}[.,]\d)\s*([-+]?\d{1,3}( \d{3})*[.,]\d+\s*){3,}$", 0.9),
+)
+# Rows, their words between blanks: whole numbers two by two; degrees, minutes, seconds twice, and a value.
+PAIRS = r"[-+]?\d+ [-+]?\d+( [-+]?\d+ [-+]?\d+)+"
+SEXAGESIMAL = r"([-+]?(0?\d{1,2}|1[0-7]\d|180) [0-5]?\d [0-5]?\d([.,]\d*)? ){2}.*"
+WITH_DECIMALS = r"\S+ \S+ \S*[.,]\S* \S+ \S+ \S*[.,]"
 
 # How a line begins that holds totals of the others, in the languages of the names of columns.
 SUMMARY = re.compile(
@@ -187,7 +205,7 @@ NULL_ROWS = (0.0, 999.0)
 
 # ---- readings of columns ------------------------------------------------------------------------
 
-INLINES, CROSSLINES = _words("inline il iline"), _words("crossline xline xl")
+LINES_AS_AXES = {"x": _words("inline il iline"), "y": _words("crossline xline xl")}
 MOST_STEP_OF_LINES = 4  # between their numbers
 FINNISH = {"p": "y", "i": "x"}  # pohjoinen, itä
 HIGHEST = 1e5  # no place is as high
@@ -205,7 +223,6 @@ WEIGHTS = {
     "a column is left out": -4,  # before x, behind the first, for no reason
     "x and y are of UTM": 16,
     "x and y count": -11,  # as line and trace do
-    "x and y are a grid": 7,
     "z rises along lines": -10,  # whole numbers, as those of lines are
     "z behind lines": -8,
 }

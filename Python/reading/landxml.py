@@ -9,9 +9,9 @@ import numpy
 from ..clouds import Cloud, make_lines, make_points
 from ..gdal_common import choose_layer
 from ..messages import FileError
-from .facing import check_faces, made_of
+from .facing import check_faces, make_faces
 
-POINTS_OF = ("PntList3D", "PntList2D")
+POINT_LISTS = ("PntList3D", "PntList2D")
 
 
 class LandXml:
@@ -55,7 +55,7 @@ class LandXml:
         elif name == "CgPoint" and element.text and len(element.text.split()) == 3:
             y, x, z = map(float, element.text.split())
             self.others.append((x, y, z))
-        elif name in POINTS_OF and set(self.lines) & set(inside):
+        elif name in POINT_LISTS and set(self.lines) & set(inside):
             places = numpy.array(element.text.split(), "f8").reshape(-1, 3 if name == "PntList3D" else 2)
             z = places[:, 2] if places.shape[1] == 3 else numpy.full(len(places), numpy.nan)
             kind = "Breakline" if "Breakline" in inside else "Boundary"
@@ -85,7 +85,7 @@ def read_points(path, options):
             raise FileError(f"{path}: is damaged: a face has the corner {error}, which is not a point") from None
         if len(faces) and not options.points_only:
             cloud.notes.append("only the points are used, not the file's cells")
-            cloud.notes += check_faces(path, made_of(numpy.array(list(points.values())), corners), options)
+            cloud.notes += check_faces(path, make_faces(numpy.array(list(points.values())), corners), options)
         cloud.z_name = name
     cloud.crs = found.crs
     if found.unit:

@@ -45,7 +45,7 @@ class Header:
             self.is_packed = bool(kind & 0xC0)
             self.kind = kind & 0x3F
             self.check()
-            self.crs = crs_of(stream, size, records, *extended)
+            self.crs = read_crs(stream, size, records, *extended)
 
     def check(self):
         name = f"{self.path}: LAS {self.version[0]}.{self.version[1]}"
@@ -87,7 +87,7 @@ class Header:
         )
 
 
-def crs_of(stream, start, count, extended_start, extended_count):
+def read_crs(stream, start, count, extended_start, extended_count):
     """The reference system of the variable length records as WKT or EPSG code, or None."""
     wkt = code = None
     extended = (extended_start, extended_count, "<2x16sHQ32x")

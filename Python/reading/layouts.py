@@ -2,31 +2,32 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How the lines of a text table become words and numbers, and which names its columns have."""
 
-import contextlib
 import csv
+import dataclasses
 import importlib.util
 import math
 import re
 
-from .column_names import is_beside, known_names, meaning, unit_of
+from .column_names import known_names, meaning, plain, length_unit
 from .known import (
-    BLANK_IN_NUMBER, COMMA_IN_QUOTES, COMMENT_MARKS, DATE, ESRI_GRID, MISSING, NO_NUMBERS, NO_TABLES, SURFER_GRID, TOUCHING
+    BLANK_IN_NUMBER, BLANKS_IN_THOUSANDS, COMMAS_TWICE, COMMENT_MARKS, DATE, ESRI_GRID, GROUPED, MISSING, NEXT_TO_AXES,
+    NO_NUMBERS, NO_TABLES, NUMBERED_NAME, PAIRS, SEPARATORS, SEXAGESIMAL, SURFER_GRID, THOUSANDS, TOUCHING, WITH_DECIMALS
 )
 from ..messages import FileError
 
 
+FORTRAN = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+))[dD]([-+]?\d+)")  # 1.5D+03
+
+
+@dataclasses.dataclass(frozen=True)
 class Layout:
     """How a line of text becomes words: the separator (None: blanks) and the decimal sign."""
 
-    NAMES = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", None: "blanks"}
-
-    def __init__(self, separator, decimal_comma=False):
-        self.separator = separator
-        self.decimal_comma = decimal_comma
+    separator: object
+    decimal_comma: bool = False
 
     def __str__(self):
-        text = self.NAMES[self.separator]
-        return text + ", decimal comma" if self.decimal_comma else text
+        return SEPARATORS[self.separator] + ", decimal comma" * self.decimal_comma
 
     def words(self, line):
         if '"' in line:
@@ -41,69 +42,56 @@ class Layout:
     def number(self, word):
         """The word's value; NaN where a value is missing; None for text."""
         plain = word.replace(",", ".") if self.decimal_comma else word
-        if "_" not in plain:
-            with contextlib.suppress(ValueError):
-                return float(plain)
-            with contextlib.suppress(ValueError):  # Fortran's 1.5D+03
-                return float(re.sub(r"^([-+.\d]+)[dD]([-+]?\d+)$", r"\1e\2", plain))
+        try:
+            return float(plain if "_" not in plain else "")  # Python takes 1_000 for a number
+        except ValueError:
+            if fortran := FORTRAN.fullmatch(plain):
+                return float("e".join(fortran.groups()))
         return math.nan if word.lower() in MISSING else None
 
     def numbers(self, line):
         """How many words of the line are written as numbers."""
-        return sum(
-            1 for w in self.words(line) if w.lower() not in MISSING and self.number(w) is not None
-        )
+        return sum(w.lower() not in MISSING and self.number(w) is not None for w in self.words(line))
 
 
-LAYOUTS = (
-    Layout(";"),
-    Layout("\t"),
-    Layout(","),
-    Layout("|"),
-    Layout(None),
-    Layout(";", True),
-    Layout("\t", True),
-    Layout("|", True),
-    Layout(None, True),
-)
+LAYOUTS = [Layout(separator) for separator in SEPARATORS]
+LAYOUTS += [Layout(separator, True) for separator in SEPARATORS if separator != ","]
 
 
 def is_comment(line):
     return line.lstrip().startswith(COMMENT_MARKS)
 
 
-def is_data(line):
-    return bool(line.strip()) and not is_comment(line)
-
-
 def find_layout(path, lines, needed):
     """The layout under which most of the first lines hold the needed number of numbers."""
-    sample = [line for line in lines if line.strip() and not is_comment(line)][:400]
-    head = "\n".join([line.strip().lower() for line in lines if line.strip()][:20])
+    lines = [line for line in lines if line.strip()]
+    sample = [line for line in lines if not is_comment(line)][:400]
+    head = "\n".join(line.strip().lower() for line in lines[:20])
     for pattern, what in NO_TABLES:
         if re.match(pattern, head):
             lacks = what in (ESRI_GRID, SURFER_GRID) and importlib.util.find_spec("osgeo") is None
             advice = "; install python3-gdal to read it" if lacks else ""
             what += ", not a table of points" * (":" not in what)
             raise FileError(f"{path}: is {what.replace('{path}', path)}{advice}")
-    best, best_score, most = None, (0, 0), 0
-    for layout in LAYOUTS:
-        counts = [layout.numbers(line) for line in sample]
-        score = (sum(1 for count in counts if count >= needed), sum(counts))
-        most = max(most, max(counts, default=0))
-        if score[0] and score > best_score:
-            best, best_score = layout, score
-    if best and not any(re.search(BLANK_IN_NUMBER, line) for line in sample):
-        check_thousands(path, best, sample)
-        return best
+    counts = {layout: [layout.numbers(line) for line in sample] for layout in LAYOUTS}
     if not sample:
         raise FileError(f"{path}: holds no data, only blank or comment lines")
-    for pattern, what in NO_NUMBERS:
-        if any(re.search(pattern, line) for line in sample):
-            raise FileError(f"{path}: numbers with {what} cannot be read; export plain decimals")
-    if any(re.search(COMMA_IN_QUOTES, line) for line in sample):
-        raise FileError(f"{path}: commas stand for decimals and between columns; {SEMICOLONS}")
-    touching = list(filter(None, map(touching_in, sample)))
+
+    def rows_and_numbers(layout):
+        return sum(count >= needed for count in counts[layout]), sum(counts[layout])
+
+    def share(pattern):
+        return sum(bool(re.search(pattern, line)) for line in sample) / len(sample)
+
+    best, most = max(LAYOUTS, key=rows_and_numbers), max(map(max, counts.values()))
+    if rows_and_numbers(best)[0] and not share(BLANK_IN_NUMBER):
+        if not best.separator and any(share(pattern) > least for pattern, least in BLANKS_IN_THOUSANDS):
+            raise FileError(f"{path}: {THOUSANDS}")
+        return best
+    for pattern, words in NO_NUMBERS:
+        if share(pattern):
+            raise FileError(f"{path}: {words}")
+    touching = [word for word in map(touching_in, sample) if word]
     if 2 * len(touching) > len(sample):
         raise FileError(f"{path}: {are_touching(touching[0])}")
     if most == 0:
@@ -127,71 +115,37 @@ def are_touching(word):
     )
 
 
-def check_thousands(path, layout, sample):
-    """Refuses blanks between thousands: most lines are such numbers, parted by another sign."""
-    number = r"\s*[-+]?\d{1,3}( \d{3})*([.,]\d*)?\s*"
-    line = re.compile(rf"(?=.*\d \d{{3}}){number}(?P<sign>[\t;|]){number}((?P=sign){number})*")
-    blanks = re.compile(r"(?=.*\b\d{1,3}( \d{3}){2}[.,]\d)\s*([-+]?\d{1,3}( \d{3})*[.,]\d+\s*){3,}")
-    most = sum(bool(line.fullmatch(one)) for one in sample) / max(len(sample), 1) > 0.5
-    most = most or sum(bool(blanks.fullmatch(one)) for one in sample) / max(len(sample), 1) > 0.9
-    if most and not layout.separator:
-        raise FileError(
-            f"{path}: numbers with {NO_NUMBERS[0][1]} cannot be read; export plain decimals"
-        )
-
-
 def check_marks(path, rows, columns):
     """Refuses marks between thousands that look like decimal signs, where the file proves it.
 
     Another sign stands before decimals, or numbers below 1000 have no sign and all others have it
     before three digits, with zeros at the end where these are not cut off.
     """
-    grouped = re.compile(r"[-+]?[1-9]\d{0,2}[.,]\d{3}")
-    plain = re.compile(r"[-+]?\d{1,3}")
-    signs, proved = {".": [], ",": []}, False
+    grouped, signs, proved = re.compile(GROUPED), {".": [], ",": []}, False
     for i in columns:
         words = [row[i] for row in rows if i < len(row) and is_number(row[i].replace(",", "."))]
         for sign, found in signs.items():
             found += [word for word in words if sign in word]
         marked = [word for word in words if grouped.fullmatch(word)]
-        without = sum(bool(plain.fullmatch(word)) for word in words)
+        without = sum(bool(re.fullmatch(r"[-+]?\d{1,3}", word)) for word in words)
         zeros = any(word[-1] == "0" for word in marked)
         proved |= zeros and without > 0 and len(marked) + without == len(words)
     if all(signs.values()):
         proved |= any(all(map(grouped.fullmatch, found)) for found in signs.values())
     if proved:
-        raise FileError(
-            f"{path}: numbers with {NO_NUMBERS[0][1]} cannot be read; export plain decimals"
-        )
+        raise FileError(f"{path}: {THOUSANDS}")
 
 
 def doubtful_marks(rows, x, y, z):
     """Notes where z alone has a sign, always before three digits: it may part thousands."""
     rows = [row for row in rows if len(row) > max(x, y, z)]
-    if any(re.search(r"[.,]", row[x] + row[y]) for row in rows):
-        return []
-    if not all(re.fullmatch(r"[-+]?[1-9]\d{0,2}[.,]\d{3}", row[z]) for row in rows):
+    has_signs = any(re.search(r"[.,]", row[x] + row[y]) for row in rows)
+    if has_signs or not rows or not all(re.fullmatch(GROUPED, row[z]) for row in rows):
         return []
     return [
         f"z = {rows[0][z]} is read as {rows[0][z].replace(',', '.')}, though x,y are whole "
         "numbers; if the sign stands between thousands, export plain decimals"
-    ] if rows else []
-
-
-def degrees_in_columns(rows, width):
-    """Whether seven columns look like degrees, minutes and seconds, twice, and a value."""
-    rows = [row for row in rows if len(row) == width]
-    if width != 7 or len(rows) < 2:
-        return False
-    for i in (0, 3):
-        for row in rows:
-            if not re.fullmatch(r"[-+]?\d{1,3}", row[i]) or abs(int(row[i])) > 180:
-                return False
-            if not re.fullmatch(r"[0-5]?\d", row[i + 1]):
-                return False
-            if not re.fullmatch(r"[0-5]?\d([.,]\d*)?", row[i + 2]):
-                return False
-    return any(re.search(r"[.,]", row[2]) and re.search(r"[.,]", row[5]) for row in rows)
+    ]
 
 
 def check_names(path, layout, before, rows, names, width, advice):
@@ -201,26 +155,28 @@ def check_names(path, layout, before, rows, names, width, advice):
     rows    some lines of data as words
     names   of the columns as far as they were found, or None
     """
-    if layout.separator == "," and pairs_of_whole_numbers(rows, width):
-        raise FileError(f"{path}: commas stand for decimals and between columns; {SEMICOLONS}")
-    if not names and degrees_in_columns(rows, width):
-        raise FileError(
-            f"{path}: the columns look like degrees, minutes and seconds; export degrees as plain "
-            f"decimals; {advice}"
-        )
+    rows = [" ".join(row) for row in rows if len(row) == width]
+    if layout.separator == "," and are_parted_by_commas(rows):
+        raise FileError(f"{path}: {COMMAS_TWICE}")
+    if not names and len(rows) > 1 and all(re.fullmatch(SEXAGESIMAL, row) for row in rows):
+        if any(re.match(WITH_DECIMALS, row) for row in rows):
+            raise FileError(
+                f"{path}: the columns look like degrees, minutes and seconds; export degrees as plain "
+                f"decimals; {advice}"
+            )
     if not before or known_axes(names or []):
         return
-    for other in [layout] + [Layout(s) for s in (";", "\t", ",", None)]:
-        found = [unquoted(word) for word in other.words(before[-1])]
+    for other, found in splittings(layout, before[-1]):
         while found and not found[-1]:
             found.pop()
         if known_axes(found) < set("xyz") or len(found) == width:
             continue
         own = other.separator and other.separator == layout.separator
         meanings = [meaning(name) for name in found]
-        if own or all(m.axis or m.role or is_beside(name) for m, name in zip(meanings, found)):
+        others = [name for m, name in zip(meanings, found) if not m.axis and not m.role]
+        if own or NEXT_TO_AXES.issuperset(plain(" ".join(others))):
             degrees = any(m.rank == 3 for m in meanings) and width in (5, 7)
-            why = f"{DEGREES}, or " if degrees else ""
+            why = "export degrees as plain decimals, if minutes have columns of their own, or " if degrees else ""
             if layout.separator == "," and len(found) < width:
                 why = "commas within numbers part them too, else "
             raise FileError(
@@ -229,27 +185,26 @@ def check_names(path, layout, before, rows, names, width, advice):
             )
 
 
-SEMICOLONS = "export it with semicolons between columns, or with decimal points"
-DEGREES = "export degrees as plain decimals, if minutes have columns of their own"
-
-
 def known_axes(names):
     return {meaning(name).axis for name in names} - {""}
 
 
-def pairs_of_whole_numbers(rows, width):
-    """Whether columns 1, 3, 5 look like what stands before a decimal comma, 2, 4, 6 behind it.
+def are_parted_by_commas(rows):
+    """Whether words 1, 3, 5 of rows look like what stands before a decimal comma, and 2, 4, 6 behind it.
 
     These are whole, all of the same length, and one of them begins with 0, as no number does.
     """
-    rows = [row for row in rows if len(row) == width]
-    if width % 2 or width < 4 or len(rows) < 2:
+    if len(rows) < 2 or not all(re.fullmatch(PAIRS, row) for row in rows):
         return False
-    if not all(re.fullmatch(r"[-+]?\d+", word) for row in rows for word in row):
-        return False
-    behind = [[row[i] for row in rows] for i in range(1, width, 2)]
-    even = all(len({len(word) for word in column}) == 1 for column in behind)
-    return even and any(len(word) > 1 and word[0] == "0" for column in behind for word in column)
+    behind = list(zip(*(row.split()[1::2] for row in rows)))
+    are_even = all(len(set(map(len, column))) == 1 for column in behind)
+    return are_even and any(re.match(r"0\d", word) for column in behind for word in column)
+
+
+def splittings(layout, line):
+    """Yields (Layout, names) of a line of names, with the separator of the data and with others."""
+    for other in [layout, *LAYOUTS[: len(SEPARATORS)]]:
+        yield other, [unquoted(word) for word in other.words(line)]
 
 
 def find_names(layout, head, width, one_may_lack=True):
@@ -261,19 +216,15 @@ def find_names(layout, head, width, one_may_lack=True):
     They stand in one line, with the separator of the data or another; or a line each, numbered as
     "3: X", or between BEGIN HEADER and END HEADER.
     """
-    candidates = []
+    matches = [match for match in map(NUMBERED_NAME.match, head) if match]
+    found = {int(match.group(1)): match.group(2).strip('" ') for match in matches}
+    candidates = [[found[i] for i in range(1, width + 1) if i in found]]
     upper = [line.upper() for line in head]
     if "BEGIN HEADER" in upper and "END HEADER" in upper:
         part = head[upper.index("BEGIN HEADER") + 1 : upper.index("END HEADER")]
         candidates.append([name.split(",")[-1] for name in part])
-    numbered = re.compile(r"(?:field|column|col)?\W*(\d+)\s*[:=.)]?\s*(\S.*)", re.I)
-    matches = [match for match in map(numbered.match, head) if match]
-    found = {int(match.group(1)): match.group(2).strip('" ') for match in matches}
-    if set(found) >= set(range(1, width + 1)):
-        candidates.append([found[i] for i in range(1, width + 1)])
     for line in reversed(head):
-        for other in [layout] + [Layout(s) for s in (";", "\t", ",", None)]:
-            words = [unquoted(word) for word in other.words(line)]
+        for other, words in splittings(layout, line):
             candidates.append(words)
             if other.separator is None:
                 candidates.append(re.split(r"\s{2,}|\t", line.strip()))
@@ -303,10 +254,10 @@ def doubtful_units(layout, head, names, indices):
     The units stand in the names, as in "Z (ft)", in a line of their own, as in "m,m,ft", or where
     Petrel writes them.
     """
-    rows = [[unit_of(name) for name in names or []]]
-    rows += [[unit_of(f"({word.strip('()[]')})") for word in layout.words(line)] for line in head]
+    rows = [[length_unit(name) for name in names or []]]
+    rows += [[length_unit(f"({word.strip('()[]')})") for word in layout.words(line)] for line in head]
     pattern = re.compile(r"unit in (x and y direction|depth):\s*(\w+)", re.I)
-    petrel = {where.lower(): unit_of(f"({unit})") for where, unit in pattern.findall("\n".join(head))}
+    petrel = {where.lower(): length_unit(f"({unit})") for where, unit in pattern.findall("\n".join(head))}
     named = [[row[i] if i < len(row) else "" for i in indices] for row in rows]
     across = petrel.get("x and y direction", "")
     for units in [*named, [across, across, petrel.get("depth", "")]]:

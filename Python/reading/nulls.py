@@ -11,18 +11,19 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_FLOAT
 
-from ..clouds import coordinates_of, keep_points
+from ..clouds import coordinates_of, keep_points, slices
 from .known import NULL_ROWS, NULLS
-from ..messages import Reason, counted, counted_reason
+from ..messages import FileError, Reason, counted, counted_reason
 from ..names import option
-from ..progress import share, items_with_progress
-from ..ranks import all_values, before, summed, together, total, widest
+from ..progress import items_with_progress, no_progress, share
+from ..ranks import all_values, before, extremes, summed, total
 from ..spreading import ids_of, places_of
 
 SAMPLE = 200_000
 CHUNK = 1 << 21  # points at once: arrays of a size that memory is kept for
 SUSPECTS = 1000  # no more are looked at
 NAMED = 5  # that many blunders are named
+ALL_WITHOUT_DATA = "all points have the elevation that marks missing data"
 FAR = 1e100  # no coordinate is that large, and squares of larger ones are infinite
 
 
@@ -36,38 +37,39 @@ def take_out(cloud, options, ranks=None):
     Returns the cloud. What is taken out is counted in its left_out, what is doubtful is in its
     notes. A cloud of nothing but nulls stays as it is.
     """
-    coordinates = coordinates_of(cloud.points)
-    axes, progress = [], options.progress
-    for i in range(3):
-        axes.append(numpy.ascontiguousarray(coordinates[:, i], dtype="f8"))
-        progress(0.1 * i)
-    null, counts = numpy.zeros(len(coordinates), dtype=bool), {}
-    for done, (axis, name) in enumerate(((2, "z"), (0, "x"), (1, "y"))):
-        values = axes[axis]
-        progress(0.2 + 0.05 * done)
-        for value, found in usual_nulls(values, axis < 2, ranks):
-            found &= ~null
-            counts[Reason("null value", f"({name} = {value:.9g})")] = number_of(ranks, found)
-            null |= found
-    for value, found in null_rows(*axes, ranks):
-        found &= ~null
-        counts[Reason("row", f"{value:g} {value:g} {value:g}")] = number_of(ranks, found)
+    axes, progress = numpy.array(coordinates_of(cloud.points).T, dtype="f8"), options.progress
+    null, counts = numpy.zeros(axes.shape[1], dtype=bool), {}
+    for name, value, found in nulls_in(*axes, ranks, share(progress, 0.0, 0.35)):
+        count = count_set(ranks, found & ~null)
         null |= found
-    counts = {reason: count for reason, count in counts.items() if count}
-    progress(0.35)
-    if counts and number_of(ranks, ~null):
+        reason = Reason("row", f"{value:g} {value:g} {value:g}")
+        if name:
+            reason = Reason("null value", f"({name} = {value:.9g})")
+        counts.update({reason: count} if count else {})
+    if counts and count_set(ranks, ~null):
         if options.keep_nulls:
             words = ", ".join(counted_reason(count, name) for name, count in counts.items())
             cloud.notes.append(f"kept: {words}")
         else:
             if null.any():
                 keep_points(cloud, numpy.flatnonzero(~null))
-                axes = [values[~null] for values in axes]
+                axes = axes[:, ~null]
             cloud.left_out.update(counts)
             cloud.notes.append(f"usual null values are left out; {option('keep_nulls')} keeps them")
     if not options.keep_nulls:
         cloud.notes += doubts(*axes, Numbers(cloud, ranks), share(progress, 0.4, 1.0))
     return cloud
+
+
+def nulls_in(x, y, z, ranks=None, progress=no_progress):
+    """Yields (name of the axis, or "" for all of them, value, (n,) of bool) of usual null values that
+    stand apart."""
+    for done, (name, values) in enumerate((("z", z), ("x", x), ("y", y))):
+        progress(done / 3)
+        for value, found in usual_nulls(values, name != "z", ranks):
+            yield name, value, found
+    for value, found in null_rows(x, y, z, ranks):
+        yield "", value, found
 
 
 def blank_attributes(points):
@@ -86,7 +88,19 @@ def blank_attributes(points):
     return notes
 
 
-def number_of(ranks, flags):
+def leave_out(path, cloud, no_data, ranks=None, noun="point", none_left=ALL_WITHOUT_DATA):
+    """Takes the points of this elevation out of a cloud; ranks: see take_out()."""
+    keep = coordinates_of(cloud.points)[:, 2] != no_data
+    lost = count_set(ranks, ~keep)
+    if not count_set(ranks, keep):
+        raise FileError(f"{path}: {none_left}")
+    if lost:
+        cloud.left_out[Reason(noun, "without data")] = lost
+    if not keep.all():
+        keep_points(cloud, numpy.flatnonzero(keep))
+
+
+def count_set(ranks, flags):
     """How many are set, on all ranks."""
     return total(ranks, numpy.count_nonzero(flags))
 
@@ -102,9 +116,12 @@ class Numbers:
         if ranks and not cloud.points.GetPointData().GetGlobalIds():
             self.ids = self.ids + before(ranks, count)
 
-    def of(self, ids):
+    def named(self, ids, words, count):
+        """"line 7 has z = 1, ..." of the words for the first points of so many."""
         numbers = places_of(self.ranks, ids, self.ids)
-        return (numbers if self.lines is None else numpy.asarray(self.lines)[numbers]).tolist()
+        numbers = numbers if self.lines is None else numpy.asarray(self.lines)[numbers]
+        named = [f"{self.noun} {number} has {one}" for number, one in zip(numbers.tolist(), words)]
+        return ", ".join(named) + ", ..." * (count > len(named))
 
 
 def doubts(x, y, z, numbers, progress):
@@ -119,19 +136,12 @@ def doubts(x, y, z, numbers, progress):
     notes += far_off(x, y, z, numbers)
     single = blunders(x, y, z, numbers, share(progress, 0.25, 1.0))
     if single:
-        named = single[:NAMED]
-        places = numbers.of([point for point, *_ in named])
-        words = [
-            f"{numbers.noun} {place} has {value:.7g} where others have {low:.7g} to {high:.7g}"
-            for place, (_, value, low, high) in zip(places, named)
-        ]
-        more = ", ..." if len(single) > NAMED else ""
+        ids = [point for point, *_ in single[:NAMED]]
+        words = ["{:.7g} where others have {:.7g} to {:.7g}".format(*one) for _, *one in single[:NAMED]]
+        named = numbers.named(ids, words, len(single))
         least = "at least " if len(single) == SUSPECTS else ""
         plural = " is" if len(single) == 1 else "s are"
-        notes.append(
-            f"{least}{len(single):,} single elevation{plural} far from "
-            f"all around: {', '.join(words)}{more}"
-        )
+        notes.append(f"{least}{len(single):,} single elevation{plural} far from all around: {named}")
     return notes
 
 
@@ -139,27 +149,17 @@ def far_off(x, y, z, numbers):
     """A note on points with a coordinate of FAR or more: blunders() does not look at them."""
     far = numpy.zeros(len(z), dtype=bool)
     for values in (x, y, z):
-        low, high = limits(values)
-        if max(-low, high) >= FAR:
-            far |= (abs(values) >= FAR) & numpy.isfinite(values)
-    count = number_of(numbers.ranks, far)
+        far |= (abs(values) >= FAR) & numpy.isfinite(values)
+    count = count_set(numbers.ranks, far)
     if not count:
         return []
-
-    def first_ones():
-        here = numpy.flatnonzero(far)
-        here = here[numpy.argsort(numbers.ids[here], kind="stable")][:NAMED].tolist()
-        return [[int(numbers.ids[i]), float(x[i]), float(y[i]), float(z[i])] for i in here]
-
-    named, words = sorted(together(numbers.ranks, first_ones))[:NAMED], []
-    for place, (_, *xyz) in zip(numbers.of([point for point, *_ in named]), named):
-        axis, value = max(zip("xyz", xyz), key=lambda pair: abs(pair[1]))
-        words.append(f"{numbers.noun} {place} has {axis} = {value:.7g}")
-    more = ", ..." if count > NAMED else ""
-    return [
-        f"{counted(count, 'point')} cannot be a place on earth; take it out of the file: "
-        f"{', '.join(words)}{more}"
-    ]
+    rows = numpy.flatnonzero(far)
+    rows = rows[numpy.argsort(numbers.ids[rows], kind="stable")][:NAMED]
+    points = sorted(zip(*gathered(numbers.ranks, rows, numbers.ids, x, y, z)))[:NAMED]
+    largest = [max(zip("xyz", xyz), key=lambda pair: abs(pair[1])) for _, *xyz in points]
+    words = [f"{axis} = {value:.7g}" for axis, value in largest]
+    named = numbers.named([point for point, *_ in points], words, count)
+    return [f"{counted(count, 'point')} cannot be a place on earth; take it out of the file: {named}"]
 
 
 def body(values, ranks=None):
@@ -177,12 +177,7 @@ def body(values, ranks=None):
 
 def limits(values, ranks=None):
     """The least and the greatest value that is finite; (inf, -inf) where none is."""
-    low = numpy.fmin.reduce(values, initial=numpy.inf)
-    high = numpy.fmax.reduce(values, initial=-numpy.inf)
-    if not (numpy.isfinite(low) and numpy.isfinite(high)):
-        values = values[numpy.isfinite(values)]
-        low, high = values.min(initial=numpy.inf), values.max(initial=-numpy.inf)
-    return widest(ranks, low, high)
+    return extremes(ranks, values[numpy.isfinite(values)])
 
 
 def stands_apart(value, count, others, width, ranks):
@@ -191,7 +186,7 @@ def stands_apart(value, count, others, width, ranks):
     Near is half the width that most others span; a tenth where the value occurs often, as nulls do.
     """
     reach = max((0.1 if count > 2 else 0.5) * width, 0.05 * abs(value))
-    near = number_of(ranks, (others > value - reach) & (others < value + reach))
+    near = count_set(ranks, (others > value - reach) & (others < value + reach))
     return near <= count // 20
 
 
@@ -201,31 +196,21 @@ def usual_nulls(values, is_place=False, ranks=None):
     is_place  x or y: these are apart where they are twice as far as the others are wide
     """
     low, high = limits(values, ranks)
-    present = []
+    present = {}
     for value in NULLS:
-        # As text or single precision wrote it.
-        slack = 1e-5 * abs(value) if abs(value) >= 1e20 else 0.0
+        slack = 1e-5 * abs(value) if abs(value) >= 1e20 else 0.0  # as text or single precision wrote it
         if low - slack <= value <= high + slack:
-            found = numpy.abs(values - value) <= slack if slack else values == value
-            if number_of(ranks, found):
-                present.append((value, found))
+            found = numpy.abs(values - value) <= slack
+            present.update({value: found} if count_set(ranks, found) else {})
     if not present:
         return []
-    others = numpy.isfinite(values)
-    for _, found in present:
-        others &= ~found
-    others = values[others]
-    if not total(ranks, len(others)):
+    others = values[numpy.isfinite(values) & ~numpy.logical_or.reduce(list(present.values()))]
+    width = body(others, ranks) * (20.0 if is_place else 1.0)
+    if not total(ranks, len(others)) or is_place and width == 0:
         return []
-    width = body(others, ranks)
-    if is_place:
-        if width == 0:
-            return []
-        width *= 20.0
     return [
-        (value, found)
-        for value, found in present
-        if stands_apart(value, number_of(ranks, found), others, width, ranks)
+        (value, found) for value, found in present.items()
+        if stands_apart(value, count_set(ranks, found), others, width, ranks)
     ]
 
 
@@ -235,10 +220,10 @@ def null_rows(x, y, z, ranks=None):
     others, result = ~numpy.logical_or.reduce([found for _, found in present]), []
     for value, found in present:
         near = others.copy()
-        if number_of(ranks, found) and number_of(ranks, others):
+        if count_set(ranks, found) and count_set(ranks, others):
             for values in (x, y):
                 near &= numpy.abs(values - value) < max(body(values[others], ranks), 1e-300)
-        if number_of(ranks, found) and not number_of(ranks, near):
+        if count_set(ranks, found) and not count_set(ranks, near):
             result.append((value, found))
     return result
 
@@ -249,7 +234,7 @@ def repeated_extremes(z, progress, ranks):
     for i, value in enumerate(limits(z, ranks)):
         progress(0.5 * i)
         is_it = z == value
-        count = number_of(ranks, is_it)
+        count = count_set(ranks, is_it)
         if 3 <= count < total(ranks, len(z)) // 2:
             others = z[~is_it]
             if stands_apart(value, 1, others, body(others, ranks), ranks):
@@ -260,7 +245,7 @@ def repeated_extremes(z, progress, ranks):
 class Cells:
     """A grid of some 16 points a cell over x and y. Its rim stays empty but for points far off.
 
-    columns, count  of the cells; the last one is for points that are not finite
+    columns, count  of the cells; the last one is for points that are not finite. No cells: too few points
     """
 
     def __init__(self, x, y, ranks):
@@ -269,18 +254,18 @@ class Cells:
         sample = numpy.column_stack((x[::step], y[::step]))
         sample = sample[numpy.isfinite(sample).all(axis=1)]
         sample = all_values(ranks, sample.ravel(), "f8").reshape(-1, 2)
-        low, high = numpy.percentile(sample, (0.5, 99.5), axis=0) if len(sample) else (0.0, 0.0)
-        extent = numpy.asarray(high - low)
-        self.low, self.count = low, 0
-        if count < 20 or not (numpy.isfinite(extent).all() and extent.max() > 0):
+        self.count = 0
+        if count < 20 or not len(sample):
             return
+        self.low, high = numpy.percentile(sample, (0.5, 99.5), axis=0)
+        extent = high - self.low
         area = max(extent[0], 1e-3 * extent[1]) * max(extent[1], 1e-3 * extent[0])
         self.side = (area / (count / 16.0)) ** 0.5
         if self.side > 0 and numpy.isfinite(self.side):
             self.columns, self.rows = (int(length) + 3 for length in extent / self.side)
             self.count = self.columns * self.rows + 1
 
-    def of(self, x, y, z):
+    def holding(self, x, y, z):
         """The cell of each point."""
         whole = numpy.abs(x + y + z) < FAR
         parts = []
@@ -302,59 +287,52 @@ def blunders(x, y, z, numbers, progress):
     cells = Cells(x, y, ranks)
     if not cells.count:
         return []
-    parts = [slice(start, start + CHUNK) for start in range(0, len(x), CHUNK)]
-    shown, count = share(progress, 0.0, 0.4), len(parts)
-    cell = [cells.of(x[p], y[p], z[p]) for p in items_with_progress(parts, shown, count, 1)]
-    cell = numpy.concatenate([numpy.zeros(0, "i4"), *cell])
-    middle = z[:SAMPLE][numpy.abs(z[:SAMPLE]) < FAR]
-    middle = all_values(ranks, middle, "f8")
+    parts = slices(len(x), CHUNK)
+    middle = all_values(ranks, z[:SAMPLE][numpy.abs(z[:SAMPLE]) < FAR], "f8")
     middle = float(numpy.median(middle)) if len(middle) else 0.0
-    sums = numpy.zeros((3, cells.count))
-    for part in items_with_progress(parts, share(progress, 0.4, 0.7), count, 1):
-        known = cell[part] != cells.count - 1
-        height = numpy.where(known, z[part] - middle, 0.0)
+    cell, sums = numpy.empty(len(x), "i4"), numpy.zeros((3, cells.count))
+    for part in items_with_progress(parts, share(progress, 0.0, 0.7), len(parts), 1):
+        cell[part] = cells.holding(x[part], y[part], z[part])
+        height = numpy.where(cell[part] != cells.count - 1, z[part] - middle, 0.0)
         for row, weights in zip(sums, (None, height, height * height)):
             row += numpy.bincount(cell[part], weights, cells.count)
-    sums = summed(ranks, sums.ravel()).reshape(3, -1)
-    size = numpy.maximum(sums[0], 1.0)
-    mean = sums[1] / size
-    variance = numpy.maximum(sums[2] / size - mean * mean, 0.0)
+    size, first, second = summed(ranks, sums.ravel()).reshape(3, -1)
     # A point that lies d from the mean of n lies d n / (n - 1) from that of the others; their
     # variance is (n variance - d d n / (n - 1)) / (n - 1). Five deviations of the others are:
     n = numpy.maximum(size, 4.0)
+    mean = first / numpy.maximum(size, 1.0)
+    variance = numpy.maximum(second / n - mean * mean, 0.0)
     limit = numpy.sqrt(25.0 * n * variance / (n * n / (n - 1) + 25.0 * n / (n - 1)))
     least = 0.1 * body(z, ranks)
     limit = numpy.maximum(limit, least)
     limit[size < 4] = limit[-1] = numpy.inf
     mean += middle
-    suspects = numpy.concatenate(
-        [
-            numpy.zeros(0, "i8"),
-            *(
-                part.start + numpy.flatnonzero(abs(z[part] - mean[cell[part]]) > limit[cell[part]])
-                for part in items_with_progress(parts, share(progress, 0.7, 0.9), count, 1)
-            ),
-        ]
-    )
+    suspects = [numpy.zeros(0, "i8")]
+    for part in items_with_progress(parts, share(progress, 0.7, 0.9), len(parts), 1):
+        away = abs(z[part] - mean[cell[part]])
+        suspects.append(part.start + numpy.flatnonzero(away > limit[cell[part]]))
+    suspects = numpy.concatenate(suspects)
     if not total(ranks, len(suspects)):
         return []
-    away = -abs(z[suspects] - mean[cell[suspects]])
-    suspects = suspects[numpy.lexsort((numbers.ids[suspects], away))][:SUSPECTS]
-    ids, of_cell, heights = every_row(numbers, suspects, cell, z)
-    order = numpy.lexsort((ids, -abs(heights - mean[of_cell])))[:SUSPECTS]
-    suspects = list(zip(*(one[order].tolist() for one in (ids, of_cell, heights))))
+
+    def worst(ids, cell, z):
+        return numpy.lexsort((ids, -abs(z - mean[cell])))[:SUSPECTS]
+
+    suspects = suspects[worst(*(one[suspects] for one in (numbers.ids, cell, z)))]
+    found = gathered(ranks, suspects, numbers.ids, cell, z)
+    ids, places, heights = (one[worst(*found)] for one in found)
     around = numpy.add.outer(cells.columns * numpy.arange(-1, 2), numpy.arange(-1, 2)).ravel()
     wanted = numpy.zeros(cells.count, dtype=bool)
-    wanted[numpy.clip(of_cell[order][:, None] + around, 0, cells.count - 1)] = True
+    wanted[numpy.clip(places[:, None] + around, 0, cells.count - 1)] = True
     wanted[-1] = False
-    near = every_row(numbers, numpy.flatnonzero(wanted[cell]), cell, z)
+    near = gathered(ranks, numpy.flatnonzero(wanted[cell]), numbers.ids, cell, z)
+    suspects = list(zip(ids.tolist(), places.tolist(), heights.tolist()))
     return compared(suspects, near, around, least, share(progress, 0.9, 1.0))
 
 
-def every_row(numbers, rows, cell, z):
-    """Ids, cells and z of some points of each rank, of all of them."""
-    ids, cells = (all_values(numbers.ranks, one[rows]) for one in (numbers.ids, cell))
-    return ids, cells, all_values(numbers.ranks, z[rows], "f8")
+def gathered(ranks, rows, *columns):
+    """Some rows of arrays of each rank, of all of them."""
+    return [all_values(ranks, column[rows], "f8" if column.dtype.kind == "f" else "i8") for column in columns]
 
 
 def compared(suspects, near, around, least, progress):

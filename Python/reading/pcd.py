@@ -70,7 +70,7 @@ def unpacked(packed, size):
     return bytes(out)
 
 
-def rows_of(path, stream, words, kind, progress):
+def read_rows(path, stream, words, kind, progress):
     """The points as an array of the type."""
     count, way = words["POINTS"], (words.get("DATA") or [""])[0]
     rows = numpy.zeros(0, kind)
@@ -113,7 +113,7 @@ def read_points(path, options):
     """The points; other fields become point arrays. Those of scanners without a return are NaN."""
     with open(path, "rb") as stream:
         words, kind = read_header(path, stream)
-        rows = rows_of(path, stream, words, kind, options.progress)
+        rows = read_rows(path, stream, words, kind, options.progress)
     names = [name for name in kind.names if not re.fullmatch(r"_\d+", name)]
     if not {"x", "y", "z"} <= set(names):
         raise FileError(f"{path}: its fields are {', '.join(names)}, not x, y and z")

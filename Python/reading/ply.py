@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray
 from ..clouds import Cloud, ReadOptions, add_array, make_points, rounding_note
 from ..messages import FileError, Messages
 from ..progress import share, items_with_progress
-from .facing import check_faces, made_of
+from .facing import check_faces, make_faces
 from .vtk_checks import survives
 
 TYPES = {
@@ -121,7 +121,7 @@ def open_vertices(path, stream):
     return order, elements, place, number
 
 
-def coordinates_of(rows):
+def row_coordinates(rows):
     return numpy.column_stack([rows[axis].astype("f8") for axis in "xyz"])
 
 
@@ -134,20 +134,20 @@ def read_points(path, options):
         rows, notes = read(
             path, stream, order or number, vertex, before, after, options.progress
         )
-    coordinates = coordinates_of(rows)
+    coordinates = row_coordinates(rows)
     cloud = Cloud(make_points(coordinates, copy=False), notes)
     add_arrays(cloud.points, rows)
     if any(element.count for element in elements if element.name != "vertex"):
         cloud.notes.append("only the points are used, not the file's cells")
         if not options.points_only:
-            cloud.notes += check_faces(path, faces_of(path, coordinates, options.progress), options)
+            cloud.notes += check_faces(path, read_faces(path, coordinates, options.progress), options)
     if rows["x"].dtype == "f4":
         note = rounding_note(coordinates, "the file is")
         cloud.notes += [note] if note else []
     return cloud
 
 
-def faces_of(path, coordinates, progress):
+def read_faces(path, coordinates, progress):
     """The faces as vtkPolyData, as VTK reads them, with exact points; None where it cannot."""
     from vtkmodules.vtkIOPLY import vtkPLYReader
 
@@ -161,7 +161,7 @@ def faces_of(path, coordinates, progress):
     ids = vtk_to_numpy(cells.GetConnectivityArray())
     if not len(ids) or ids.min() < 0 or ids.max() >= len(coordinates):
         return None
-    return made_of(coordinates, cells)
+    return make_faces(coordinates, cells)
 
 
 def read_lines(path, singular, progress):

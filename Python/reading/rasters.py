@@ -8,8 +8,8 @@ import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
 
 from ..clouds import Cloud, Frame, ReadOptions, node_frame, grid_of, make_points, pixels_of
-from .column_names import direction_of
-from .formats import HEAD, is_saga_header, numbers_of
+from .column_names import z_direction
+from .formats import HEAD, is_saga_header, count_numbers
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError, Reason
 from ..names import option
@@ -32,10 +32,10 @@ HINTS = {
 }
 # Pixels that are read at once.
 AT_ONCE = 1 << 20
-WORDS = 0.5  # of the work: the words of text are looked at first
+WORK_ON_WORDS = 0.5  # of the work: the words of text are looked at first
 
 
-def data_of_saga(path):
+def saga_data(path):
     """The .sdat next to the header of a SAGA grid; other files as they are."""
     with open(path, "rb") as stream:
         if not is_saga_header(stream.read(HEAD), path):
@@ -49,7 +49,7 @@ def data_of_saga(path):
 def open_raster(path, options):
     """(dataset, notes). Of several variables the one that options name, or one of elevations."""
     gdal = gdal_module()
-    path = data_of_saga(path)
+    path = saga_data(path)
     kind = kind_of(path, "raster")
     if kind is None:
         hint = HINTS.get(suffix_of(path), "")
@@ -63,8 +63,6 @@ def open_raster(path, options):
             least, most = (float(metadata.get(f"{end}_RESOLUTION_X", "nan")) for end in ("MIN", "MAX"))
             notes = [f"the resolution varies from {least:g} to {most:g}: the nodes of all refined cells are read"]
             data = gdal.OpenEx(path, flags, [kind], settings + ["MODE=RESAMPLED_GRID"])
-        if "UGRID" in data.GetMetadata().get("NC_GLOBAL#Conventions", ""):
-            raise FileError(f"{path}: is a mesh of UGRID whose nodes have no coordinates")
         variables = {name.rsplit(":", 1)[-1].strip('"/'): name for name, _ in data.GetSubDatasets()}
         if data.RasterCount and not (options.layer and variables):
             if options.layer:
@@ -80,11 +78,11 @@ def open_raster(path, options):
         raise FileError(f"{path}: cannot be read: {one_line(error)}") from None
 
 
-def body_of(kind, stream):
+def grid_lines(kind, stream):
     """Yields (number, line) of a grid of text, without its header."""
     begun = False
     for number, line in enumerate(stream, 1):
-        begun = begun or (number > 5 if kind == "GSAG" else bool(line.strip() and numbers_of(line[:100].split()[0])))
+        begun = begun or (number > 5 if kind == "GSAG" else bool(line.strip() and count_numbers(line[:100].split()[0])))
         if begun:
             yield number, line
 
@@ -93,7 +91,7 @@ def check_words(path, kind, nodes, progress):
     """Refuses text that is not a number, and more or fewer numbers than nodes. Returns notes."""
     count, line = 0, b"\n"
     with open(path, "rb") as stream:
-        for number, line in body_of(kind, lines_with_progress(stream, progress)):
+        for number, line in grid_lines(kind, lines_with_progress(stream, progress)):
             if line.translate(None, IN_NUMBERS):
                 raise FileError(f"{path}, band 1, line {number}: holds a word that is not a number")
             count += len(line.split())
@@ -114,7 +112,7 @@ def choose_band(path, data, options, notes):
     return data.GetRasterBand(number)
 
 
-def axes_of(path, band):
+def uneven_axes(path, band):
     """x of the columns and y of the rows of a netCDF variable whose steps differ, else None.
 
     GDAL takes the last row first where it finds no steps.
@@ -132,7 +130,7 @@ def axes_of(path, band):
 def placement(path, data, band, notes):
     """(a function that gives x and y of the pixel centres in a row, the Frame or None)."""
     found, size = data.GetGeoTransform(can_return_null=True), (data.RasterXSize, data.RasterYSize)
-    axes = None if found else axes_of(path, band)
+    axes = None if found else uneven_axes(path, band)
     if axes:
         notes.append("the steps of x and y differ")
         return lambda row: (axes[0], numpy.full(size[0], axes[1][row])), None
@@ -146,7 +144,7 @@ def placement(path, data, band, notes):
     return frame.row, frame
 
 
-def note_of_dem(path):
+def dem_note(path):
     """GDAL moves profiles of a USGS DEM to whole steps of y."""
     with open(path, "rb") as stream:
         head = stream.read(1200).decode("latin-1").replace("D", "E")
@@ -160,7 +158,7 @@ def note_of_dem(path):
     return [f"GDAL moves y to whole steps of {step:g}, by up to {min(away, step - away):g}"]
 
 
-def alpha_of(data, band):
+def alpha_band(data, band):
     """The band of opacity that belongs to a band of elevations, or None."""
     bands = [data.GetRasterBand(i) for i in range(1, data.RasterCount + 1)]
     alpha = gdal_module().GCI_AlphaBand
@@ -168,7 +166,7 @@ def alpha_of(data, band):
     return next((other for other in others if other.GetColorInterpretation() == alpha), None)
 
 
-def notes_of_raster(path, data, band, options):
+def raster_notes(path, data, band, options):
     """What the user must know of how the pixels are taken."""
     gdal = gdal_module()
     kind = data.GetDriver().ShortName
@@ -176,13 +174,13 @@ def notes_of_raster(path, data, band, options):
     scale, offset = band.GetScale(), band.GetOffset()
     if (scale or 1.0) != 1.0 or offset:
         notes.append(f"elevation = pixel * {scale or 1.0:g} + {offset or 0.0:g}, as the file says")
-    if alpha_of(data, band):
+    if alpha_band(data, band):
         notes.append("pixels whose alpha is 0 are without data")
     if band.GetNoDataValue() is not None:
         notes.append(f"no-data value {band.GetNoDataValue():g} from the file")
     elif band.GetMaskFlags() & ~gdal.GMF_ALL_VALID:
         notes.append("pixels without data from the file's mask")
-    elif options.no_data is None and not alpha_of(data, band):
+    elif options.no_data is None and not alpha_band(data, band):
         notes.append(f"no no-data value in the file: all pixels are used (see {option('no_data')})")
     colour = band.GetColorInterpretation()
     if colour not in (gdal.GCI_Undefined, gdal.GCI_GrayIndex):
@@ -192,9 +190,9 @@ def notes_of_raster(path, data, band, options):
         notes.append(f"elevation in {band.GetUnitType()}, as the file says")
     if kind in TEXT_KINDS:
         notes += check_words(
-            path, kind, data.RasterXSize * data.RasterYSize, share(options.progress, 0.0, WORDS)
+            path, kind, data.RasterXSize * data.RasterYSize, share(options.progress, 0.0, WORK_ON_WORDS)
         )
-    return notes + (note_of_dem(path) if kind == "USGSDEM" else [])
+    return notes + (dem_note(path) if kind == "USGSDEM" else [])
 
 
 def read_points(path, options):
@@ -205,9 +203,9 @@ def read_points(path, options):
     with quiet():
         data, notes = open_raster(path, options)
         band = choose_band(path, data, options, notes)
-        notes += notes_of_raster(path, data, band, options)
+        notes += raster_notes(path, data, band, options)
         place, frame = placement(path, data, band, notes)
-        begun = WORDS if data.GetDriver().ShortName in TEXT_KINDS else 0.0
+        begun = WORK_ON_WORDS if data.GetDriver().ShortName in TEXT_KINDS else 0.0
         progress = share(options.progress, begun, 1.0)
         points, count = numpy.empty((data.RasterYSize * data.RasterXSize, 3)), 0
         mask = numpy.empty((data.RasterYSize, data.RasterXSize), dtype=bool)
@@ -228,7 +226,7 @@ def read_points(path, options):
     lost = len(points) - count
     points = points[:count]
     cloud = Cloud(make_points(points, copy=False), notes)
-    cloud.z_name = name_of_z(band)
+    cloud.z_name = z_name_in(band)
     if lost:
         cloud.left_out[Reason("pixel", "without data")] = lost
     cloud.crs = reference.ExportToWkt() if reference else None
@@ -236,7 +234,7 @@ def read_points(path, options):
     return cloud
 
 
-def frame_of(path):
+def raster_frame(path):
     """(the Frame of a raster or None, its coordinate reference system or None)."""
     with quiet():
         options = ReadOptions()
@@ -252,14 +250,14 @@ def is_in_degrees(data):
     return sum(words.lower().startswith("degree") for words in units) > 1
 
 
-def name_of_z(band):
+def z_name_in(band):
     """The name of a band's values, with their unit."""
     metadata = band.GetMetadata()
     names = [metadata.get(key, "") for key in ("NETCDF_VARNAME", "standard_name", "long_name")]
     names = [f"{name} ({band.GetUnitType()})" for name in [*names, band.GetDescription()] if name]
     if metadata.get("positive", "").lower() == "down":
         names.insert(0, "depth")
-    return next((name for name in names if direction_of(name)), "")
+    return next((name for name in names if z_direction(name)), "")
 
 
 def blocks(path, data, band, no_data):
@@ -268,7 +266,7 @@ def blocks(path, data, band, no_data):
     scale, offset = band.GetScale() or 1.0, band.GetOffset() or 0.0
     deep = band.GetBlockSize()[1]
     step = max(deep, AT_ONCE // band.XSize // deep * deep)
-    alpha = alpha_of(data, band)
+    alpha = alpha_band(data, band)
     all_valid = band.GetMaskFlags() & gdal.GMF_ALL_VALID
     for first in range(0, band.YSize, step):
         window = (0, first, band.XSize, min(step, band.YSize - first))
@@ -296,7 +294,7 @@ def blocks(path, data, band, no_data):
         yield first, z, valid
 
 
-def points_of_raster(path, x, y, z, ids=None):
+def raster_cloud(path, x, y, z, ids=None):
     """Three (rows, columns) arrays -> Cloud of the nodes that hold an elevation.
 
     ids  (rows, columns) global ids where ranks have rectangles of the raster each; -1 for nodes that are

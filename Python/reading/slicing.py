@@ -23,7 +23,7 @@ from ..selecting import NothingChosen, Selection, as_option, none_chosen
 from . import NAMES_IN_COLUMNS, check_use
 from .formats import FORMATS, recognise
 from .known import NULLS
-from .nulls import null_rows, usual_nulls
+from .nulls import ALL_WITHOUT_DATA, nulls_in
 from .unpacking import STANDARD_INPUT, is_plain, named, unpacked
 from .upwards import notes_on_range
 
@@ -119,8 +119,7 @@ class SlicedFile:
             cloud.notes += self.selection.check(facts["chosen"])
             self.selection.add_to(cloud.left_out)
             if not facts["count"]:
-                words = "all points have the elevation that marks missing data"
-                raise FileError(f"{self.local}: {getattr(self.reader, 'without_data', words)}")
+                raise FileError(f"{self.local}: {getattr(self.reader, 'without_data', ALL_WITHOUT_DATA)}")
         if facts["chosen"] > facts["count"]:
             cloud.left_out[Reason(noun, "without data")] = facts["chosen"] - facts["count"]
         low, high = min(facts["low"]), max(facts["high"])
@@ -144,22 +143,15 @@ def check_nulls(path, points):
 
     points  of a slice, with some of those before it: a slice may have nothing but nulls
     """
-    axes = [numpy.ascontiguousarray(points[:, i]) for i in range(3)]
-    for axis, name in ((2, "z"), (0, "x"), (1, "y")):
-        for value, _ in usual_nulls(axes[axis], is_place=axis < 2):
-            advice = f"--no-data {value:.9g} leaves such points out, " if axis == 2 else ""
-            raise FileError(
-                f"{path}: {name} = {value:.9g}, far from other values, looks like a null value: "
-                f"{advice}--keep-nulls keeps them"
-            )
-    for value, _ in null_rows(*axes):
-        raise FileError(
-            f"{path}: points {value:g} {value:g} {value:g} apart from all others look like null values: --keep-nulls "
-            "keeps them"
-        )
+    for name, value, _ in nulls_in(*numpy.ascontiguousarray(points.T)):
+        what = f"{name} = {value:.9g}, far from other values, looks like a null value: "
+        if not name:
+            what = f"points {value:g} {value:g} {value:g} apart from all others look like null values: "
+        advice = f"--no-data {value:.9g} leaves such points out, " if name == "z" else ""
+        raise FileError(f"{path}: {what}{advice}--keep-nulls keeps them")
 
 
-def parts_of(paths, rank, ranks):
+def file_parts(paths, rank, ranks):
     """{number of a file: the Part of it} that a rank reads of all files."""
     for path in paths:
         if path != "-":
@@ -197,7 +189,7 @@ def read_files(paths, cloud, take, ranks=None, **options):
     reference systems differ.
     """
     rank, count = rank_and_count(ranks)
-    parts = agreed(ranks, lambda: parts_of(paths, rank, count))
+    parts = agreed(ranks, lambda: file_parts(paths, rank, count))
     options, files = ReadOptions(**options), {}
     for i, (number, part) in enumerate(parts.items()):
         of_file = share(options.progress, i / len(parts), (i + 1) / len(parts))

@@ -4,11 +4,13 @@
 
 import io
 import os
+import re
 
 from ..clouds import WHOLE, Part
 from ..messages import FileError
 
 END_MARKS = b"\0\x1a\r\n "  # what DOS and full disks write behind the last line
+LINE_END = re.compile(rb"\r?\n|\r(?=[^\n])")
 BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
 
 
@@ -16,7 +18,7 @@ class Blocks:
     """The whole lines of a text file as bytes, some 8 MB at once: iterate to get (block, fraction).
 
     UTF-16 with its mark becomes UTF-8; the mark of UTF-8 is taken away. A part of a file has some of
-    the blocks of the whole file: a line is in the block in which it ends.
+    the blocks of the whole file: a line is in the block in which it begins.
 
     begin  where the first line begins
     """
@@ -33,21 +35,16 @@ class Blocks:
             raise FileError(f"{path}: is not a text file")
         self.count = max(1, -(-self.size // BLOCK))
         self.blocks = part.rows(self.count)
-        self.begin = self.begin_of_line(self.blocks.start * BLOCK)
+        self.begin = self.line_begin(self.blocks.start * BLOCK)
 
     def __iter__(self):
-        first, last = self.blocks.start, self.blocks.stop
-        rest = self.read(self.begin, first * BLOCK - self.begin)
-        for block in range(first, last):
-            data = rest + self.read(block * BLOCK, BLOCK)
-            if block == first and self.begin == 0 and data.startswith(b"\xef\xbb\xbf"):
-                data = data[3:]
-            cut = end_of_lines(data)
-            data, rest = data[:cut], data[cut:]
+        first, last, begin = self.blocks.start, self.blocks.stop, self.begin
+        for number in range(first + 1, last + 1):
+            end = begin if begin >= number * BLOCK else self.line_begin(number * BLOCK)
+            data = plain(self.read(begin, end - begin).removeprefix(b"\xef\xbb\xbf" if begin == 0 else b""))
             if data:
-                yield plain(data), (block + 1 - first) / (last - first)
-        if last == self.count and rest.strip(END_MARKS):
-            yield plain(rest), 1.0
+                yield data, (number - first) / (last - first)
+            begin = end
 
     def read(self, at, count):
         try:
@@ -56,17 +53,15 @@ class Blocks:
         except OSError as error:
             raise FileError(f"{self.path}: cannot be read: {error.strerror}") from None
 
-    def begin_of_line(self, end):
-        """Where a line begins that is not at its end at a place."""
-        begin, data = end, b""
-        while begin > 0:
-            step = min(begin, 4096)
-            begin -= step
-            data = self.read(begin, step) + data
-            cut = end_of_lines(data)
-            if cut:
-                return begin + cut
-        return 0
+    def line_begin(self, at):
+        """Where the first line begins that does so at a place or behind it."""
+        place = at - 1
+        while at and (data := self.read(place, 4096)):
+            found = LINE_END.search(data)
+            if found:
+                return place + found.end()
+            place += max(len(data) - 1, 1)
+        return self.size if at else 0
 
     def lines_before(self):
         """How many lines there are before this part."""
@@ -74,20 +69,15 @@ class Blocks:
         return sum(block.count(b"\n") for block, _ in before)
 
 
-def end_of_lines(data):
-    """The end of the last whole line; what follows \\r may belong to it."""
-    return 1 + max(data.rfind(b"\n"), data.rfind(b"\r", 0, len(data) - 1))
-
-
 def plain(data):
     """Bytes with \\n at the end of lines, the usual sign for minus, and no marks of the end."""
     end = data.rstrip(END_MARKS)
     if b"\x1a" in data[len(end) :] or b"\0" in data[len(end) :]:
-        data = end + b"\n"
+        data = end and end + b"\n"
     return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").replace(b"\xe2\x88\x92", b"-")
 
 
-def lines_of(block):
+def block_lines(block):
     """The lines of a block: UTF-8, or Latin-1 where it is not."""
     try:
         text = block.decode("utf-8")

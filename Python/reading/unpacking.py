@@ -20,16 +20,16 @@ from ..progress import no_progress
 PACKED = ((b"\x1f\x8b", gzip.open), (b"BZh", bz2.open), (b"\xfd7zXZ\0", lzma.open))
 STANDARD_INPUT = "standard input"
 # ZIP files that are one file to their readers, and tables of spreadsheets, which recognise() names.
-WHOLE = re.compile(r"\.(npy|kml)$|^(xl/|word/|ppt/|mimetype$|\[Content_Types\])")
+NOT_UNPACKED = re.compile(r"\.(npy|kml)$|^(xl/|word/|ppt/|mimetype$|\[Content_Types\])")
 # What lies next to a file that is read, and belongs to it or to nobody.
-BESIDE = (
+COMPANIONS = (
     ".dbf .shx .prj .qpj .cpg .sbn .sbx .qix .qmd .xml .tfw .wld .aux .ovr .hdr .stx .txt .pdf .md .html .htm .jpg .png "
     ".sdat .gfs .fix .idx .atx .gdbtable .gdbtablx .gdbindexes .spx .freelist"
 ).split()
-UNPACKING = 0.3  # of the whole work
+WORK_TO_UNPACK = 0.3  # of the whole work
 
 
-def opener_of(path):
+def find_opener(path):
     """The function that opens a packed file, or None for another file."""
     with open(path, "rb") as stream:
         head = stream.read(6)
@@ -38,17 +38,17 @@ def opener_of(path):
 
 def is_plain(path):
     """Whether a file can be looked at as it is."""
-    return os.path.isfile(path) and os.access(path, os.R_OK) and opener_of(path) is None and not is_archive(path)
+    return os.path.isfile(path) and os.access(path, os.R_OK) and find_opener(path) is None and not is_archive(path)
 
 
 def is_archive(path):
     """Whether a ZIP file holds files that are read, and is not read itself."""
     try:
         with zipfile.ZipFile(path) as archive:
-            return not any(WHOLE.search(name) for name in archive.namelist())
+            return not any(NOT_UNPACKED.search(name) for name in archive.namelist())
     except (OSError, zipfile.BadZipFile, ValueError, NotImplementedError):
         with open(path, "rb") as stream:
-            return stream.read(4) == b"PK\3\4" and not WHOLE.search(path)
+            return stream.read(4) == b"PK\3\4" and not NOT_UNPACKED.search(path)
 
 
 def unzipped(path, folder, progress):
@@ -60,7 +60,7 @@ def unzipped(path, folder, progress):
             for one in members:
                 archive.extract(one, folder)
                 done += one.file_size
-                progress(UNPACKING * done / sizes)
+                progress(WORK_TO_UNPACK * done / sizes)
     except (zipfile.BadZipFile, EOFError, zlib.error, lzma.LZMAError, NotImplementedError, RuntimeError) as error:
         raise FileError(f"{path}: is cut off or damaged: {error}") from None
     except OSError as error:
@@ -68,7 +68,7 @@ def unzipped(path, folder, progress):
     names = [one.filename for one in members]
     folders = {found.group(1) for found in (re.match(r"(.*?\.gdb)/", name) for name in names) if found}
     names = [name for name in names if not re.match(r".*?\.gdb/", name)]
-    read = sorted(folders) + [name for name in names if suffix_of(name) not in BESIDE]
+    read = sorted(folders) + [name for name in names if suffix_of(name) not in COMPANIONS]
     read = read or [name for name in names if suffix_of(name) == ".txt"]
     if len(read) != 1:
         shown = ", ".join(read[:20]) or ", ".join(names[:20]) or "nothing"
@@ -116,17 +116,17 @@ def unpacked(path, progress=no_progress):
             copy(sys.stdin.buffer, local, shown, lambda: progress(0.0))
         else:
             check_readable(path)
-        opener = os.path.isfile(local) and os.path.getsize(local) and opener_of(local)
+        opener = os.path.isfile(local) and os.path.getsize(local) and find_opener(local)
         if opener:
             folder = stack.enter_context(tempfile.TemporaryDirectory())
             packed, name = local, os.path.basename(os.path.splitext(local)[0])
-            local, begun, size = os.path.join(folder, name), UNPACKING, os.path.getsize(packed)
+            local, begun, size = os.path.join(folder, name), WORK_TO_UNPACK, os.path.getsize(packed)
             with open(packed, "rb") as raw, opener(raw) as source:
-                copy(source, local, shown, lambda: progress(UNPACKING * raw.tell() / size))
+                copy(source, local, shown, lambda: progress(WORK_TO_UNPACK * raw.tell() / size))
         elif os.path.isfile(local) and os.path.getsize(local) and is_archive(local):
             folder = stack.enter_context(tempfile.TemporaryDirectory())
             with named(local, shown):
-                local, begun = unzipped(local, folder, progress), UNPACKING
+                local, begun = unzipped(local, folder, progress), WORK_TO_UNPACK
         with named(local, shown):
             check_readable(local)
             yield local, begun

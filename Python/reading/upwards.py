@@ -10,9 +10,9 @@ import os
 
 from ..clouds import heights_of
 from ..names import option
-from .column_names import direction_of, is_of_horizon, says_up
+from .column_names import z_direction, names_horizon, says_up
 
-WHAT = {"depth": "depths", "time": "times"}
+PLURALS = {"depth": "depths", "time": "times"}
 
 
 def notes_on_up(cloud, depth, path="", ranks=None):
@@ -26,8 +26,8 @@ def notes_on_up(cloud, depth, path="", ranks=None):
 
 def notes_on_range(cloud, depth, low, high, path=""):
     """The same for z from low to high."""
-    is_horizon = cloud.is_horizon or is_of_horizon(os.path.basename(path))
-    direction, values = direction_of(cloud.z_name), f"from {low:,.6g} to {high:,.6g}"
+    is_horizon = cloud.is_horizon or names_horizon(os.path.basename(path))
+    direction, values = z_direction(cloud.z_name), f"from {low:,.6g} to {high:,.6g}"
     if depth:
         if high > 0.0 or low == 0.0:
             return []
@@ -37,12 +37,12 @@ def notes_on_range(cloud, depth, low, high, path=""):
         ]
     if direction and low >= 0.0 and high > 0.0:
         return [
-            f"z are {WHAT[direction]} by their name and positive, so the surface is upside down; "
+            f"z are {PLURALS[direction]} by their name and positive, so the surface is upside down; "
             f"{option('depth')} turns it over"
         ]
     if direction and high > 0.0:
         return [
-            f"z are {WHAT[direction]} by their name, but {values}: taken as they are, upwards; if "
+            f"z are {PLURALS[direction]} by their name, but {values}: taken as they are, upwards; if "
             f"they count downwards, {option('depth')} turns it over"
         ]
     if is_horizon and not direction and not says_up(cloud.z_name) and low > 0.0:

@@ -8,7 +8,7 @@ import os
 import numpy
 
 from ..clouds import Cloud, add_array, make_lines, make_points, set_crs
-from .columns import meaning
+from .column_names import meaning
 from .formats import HEAD, is_table_with_geometry
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError, Reason
@@ -29,7 +29,7 @@ POINTS_OF_LINES = (("track_points", "tracks"), ("route_points", "routes"))
 GIVEN_BY_TOOLS = ("grid_code", "gridcode", "rastervalu", "contour")
 
 
-def head_of(path):
+def read_head(path):
     with open(path, "rb") as stream:
         return stream.read(HEAD)
 
@@ -37,7 +37,7 @@ def head_of(path):
 def open_file(path):
     """The dataset of a file, open for reading."""
     gdal = gdal_module()
-    kind = "CSV" if os.path.isfile(path) and is_table_with_geometry(head_of(path), path) else kind_of(path, "vectors")
+    kind = "CSV" if os.path.isfile(path) and is_table_with_geometry(read_head(path), path) else kind_of(path, "vectors")
     if kind is None:
         raise FileError(f"{path}: GDAL knows no vector format that this could be")
     settings = OPEN_OPTIONS.get(kind, [])
@@ -73,13 +73,13 @@ def open_layer(path, data, wanted, as_lines):
     return layers[names.index(name)], notes
 
 
-def parts_of(geometry):
+def geometry_parts(geometry):
     """Yields (kind, points) of a geometry, kind one of point, line and ring."""
     if geometry.HasCurveGeometry():
         geometry = geometry.GetLinearGeometry()
     if geometry.GetGeometryCount():
         for i in range(geometry.GetGeometryCount()):
-            yield from parts_of(geometry.GetGeometryRef(i))
+            yield from geometry_parts(geometry.GetGeometryRef(i))
     elif geometry.GetPointCount():
         name = geometry.GetGeometryName()
         yield {"POINT": "point", "LINEARRING": "ring"}.get(name, "line"), geometry.GetPoints()
@@ -132,7 +132,7 @@ class Layer:
         if "SubClasses" in names and feature.GetField(names.index("Text")) is not None:
             self.labels += 1
             return
-        for kind, points in parts_of(geometry):
+        for kind, points in geometry_parts(geometry):
             points = numpy.array(points, dtype="f8")
             if points.shape[1] == 2 or not geometry.Is3D():
                 self.flat += 1

@@ -22,12 +22,12 @@ from .formats import FORMATS, HEAD
 from ..messages import FileError, Messages
 from ..paths import suffix_of
 from ..progress import no_progress, share, lines_with_progress
-from .facing import check_faces, made_of
-from .rasters import points_of_raster
+from .facing import check_faces, make_faces
+from .rasters import raster_cloud
 from .vtk_checks import check, survives
 
 
-def kind_of(path):
+def file_kind(path):
     """The suffix that the file's content ought to have."""
     with open(path, "rb") as stream:
         head = stream.read(HEAD)
@@ -75,7 +75,7 @@ def vtk_reader(suffix):
 
 def run_vtk_reader(path, progress=no_progress):
     """The data object of a file in one of VTK's formats."""
-    suffix = kind_of(path)
+    suffix = file_kind(path)
     check(path, suffix, progress)
     reader = vtk_reader(suffix)
     reader.SetFileName(path)
@@ -134,18 +134,18 @@ def check_point_ids(path, data):
 
 
 def read_points(path, options):
-    suffix = kind_of(path)
+    suffix = file_kind(path)
     if suffix in VERTEX and is_text(path):
         # VTK reads these texts in single precision.
         check(path, suffix, options.progress)
-        data = make_points(vertices_of_text(path, VERTEX[suffix], options.progress))
+        data = make_points(text_vertices(path, VERTEX[suffix], options.progress))
         cloud = Cloud(data, ["only the points are used, not the file's cells"])
         if not options.points_only:
-            cloud.notes += check_faces(path, faces_of_text(path, suffix), options)
+            cloud.notes += check_faces(path, text_faces(path, suffix), options)
     else:
         data = run_vtk_reader(path, options.progress)
         if isinstance(data, (vtkImageData, vtkRectilinearGrid)):
-            return points_of_grid(path, data)
+            return grid_points(path, data)
         if not isinstance(data, vtkPointSet):
             raise FileError(f"{path}: holds a {data.GetClassName()}, which has no points")
         data = with_hidden_nodes(data)
@@ -165,13 +165,13 @@ def read_points(path, options):
     return cloud
 
 
-def faces_of_text(path, suffix):
+def text_faces(path, suffix):
     """The faces of an STL or OBJ file of text, as exact as they stand there; VTK rounds to floats."""
-    points = vertices_of_text(path, VERTEX[suffix], no_progress, once=False)
+    points = text_vertices(path, VERTEX[suffix], no_progress, once=False)
     if suffix == ".stl":
-        return made_of(points, numpy.arange(len(points) // 3 * 3).reshape(-1, 3))
+        return make_faces(points, numpy.arange(len(points) // 3 * 3).reshape(-1, 3))
     data = run_vtk_reader(path)
-    return made_of(points, data.GetPolys()) if data.GetNumberOfPoints() == len(points) else data
+    return make_faces(points, data.GetPolys()) if data.GetNumberOfPoints() == len(points) else data
 
 
 # The word before a vertex in text.
@@ -190,7 +190,7 @@ def ends_with_line(path):
         return stream.read().isspace()
 
 
-def vertices_of_text(path, word, progress, once=True):
+def text_vertices(path, word, progress, once=True):
     """(n, 3) coordinates of lines that begin with a word, in the file's order."""
     number = 0
 
@@ -217,13 +217,13 @@ def vertices_of_text(path, word, progress, once=True):
     return found[numpy.sort(firsts)]
 
 
-def dimensions_of(grid):
+def grid_dimensions(grid):
     """Columns, rows and layers of a grid of any kind and VTK."""
     extent = grid.GetExtent()
     return [last - first + 1 for first, last in zip(extent[::2], extent[1::2])]
 
 
-def points_of_grid(path, grid, ids=None):
+def grid_points(path, grid, ids=None):
     """A flat grid with one elevation for each node -> its nodes as points."""
     scalars = grid.GetPointData().GetScalars()
     if scalars is None:
@@ -234,15 +234,15 @@ def points_of_grid(path, grid, ids=None):
                 break
     if scalars is None or scalars.GetNumberOfComponents() != 1:
         raise FileError(f"{path}: holds no point array with one elevation for each node")
-    columns, rows, layers = dimensions_of(grid)
+    columns, rows, layers = grid_dimensions(grid)
     if layers != 1:
         raise FileError(f"{path}: is a grid of {layers} layers; one in the x,y plane is needed")
-    x, y = places_of_image(path, grid) if isinstance(grid, vtkImageData) else places_of(grid)
+    x, y = image_places(path, grid) if isinstance(grid, vtkImageData) else node_places(grid)
     z = vtk_to_numpy(scalars).reshape(rows, columns)
     hidden = hidden_nodes(grid)
     if hidden.any():
         z = numpy.where(hidden, numpy.nan, z)
-    cloud = points_of_raster(path, x, y, z, ids)
+    cloud = raster_cloud(path, x, y, z, ids)
     cloud.z_name = scalars.GetName() or ""
     cloud.notes.insert(0, f"elevation: point array {scalars.GetName() or '(unnamed)'}")
     if isinstance(grid, vtkRectilinearGrid) and rows > 1 and columns > 1:
@@ -250,7 +250,7 @@ def points_of_grid(path, grid, ids=None):
     return cloud
 
 
-def places_of(grid):
+def node_places(grid):
     """x and y of the nodes of a rectilinear grid, (rows, columns) each."""
     return numpy.meshgrid(
         vtk_to_numpy(grid.GetXCoordinates()).astype("f8"),
@@ -258,20 +258,20 @@ def places_of(grid):
     )
 
 
-def places_of_image(path, grid):
+def image_places(path, grid):
     """x and y of the nodes of an image, which may be turned, (rows, columns) each."""
     matrix, spacing = grid.GetDirectionMatrix(), grid.GetSpacing()
     steps = [[matrix.GetElement(k, axis) * spacing[axis] for k in range(3)] for axis in (0, 1)]
     if steps[0][2] or steps[1][2]:
         raise FileError(f"{path}: is an image that leans; one in the x,y plane is needed")
-    first, (columns, rows, _) = grid.GetPoint(0), dimensions_of(grid)
+    first, (columns, rows, _) = grid.GetPoint(0), grid_dimensions(grid)
     across, up = numpy.meshgrid(numpy.arange(columns), numpy.arange(rows))
     return [first[k] + steps[0][k] * across + steps[1][k] * up for k in (0, 1)]
 
 
 def with_hidden_nodes(data):
     """A point set; of a flat structured grid, nodes of which all cells are blanked are marked, too."""
-    if not isinstance(data, vtkStructuredGrid) or dimensions_of(data)[2] != 1:
+    if not isinstance(data, vtkStructuredGrid) or grid_dimensions(data)[2] != 1:
         return data
     hidden, mark = hidden_nodes(data).ravel(), vtkDataSetAttributes.HIDDENPOINT
     if (hidden == marked_points(data, mark)).all():
@@ -288,7 +288,7 @@ def with_hidden_nodes(data):
 
 def hidden_nodes(grid):
     """(rows, columns) of bool: the nodes that are blanked, or of which all cells are."""
-    columns, rows, _ = dimensions_of(grid)
+    columns, rows, _ = grid_dimensions(grid)
     hidden = marked_points(grid, vtkDataSetAttributes.HIDDENPOINT).reshape(rows, columns)
     ghosts = grid.GetCellData().GetArray(vtkDataSetAttributes.GhostArrayName())
     if ghosts is not None and rows > 1 and columns > 1:
@@ -306,8 +306,8 @@ def read_lines(path, singular, progress):
         raise FileError(f"{path}: holds a {data.GetClassName()}; {singular} is vtkPolyData")
     if data.GetNumberOfLines() + data.GetNumberOfPolys() == 0:
         raise FileError(f"{path}: holds no line and no polygon that could be {singular}")
-    if kind_of(path) == ".obj":
-        exact = vertices_of_text(path, b"v", share(progress, 0.8, 1.0), once=False)
+    if file_kind(path) == ".obj":
+        exact = text_vertices(path, b"v", share(progress, 0.8, 1.0), once=False)
         if len(exact) == data.GetNumberOfPoints():
             data.SetPoints(make_points(exact).GetPoints())
     return data

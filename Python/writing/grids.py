@@ -14,7 +14,7 @@ from ..gdal_common import gdal_module, reference_of, write_through_memory
 from ..messages import ElevationSurfaceError, FileError
 from ..paths import check_suffix, plain_stem, suffix_of
 from ..progress import no_progress
-from ..reading import frame_of
+from ..reading import raster_frame
 
 MOST_PIXELS = 250_000_000
 MOST_AT_ONCE = 2_000_000  # of rows or pixels of triangles; bounds the memory taken
@@ -114,7 +114,7 @@ def own_frame(result):
 def frame_for(result, step, like):
     """(Frame, how far points may be from its centres) of a grid as to_grid() takes its arguments."""
     if like is not None:
-        frame, crs = (like.frame, like.crs) if hasattr(like, "frame") else frame_of(like)
+        frame, crs = (like.frame, like.crs) if hasattr(like, "frame") else raster_frame(like)
         name = "like" if hasattr(like, "frame") else os.fspath(like)
         if frame is None:
             raise ElevationSurfaceError(f"{name}: has no raster with even steps")

@@ -113,7 +113,7 @@ NAMES = (
     ("", "nx|NormalX|dx|StdDev_Z|sigma_h|error_z|z_error|rms_xy|Number|Zone|Layer|Note|Vx|East_Vel|"
      "Elevation_error|GPSTime|UTC_time|Date|Temp|Amplitude|Class|Return_Number|PointSourceID|Red|"
      "Intensity|Well|Line_Name|Trace_Number|CDP|SP|Inline|XL|Offset|Slope|PDOP|N_geoid|Rod Height|"
-     "Antenna_height|Horizon|UserData|ScanAngleRank"),
+     "Antenna_height|Horizon|UserData|ScanAngleRank|Sample (Height)"),
 )
 
 

@@ -99,6 +99,11 @@ class Parsing(Tables):
     def test_lines_with_more_words_are_noted(self):
         cloud = self.read("1 2 3\n4 5 6\n7 8 9 10\n5 5 5\n")
         self.assertIn("line 3 has 4 columns where others have 3", " ".join(cloud.notes))
+        cloud = self.read("1,2,3,4\n4,5,6,4,9\n7,8,9\n5,5,5,1\n")  # as many separators as in even lines
+        self.assertIn("line 2 has 5 columns where others have 4", " ".join(cloud.notes))
+
+    def test_a_last_line_without_an_end_is_judged_like_others(self):
+        self.assert_rows(self.read("Z;X;Y\n3;1;2"), [(1, 2, 3)])
 
     def test_lines_that_lack_a_word_between_blanks_are_an_error(self):
         rows = [f"{i}.5 {i * i % 7}.25 {i * i % 11}.125 120.5\n" for i in range(1, 41)]
@@ -197,6 +202,9 @@ class LinesOfOtherKinds(Tables):
             self.assert_rows(cloud, points)
             notes = [note for note in cloud.notes if note.startswith("lines of other kinds are left out: ")]
             self.assertIn(left_out, notes[0])
+        text = "x y z q\n" + "".join(f"{row} 1\n" for row in rows(" ")) + "1 b 3 4\n1 2 3\n1 c 3 4\n"
+        cloud = self.read(text, skip_bad_lines=True)
+        self.assertIn("left out: line 42 (1 b 3 4), line 43 (1 2 3), line 44 (1 c 3 4)", " ".join(cloud.notes))
         self.assertIn("no line is a row", self.refusal(
             "a 1 2 3\nb 2 3 4\n", columns="1,2,3", skip_bad_lines=True))
         # A line with a wrong column is not a line of another kind.
