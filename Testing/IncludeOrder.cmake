@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Fails when an include breaks the order of the rooms, which CMake/Rooms.cmake lists:
+# Fails when an include breaks the order of the rooms, which CMake/Rooms.cmake lists, or another rule of
+# the structure is broken:
 #   - a file of a room includes files of its own room, and of the rooms before it their faces alone,
 #     <Room>/<Room>.h;
 #   - of VTK, the kernel includes its Eigen alone; a room around it includes no filter;
@@ -9,6 +10,7 @@
 #   - classes of VTK and ours are declared and defined in the namespace that VTK was built with;
 #   - the comment of a filter's class has at most 70 lines: the rest is in Documentation/;
 #   - every file is in a room and is listed, and a file that is listed is there;
+#   - no source file, in any folder, is longer than 700 lines;
 #   - the drawing of the rooms is the one that Utilities/draw-rooms makes.
 # Run as: cmake -DROOT=<top of the source tree> -P IncludeOrder.cmake
 cmake_minimum_required(VERSION 3.18)
@@ -123,6 +125,29 @@ foreach (file IN LISTS files)
   endif ()
 endforeach ()
 
+set(patterns)
+foreach (folder IN ITEMS CMake Examples Filters Plugin Python Testing Utilities)
+  foreach (pattern IN ITEMS *.h *.cxx *.py *.cmake CMakeLists.txt)
+    list(APPEND patterns "${ROOT}/${folder}/${pattern}")
+  endforeach ()
+endforeach ()
+file(GLOB_RECURSE files RELATIVE "${ROOT}" ${patterns})
+# Programs in Python and shell have no ending.
+file(GLOB programs RELATIVE "${ROOT}" "${ROOT}/Utilities/*" "${ROOT}/Utilities/Benchmarks/*" "${ROOT}/Testing/*/*")
+foreach (file IN LISTS programs)
+  if (NOT file MATCHES "\\.[a-z0-9]+$" AND NOT IS_DIRECTORY "${ROOT}/${file}")
+    list(APPEND files "${file}")
+  endif ()
+endforeach ()
+foreach (file IN LISTS files)
+  file(READ "${ROOT}/${file}" text)
+  string(REGEX MATCHALL "\n" lines "${text}")
+  list(LENGTH lines count)
+  if (count GREATER 700)
+    list(APPEND wrong "${file} has ${count} lines, and more than 700 are to be divided by subject")
+  endif ()
+endforeach ()
+
 find_program(python python3 REQUIRED)
 execute_process(COMMAND "${python}" "${ROOT}/Utilities/draw-rooms" --check RESULT_VARIABLE failed)
 if (failed)
@@ -132,5 +157,5 @@ endif ()
 list(LENGTH wrong count)
 if (count GREATER 0)
   list(JOIN wrong "\n  " text)
-  message(FATAL_ERROR "The order of the rooms is broken:\n  ${text}")
+  message(FATAL_ERROR "The structure is broken:\n  ${text}")
 endif ()

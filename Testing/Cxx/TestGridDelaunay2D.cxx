@@ -6,6 +6,7 @@
 #include "Check.h"
 #include "Inputs.h"
 #include "MeshRules.h"
+#include "WatchedProgress.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
@@ -280,27 +281,9 @@ void TestProgressAndAbort()
   vtkNew<vtkGridDelaunay2D> delaunay;
   delaunay->SetInputData(input);
 
-  struct State
-  {
-    double Last = 0.0;
-    bool IsRising = true;
-    double AbortAt = 2.0;
-  } state;
-  vtkNew<vtkCallbackCommand> callback;
-  callback->SetClientData(&state);
-  callback->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
-    auto* seen = static_cast<State*>(data);
-    auto* filter = static_cast<vtkAlgorithm*>(caller);
-    seen->IsRising = seen->IsRising && filter->GetProgress() >= seen->Last;
-    seen->Last = filter->GetProgress();
-    if (seen->Last >= seen->AbortAt)
-    {
-      filter->SetAbortExecute(1);
-    }
-  });
-  delaunay->AddObserver(vtkCommand::ProgressEvent, callback);
+  WatchedProgress progress(delaunay);
   delaunay->Update();
-  Check(state.IsRising && state.Last == 1.0, "progress rises to 1");
+  Check(progress.IsRising && progress.Last == 1.0, "progress rises to 1");
   Check(delaunay->GetOutput()->GetNumberOfPolys() > 199000, "all triangles are there");
   Check(NumberOfFindings(delaunay->GetOutput(), elevation::ValidateOptions()) == 0,
     "the triangulation of random points is Delaunay");
@@ -311,19 +294,13 @@ void TestProgressAndAbort()
     "what a limit on edges leaves of it is part of it");
   delaunay->SetMaximumEdgeLength(0.0);
 
-  state = State();
-  state.AbortAt = 0.4;
-  delaunay->Modified();
-  delaunay->Update();
+  progress.AbortAt(0.4);
   Check(delaunay->GetOutput()->GetNumberOfCells() == 0 &&
       delaunay->GetOutput()->GetNumberOfPoints() == 0,
     "an abort leaves empty output");
 
   points->SetPoint(0, points->GetPoint(1)); // a duplicate, to be counted
-  state = State();
-  state.AbortAt = 1.0;
-  delaunay->Modified();
-  delaunay->Update();
+  progress.AbortAt(1.0);
   Check(
     delaunay->GetOutput()->GetNumberOfCells() == 0 && delaunay->GetNumberOfDuplicatePoints() == 0,
     "an abort at the last report leaves no counts");

@@ -6,7 +6,7 @@
 #include "Check.h"
 #include "FaultyCells.h"
 #include "MeshRules.h"
-#include "vtkCallbackCommand.h"
+#include "WatchedProgress.h"
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -395,35 +395,14 @@ void TestProgressAndAbort()
   vtkNew<vtkGridDelaunay2D> delaunay;
   delaunay->SetInputData(input);
   delaunay->SetSourceData(MakeLines(lines));
-  struct State
-  {
-    double Last = 0.0, LargestStep = 0.0, AbortAt = 2.0;
-    bool IsRising = true;
-  } state;
-  vtkNew<vtkCallbackCommand> callback;
-  callback->SetClientData(&state);
-  callback->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
-    auto* seen = static_cast<State*>(data);
-    auto* filter = static_cast<vtkAlgorithm*>(caller);
-    seen->IsRising = seen->IsRising && filter->GetProgress() >= seen->Last;
-    seen->LargestStep = std::max(seen->LargestStep, filter->GetProgress() - seen->Last);
-    seen->Last = filter->GetProgress();
-    if (seen->Last >= seen->AbortAt)
-    {
-      filter->SetAbortExecute(1);
-    }
-  });
-  delaunay->AddObserver(vtkCommand::ProgressEvent, callback);
+  WatchedProgress progress(delaunay);
   delaunay->Update();
-  Check(state.IsRising && state.Last == 1.0, "progress rises to 1");
-  Check(state.LargestStep < 0.3, "and is not silent for long");
+  Check(progress.IsRising && progress.Last == 1.0, "progress rises to 1");
+  Check(progress.LargestStep < 0.3, "and is not silent for long");
   Check(delaunay->GetNumberOfConstraintCrossings() == 19 * 18 / 2, "all lines cross each other");
   for (const double at : { 0.05, 0.5, 0.9, 0.99 })
   {
-    state = State();
-    state.AbortAt = at;
-    delaunay->Modified();
-    delaunay->Update();
+    progress.AbortAt(at);
     Check(
       delaunay->GetOutput()->GetNumberOfPoints() == 0 && delaunay->GetNumberOfAddedPoints() == 0,
       "an abort leaves empty output");

@@ -12,7 +12,6 @@
 #include "Kernel/Triangulate/Triangulate.h"
 
 #include <algorithm>
-#include <array>
 
 namespace
 {
@@ -47,24 +46,6 @@ void RequireRules(const Cloud& cloud, const ConstrainedTriangulation& constraine
   RequireNone(ToString(Validate(mesh, rules)), "constrained triangulation");
 }
 
-/** The ends of all pieces by their places, sorted. */
-std::vector<std::array<double, 4>> PlacesOfPieces(
-  const Cloud& cloud, const ConstrainedTriangulation& constrained)
-{
-  const Cloud all = testing_points::AllPoints(cloud, constrained);
-  std::vector<std::array<double, 4>> places;
-  for (const Segment& piece : constrained.Pieces)
-  {
-    Point2 a = all.View().At(piece.A), b = all.View().At(piece.B);
-    if (IsLower(b, a))
-    {
-      std::swap(a, b);
-    }
-    places.push_back({ a.X, a.Y, b.X, b.Y });
-  }
-  std::sort(places.begin(), places.end());
-  return places;
-}
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
@@ -104,7 +85,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Lines turned = lines.Turned();
     const ConstraintLines other = turned.Get();
     const ConstrainedTriangulation again = TriangulateConstrained(cloud.View(), other, options);
-    Require(PlacesOfPieces(cloud, constrained) == PlacesOfPieces(cloud, again),
+    Require(testing_points::PiecePositions(cloud, constrained) ==
+        testing_points::PiecePositions(cloud, again),
       "the order and direction of lines do not change their pieces");
     Require(TriangleSet(AllPoints(cloud, constrained), constrained.Result) ==
         TriangleSet(AllPoints(cloud, again), again.Result),

@@ -8,6 +8,7 @@
  */
 #include "ConstrainedMesh.h"
 #include "FuzzLines.h"
+#include "SimplifiedCloud.h"
 
 #include "Kernel/Mesh/Validate.h"
 #include "Kernel/Constrain/Constrain.h"
@@ -83,32 +84,15 @@ std::vector<Index> EndsOf(const std::vector<Segment>& pieces)
   return ends;
 }
 
-/** How far points may lie beside a mesh whose border is that of a lattice's nodes. */
-double BesideBy(const Triangulation& few, const DelaunayOptions& options)
-{
-  const Point2 &u = few.Steps.StepU, &v = few.Steps.StepV;
-  return few.LatticeFound
-    ? 2.0 * options.LatticeTolerance * (std::hypot(u.X, u.Y) + std::hypot(v.X, v.Y))
-    : 0.0;
-}
-
 void RequireRules(
   const Cloud& all, const ConstrainedTriangulation& constrained, const DelaunayOptions& options)
 {
   const Triangulation& few = constrained.Result;
-  std::vector<Index> exempt;
-  for (std::size_t i = 0; i < few.UnusedPoints.size(); ++i)
-  {
-    if (few.UnusedReasons[i] != UnusedReason::WithinError)
-    {
-      exempt.push_back(few.UnusedPoints[i]);
-    }
-  }
   Mesh mesh = MeshOf(all, few);
   Require(few.LargestElevationError <= options.MaximumElevationError,
     "the largest error is within the error");
-  RequireNone(ToString(ValidateDistance(
-                mesh, all.View(), few.LargestElevationError, BesideBy(few, options), exempt)),
+  RequireNone(ToString(ValidateDistance(mesh, all.View(), few.LargestElevationError,
+                testing_points::BesideBy(few, options), testing_points::ExemptOf(few))),
     "distance");
 
   mesh.ConnectTwins();

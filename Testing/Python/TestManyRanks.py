@@ -48,15 +48,20 @@ def check_part(delaunay, claim):
     check(not work or work.GetComponent(0, 0) == own, claim + ": the number of own points is reported")
 
 
+def own_and_order(owners, ids):
+    """Which points this rank has, and in which order rank 0 has all of them."""
+    mine = numpy.flatnonzero(owners == RANK)
+    if ids is not None and len(set(owners)) == 1:
+        mine = mine[numpy.argsort(ids[mine])]  # on one rank, places decide, not ids
+    return mine, numpy.argsort(owners if ids is None else ids, kind="stable")
+
+
 def compare(claim, coordinates, owners, ids=None, arrays=(), **properties):
     """Triangulates a cloud on all ranks, and on rank 0 alone. All ranks have the same arguments.
 
     Without ids, points are numbered rank by rank, and by their places on each.
     """
-    mine = numpy.flatnonzero(owners == RANK)
-    if ids is not None and len(set(owners)) == 1:
-        mine = mine[numpy.argsort(ids[mine])]  # on one rank, places decide, not ids
-    order = numpy.argsort(owners, kind="stable") if ids is None else numpy.argsort(ids, kind="stable")
+    mine, order = own_and_order(owners, ids)
     part, messages = triangulate(
         cloud(coordinates[mine], None if ids is None else ids[mine], [(n, a[mine]) for n, a in arrays]), False,
         **properties)
@@ -174,6 +179,13 @@ def circle(random, count):
 CLOUDS = (lambda random, count: random.random((count, 3)), tracks, clusters, lattice, small_lattice, line, circle)
 
 
+def random_arrays(random, count):
+    """Arrays of points: of a whole number, of a vector and of a text."""
+    return (("whole", random.integers(-9, 9, count).astype(numpy.int16)),
+            ("vector", random.random((count, 3))),
+            ("text", numpy.array(["t" * (i % 4) + str(i) for i in range(count)], dtype="U")))
+
+
 def draw_points(random):
     """A cloud, drawn with what else can be drawn: coordinates, global ids or None, arrays."""
     count = int(random.choice([0, 1, 2, 3, 5, COUNT, 30, 300, 2000]))
@@ -193,9 +205,7 @@ def draw_points(random):
     ids = random.permutation(3 * count)[:count] if random.random() < 0.4 else None
     arrays = ()
     if random.random() < 0.3:
-        arrays = (("whole", random.integers(-9, 9, count).astype(numpy.int16)),
-                  ("vector", random.random((count, 3))),
-                  ("text", numpy.array(["t" * (i % 4) + str(i) for i in range(count)], dtype="U")))
+        arrays = random_arrays(random, count)
     return coordinates, ids, arrays
 
 

@@ -11,7 +11,8 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import meshes
 from meshes import array_of, cloud
-from TestManyRanks import CLOUDS, POLICIES, check_aborts, check_part, check_union, made_by, triangulate
+from TestManyRanks import (
+    CLOUDS, POLICIES, check_aborts, check_part, check_union, made_by, own_and_order, random_arrays, triangulate)
 from vtkelevationsurface import vtkGridDelaunay2D
 
 
@@ -49,10 +50,7 @@ def compare(claim, coordinates, owners, lines, holders, ids=None, arrays=(), **p
 
     A rank has the lines whose holder it is; holder -1: all ranks have all lines.
     """
-    mine = numpy.flatnonzero(owners == RANK)
-    if ids is not None and len(set(owners)) == 1:
-        mine = mine[numpy.argsort(ids[mine])]  # on one rank, places decide, not ids
-    order = numpy.argsort(owners, kind="stable") if ids is None else numpy.argsort(ids, kind="stable")
+    mine, order = own_and_order(owners, ids)
     line_parts = [kept(*lines, [holder in (-1, rank) for holder in holders]) for rank in range(COUNT)]
     own = line_parts[RANK]
     part, messages = triangulate(
@@ -123,9 +121,7 @@ def compare_random(random, claim):
     count = len(coordinates)
     arrays, line_arrays = (), ()
     if random.random() < 0.5:
-        arrays = (("whole", random.integers(-9, 9, count).astype(numpy.int16)),
-                  ("vector", random.random((count, 3))),
-                  ("text", numpy.array(["t" * (i % 4) + str(i) for i in range(count)], dtype="U")))
+        arrays = random_arrays(random, count)
         line_arrays = (("vector", random.random((len(places), 3)).astype(numpy.float32)),
                            ("whole", random.integers(-9, 9, len(places)).astype(numpy.int16)))
     kind = random.integers(3)  # the same on all ranks, all on one, or spread

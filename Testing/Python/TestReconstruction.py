@@ -12,7 +12,9 @@ import warnings
 
 import numpy
 
+import on_sheet
 from in_folder import draws
+from on_sheet import SIZE
 import vtkelevationsurface
 from vtkelevationsurface import (
     ElevationSurfaceError,
@@ -31,9 +33,8 @@ from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData, vtkRectilinearGrid
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-SIZE = 12
-SHEET = numpy.array([(x, y, 0.5 * x - 0.25 * y) for y in range(SIZE) for x in range(SIZE)], "f8")
-RING = numpy.array([(0.5, 0.5), (9.5, 0.5), (9.5, 9.5), (0.5, 9.5)])
+SHEET = numpy.array(on_sheet.SHEET, "f8")
+RING = numpy.array(on_sheet.RING)
 
 
 class Parts(unittest.TestCase):

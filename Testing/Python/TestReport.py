@@ -7,12 +7,13 @@ import warnings
 
 import numpy
 
+import on_sheet
+from on_sheet import SIZE
 from vtkelevationsurface import ElevationSurfaceError, ElevationSurfaceWarning, reconstruct
 from vtkelevationsurface.report import report_lines
 
-SIZE = 12
-SHEET = numpy.array([(x, y, 0.5 * x - 0.25 * y) for y in range(SIZE) for x in range(SIZE)], "f8")
-RING = numpy.array([(0.5, 0.5), (9.5, 0.5), (9.5, 9.5), (0.5, 9.5)])
+SHEET = numpy.array(on_sheet.SHEET, "f8")
+RING = numpy.array(on_sheet.RING)
 
 
 def lines_of(report):

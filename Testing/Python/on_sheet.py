@@ -16,6 +16,8 @@ SHEET = [(x, y, 0.5 * x - 0.25 * y) for y in range(SIZE) for x in range(SIZE)]
 # The same with 3 x 3 points taken out of the middle. With edges of at most 1.5 that leaves a hole of
 # 4 x 4 with its corners cut: 12 edges, an area of 14.
 HOLED = [p for p in SHEET if not (4 <= p[0] <= 6 and 4 <= p[1] <= 6)]
+# A ring around most of it, between the points.
+RING = [(0.5, 0.5), (9.5, 0.5), (9.5, 9.5), (0.5, 9.5)]
 
 # Three survey lines, 100 times as far apart as their points, and one that crosses them.
 CROSSING = [(x + 0.2 * math.sin(7 * x), 100 * k + 20 * math.sin(x / 90 + k), math.sin(x / 60))

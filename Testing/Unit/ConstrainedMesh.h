@@ -12,7 +12,10 @@
 #include "Kernel/Constrain/Constrain.h"
 #include "Kernel/Mesh/Recovery.h"
 
+#include <array>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace testing_points
@@ -58,6 +61,24 @@ inline std::vector<char> MarkPieces(const elevation::Mesh& mesh,
     }
   }
   return flags;
+}
+
+/** The positions of the ends of each piece, the lower one first. */
+inline std::multiset<std::array<double, 4>> PiecePositions(
+  const Cloud& cloud, const elevation::ConstrainedTriangulation& constrained)
+{
+  const Cloud all = AllPoints(cloud, constrained);
+  std::multiset<std::array<double, 4>> positions;
+  for (const elevation::Segment& piece : constrained.Pieces)
+  {
+    elevation::Point2 a = all.View().At(piece.A), b = all.View().At(piece.B);
+    if (IsLower(b, a))
+    {
+      std::swap(a, b);
+    }
+    positions.insert({ a.X, a.Y, b.X, b.Y });
+  }
+  return positions;
 }
 
 } // namespace testing_points

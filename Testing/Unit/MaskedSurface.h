@@ -23,6 +23,23 @@ namespace testing_surfaces
 /** Whether a place of the unit square is land. */
 using Mask = std::function<bool(double, double)>;
 
+/** The nodes of a lattice, by whole numbers from (0, 0), that are land. */
+inline std::vector<elevation::Point2> MaskedLattice(int width, int height, const Mask& mask)
+{
+  std::vector<elevation::Point2> points;
+  for (int y = 0; y < height; ++y)
+  {
+    for (int x = 0; x < width; ++x)
+    {
+      if (mask(x, y))
+      {
+        points.push_back({ static_cast<double>(x), static_cast<double>(y) });
+      }
+    }
+  }
+  return points;
+}
+
 /** A coast with waves, a fjord, a channel, and lakes, one with an island. All 0.05 wide or more. */
 inline bool Coast(double x, double y)
 {

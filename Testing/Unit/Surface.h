@@ -49,6 +49,31 @@ inline Surface SurfaceOf(const elevation::Mesh& mesh)
   return surface;
 }
 
+/** The triangles of points. */
+inline Surface SurfaceOf(const std::vector<elevation::Point2>& points)
+{
+  return SurfaceOf(Delaunay(points));
+}
+
+/** The triangles of random points in the unit square. */
+inline Surface RandomSurface(Random& random, int count)
+{
+  return SurfaceOf(ScatteredPoints(random, count));
+}
+
+/** A surface with the given triangles of another. */
+inline Surface Chosen(const Surface& surface, const std::vector<elevation::Index>& triangles)
+{
+  Surface chosen;
+  chosen.Coordinates = surface.Coordinates;
+  for (const elevation::Index t : triangles)
+  {
+    chosen.Corners.insert(
+      chosen.Corners.end(), surface.Corners.begin() + 3 * t, surface.Corners.begin() + 3 * t + 3);
+  }
+  return chosen;
+}
+
 /** Rings as polygons. */
 inline elevation::BoundaryLines LinesOf(
   const elevation::NamedPoints& points, const elevation::Rings& rings)

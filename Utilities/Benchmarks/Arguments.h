@@ -210,6 +210,16 @@ inline std::vector<std::string> ExtraFiles()
   return files;
 }
 
+/** Adds --file, which may be given several times, and --extra, which adds all of ExtraFiles(). */
+inline void AddFileOptions(OptionTable& table, std::vector<std::string>& files)
+{
+  table.Value("--file", [&files](const std::string& file) { files.push_back(file); });
+  table.Flag("--extra", [&files](const std::string&) {
+    const std::vector<std::string> extra = ExtraFiles();
+    files.insert(files.end(), extra.begin(), extra.end());
+  });
+}
+
 /** The exit code of a program: that of run(), 2 after a wrong option, 1 after another error. */
 template <typename Run>
 int ExitCode(const char* program, const Run& run)

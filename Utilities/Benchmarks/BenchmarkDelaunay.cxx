@@ -13,24 +13,19 @@
 #include "Arguments.h"
 #include "ChildProcess.h"
 #include "Competitor.h"
+#include "DelaunayResults.h"
 #include "MeshCheck.h"
 #include "PointSets.h"
 
-#include "vtkObject.h"
 #include "vtkVersion.h"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <fstream>
-#include <iostream>
-#include <sstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -38,8 +33,6 @@ namespace
 {
 using namespace benchmark;
 
-constexpr int MaximumRepeats = 101;
-constexpr std::size_t MaximumCompetitors = 12;
 constexpr Index MostPointsOfVTK = 20000;
 
 // ---- options -----------------------------------------------------------------------------------
@@ -134,11 +127,7 @@ bool ReadOptions(int argc, char* argv[], Options& options)
   table.Number("--points", options.Points, 10, elevation::MaximumNumberOfPoints);
   table.Number("--threads", options.Threads, 0, 1024);
   table.Number("--seed", options.Seed, 0, any);
-  table.Value("--file", [&](const std::string& file) { options.Files.push_back(file); });
-  table.Flag("--extra", [&](const std::string&) {
-    const std::vector<std::string> files = ExtraFiles();
-    options.Files.insert(options.Files.end(), files.begin(), files.end());
-  });
+  AddFileOptions(table, options.Files);
   table.Number("--repeats", options.Repeats, 1, MaximumRepeats);
   table.Number("--time-limit", options.TimeLimit, 0, 1000000);
   table.Flag("--searches", options.UseSearches);
@@ -190,42 +179,6 @@ std::vector<PointSource> SourcesOf(const Options& options)
 }
 
 // ---- measuring ---------------------------------------------------------------------------------
-// Results are plain values of fixed size: they come out of a child process.
-
-enum class Verdict
-{
-  NotChecked,
-  Right,
-  Wrong
-};
-
-/** What is known of one code on one data set. */
-struct Result
-{
-  bool TakesPart = false;
-  Outcome Trial;
-  Index Points = 0;          ///< of the data set
-  double PeakBytes = -1.0;   ///< growth of the peak during Run; -1: not known
-  double OutputBytes = 0.0;  ///< of it, what is the output
-  double TrialSeconds = 0.0; ///< the run in a fresh process
-  int Runs = 0;
-  std::array<double, MaximumRepeats> Seconds{};
-  std::array<double, MaximumRepeats> ProcessorSeconds{}; ///< of all threads
-  Verdict Checked = Verdict::NotChecked;
-  std::size_t Triangles = 0;
-  char Remark[160] = "";
-
-  /** Memory the code needed for itself, above input and output, in bytes a point; -1: not known. */
-  double BytesPerPoint() const
-  {
-    return this->PeakBytes < 0.0
-      ? -1.0
-      : std::max(0.0, this->PeakBytes - this->OutputBytes) / this->Points;
-  }
-};
-
-using Results = std::array<Result, MaximumCompetitors>;
-using Competitors = std::vector<std::unique_ptr<Competitor>>;
 
 /** The first is ours; the others are compared with it. */
 Competitors MakeCompetitors(const Options& options)
@@ -491,56 +444,6 @@ Results Measure(const PointSource& source, const Options& options, const Competi
   return results;
 }
 
-// ---- figures -----------------------------------------------------------------------------------
-
-std::vector<double> NanosecondsPerPoint(
-  const Result& result, const std::array<double, MaximumRepeats>& seconds)
-{
-  std::vector<double> values(seconds.begin(), seconds.begin() + result.Runs);
-  for (double& value : values)
-  {
-    value *= 1e9 / result.Points;
-  }
-  return values;
-}
-
-std::vector<double> NanosecondsPerPoint(const Result& result)
-{
-  return NanosecondsPerPoint(result, result.Seconds);
-}
-
-double ProcessorNanosecondsPerPoint(const Result& result)
-{
-  return Median(NanosecondsPerPoint(result, result.ProcessorSeconds));
-}
-
-/** A code's time in parts of ours, round by round. */
-std::vector<double> PairRatios(const Result& result, const Result& ours)
-{
-  std::vector<double> ratios;
-  for (int i = 0; i < std::min(result.Runs, ours.Runs); ++i)
-  {
-    ratios.push_back(result.Seconds[i] / ours.Seconds[i]);
-  }
-  return ratios;
-}
-
-std::string WhyNot(const Result& result, unsigned timeLimit)
-{
-  switch (result.Trial.How)
-  {
-    case Ending::OutOfTime:
-      return "more than " + std::to_string(timeLimit) + " s";
-    case Ending::Crashed:
-      return "crashed (signal " + std::to_string(result.Trial.Signal) + ")";
-    case Ending::Failed:
-      return "failed";
-    case Ending::Finished:
-      break;
-  }
-  return result.TakesPart ? "failed in the process of the timed runs" : "not run (--vtk runs it)";
-}
-
 void PrintHeader(const Options& options)
 {
   std::printf("ns/pt: time per point on the clock, median, least and greatest of %d runs (%s)\n"
@@ -556,115 +459,6 @@ void PrintHeader(const Options& options)
     "data set", "points", "code", "ns/pt", "least", "greatest", "cpu", "ratio", "pairs", "cpu",
     "B/pt", "result");
   std::fflush(stdout);
-}
-
-void PrintRows(const std::string& set, const Competitors& competitors, const Results& results,
-  unsigned timeLimit)
-{
-  Index count = 0;
-  for (const Result& result : results)
-  {
-    count = std::max(count, result.Points);
-  }
-  for (std::size_t i = 0; i < competitors.size(); ++i)
-  {
-    const Result& result = results[i];
-    std::printf("%-22s %9s  %-20s ", i == 0 ? set.c_str() : "",
-      i == 0 ? std::to_string(count).c_str() : "", competitors[i]->Name().c_str());
-    if (result.Runs == 0)
-    {
-      std::printf("%7s %s\n", "-", WhyNot(result, timeLimit).c_str());
-      continue;
-    }
-    const std::vector<double> times = NanosecondsPerPoint(result);
-    const auto range = std::minmax_element(times.begin(), times.end());
-    std::printf("%7.0f %7.0f %8.0f %7.0f ", Median(times), *range.first, *range.second,
-      ProcessorNanosecondsPerPoint(result));
-    char ratio[16] = "", pairs[32] = "", processorRatio[16] = "", bytes[16] = "";
-    if (i > 0 && results[0].Runs > 0)
-    {
-      const std::vector<double> ratios = PairRatios(result, results[0]);
-      const auto ends = std::minmax_element(ratios.begin(), ratios.end());
-      std::snprintf(
-        ratio, sizeof(ratio), "%.2f", Median(times) / Median(NanosecondsPerPoint(results[0])));
-      std::snprintf(pairs, sizeof(pairs), "%.2f-%.2f", *ends.first, *ends.second);
-      std::snprintf(processorRatio, sizeof(processorRatio), "%.2f",
-        ProcessorNanosecondsPerPoint(result) / ProcessorNanosecondsPerPoint(results[0]));
-    }
-    if (result.BytesPerPoint() >= 0.0)
-    {
-      std::snprintf(bytes, sizeof(bytes), "%.0f", result.BytesPerPoint());
-    }
-    std::printf("%7s %13s %7s %6s  %s\n", ratio, pairs, processorRatio, bytes, result.Remark);
-  }
-  std::fflush(stdout);
-}
-
-std::string Quoted(const std::string& text)
-{
-  std::string quoted = "\"";
-  for (const char c : text)
-  {
-    if (c == '"' || c == '\\')
-    {
-      quoted += '\\';
-    }
-    quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return quoted + "\"";
-}
-
-void WriteResult(std::ostream& json, const Competitor& competitor, const Result& result,
-  const Result& ours, unsigned timeLimit)
-{
-  json << "        {\"code\": " << Quoted(competitor.Name());
-  if (result.Runs == 0)
-  {
-    json << ", \"not_run\": " << Quoted(WhyNot(result, timeLimit)) << "}";
-    return;
-  }
-  const std::vector<double> times = NanosecondsPerPoint(result);
-  json << ",\n         \"ns_per_point\": {\"median\": " << Median(times)
-       << ", \"least\": " << *std::min_element(times.begin(), times.end())
-       << ", \"greatest\": " << *std::max_element(times.begin(), times.end()) << ", \"runs\": [";
-  for (std::size_t i = 0; i < times.size(); ++i)
-  {
-    json << (i ? ", " : "") << times[i];
-  }
-  json << "]},\n         \"processor_ns_per_point\": " << ProcessorNanosecondsPerPoint(result)
-       << ",\n         \"trial_ns_per_point\": " << 1e9 * result.TrialSeconds / result.Points;
-  if (ours.Runs > 0)
-  {
-    json << ",\n         \"ratio_of_medians\": "
-         << Median(times) / Median(NanosecondsPerPoint(ours))
-         << ", \"median_of_pair_ratios\": " << Median(PairRatios(result, ours));
-  }
-  if (result.BytesPerPoint() >= 0.0)
-  {
-    json << ",\n         \"bytes_per_point_above_input_and_output\": " << result.BytesPerPoint()
-         << ", \"output_bytes_per_point\": " << result.OutputBytes / result.Points;
-  }
-  if (result.Checked != Verdict::NotChecked)
-  {
-    json << ",\n         \"triangles\": " << result.Triangles
-         << ", \"right\": " << (result.Checked == Verdict::Right ? "true" : "false")
-         << ", \"result\": " << Quoted(result.Remark);
-  }
-  json << "}";
-}
-
-/** The sets come one by one, so that the file can be written as they are measured. */
-void WriteSet(std::ostream& json, const std::string& set, const Competitors& competitors,
-  const Results& results, unsigned timeLimit)
-{
-  json << "    {\"set\": " << Quoted(set) << ", \"points\": " << results[0].Points
-       << ", \"codes\": [\n";
-  for (std::size_t i = 0; i < competitors.size(); ++i)
-  {
-    WriteResult(json, *competitors[i], results[i], results[0], timeLimit);
-    json << (i + 1 < competitors.size() ? ",\n" : "\n");
-  }
-  json << "      ]}";
 }
 
 int Run(const Options& options)

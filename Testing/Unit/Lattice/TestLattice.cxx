@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Base/Predicates.h"
+#include "LatticeClouds.h"
+
 #include "Kernel/Grow/LatticeGrowth.h"
 #include "Kernel/Lattice/Nodes.h"
 #include "LatticeRules.h"
@@ -10,79 +11,13 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <functional>
 #include <map>
-#include <ostream>
 
 using namespace elevation;
 using namespace testing_points;
 
 namespace
 {
-DelaunayOptions Automatic(double tolerance = 0.01)
-{
-  DelaunayOptions options;
-  options.UseLattice = LatticeMode::Automatic;
-  options.LatticeTolerance = tolerance;
-  return options;
-}
-
-/** A lattice to make clouds on. */
-struct Frame
-{
-  Point2 Origin, U, V;
-  double Decimals = 0.0; ///< coordinates are rounded to multiples of this; 0: they are not
-
-  Point2 At(double i, double j) const
-  {
-    Point2 p{ this->Origin.X + i * this->U.X + j * this->V.X,
-      this->Origin.Y + i * this->U.Y + j * this->V.Y };
-    if (this->Decimals > 0.0)
-    {
-      p.X = std::round(p.X / this->Decimals) * this->Decimals;
-      p.Y = std::round(p.Y / this->Decimals) * this->Decimals;
-    }
-    return p;
-  }
-};
-
-/** Steps of a length, the first turned from the x axis by an angle, the second by one more. */
-Frame MakeFrame(
-  double u, double v, double angle, double between = 90.0, Point2 origin = { 0.0, 0.0 })
-{
-  const double degree = 3.14159265358979323846 / 180.0;
-  const double second = (angle + between) * degree;
-  return { origin, { u * std::cos(angle * degree), u * std::sin(angle * degree) },
-    { v * std::cos(second), v * std::sin(second) } };
-}
-
-Cloud CloudOn(const Frame& frame, const std::vector<Node>& nodes)
-{
-  Cloud cloud;
-  for (const Node& node : nodes)
-  {
-    const Point2 p = frame.At(static_cast<double>(node[0]), static_cast<double>(node[1]));
-    cloud.Add(p.X, p.Y);
-  }
-  return cloud;
-}
-
-std::vector<Node> RandomNodes(std::mt19937_64& random, int columns, int rows, double probability)
-{
-  std::vector<Node> nodes;
-  for (int j = 0; j < rows; ++j)
-  {
-    for (int i = 0; i < columns; ++i)
-    {
-      if (Uniform(random) < probability)
-      {
-        nodes.push_back({ i, j });
-      }
-    }
-  }
-  return nodes;
-}
-
 /** A dense grid with a wavy outline, bays and round holes. */
 std::vector<Node> GridWithHoles(int size)
 {
@@ -103,30 +38,6 @@ std::vector<Node> GridWithHoles(int size)
   return nodes;
 }
 
-bool IsSame(const Lattice& p, const Lattice& q)
-{
-  return p.Origin == q.Origin && p.StepU == q.StepU && p.StepV == q.StepV;
-}
-
-void ExpectLattice(const Cloud& cloud, const Point2& u, const Point2& v, const std::string& name,
-  double allowed = 1e-6)
-{
-  SCOPED_TRACE(name);
-  const Triangulation triangulation = Triangulate(cloud.View(), Automatic());
-  ASSERT_TRUE(triangulation.LatticeFound);
-  EXPECT_NEAR(triangulation.Steps.StepU.X, u.X, allowed);
-  EXPECT_NEAR(triangulation.Steps.StepU.Y, u.Y, allowed);
-  EXPECT_NEAR(triangulation.Steps.StepV.X, v.X, allowed);
-  EXPECT_NEAR(triangulation.Steps.StepV.Y, v.Y, allowed);
-  EXPECT_EQ(LatticeFindings(cloud, triangulation), "");
-  std::mt19937_64 random(77);
-  const Cloud shuffled = cloud.Shuffled(random);
-  const Triangulation other = Triangulate(shuffled.View(), Automatic());
-  EXPECT_TRUE(IsSame(triangulation.Steps, other.Steps)) << "the order changes the lattice";
-  EXPECT_TRUE(TriangleSet(cloud, triangulation) == TriangleSet(shuffled, other))
-    << "the order of the input changes the triangles";
-}
-
 void ExpectSameAsGeneral(const Cloud& cloud, const std::string& name)
 {
   SCOPED_TRACE(name);
@@ -137,110 +48,6 @@ void ExpectSameAsGeneral(const Cloud& cloud, const std::string& name)
   EXPECT_EQ(lattice.NumberOfHullPoints, general.NumberOfHullPoints);
   EXPECT_EQ(lattice.UnusedPoints, general.UnusedPoints);
   EXPECT_TRUE(TriangleSet(cloud, lattice) == TriangleSet(cloud, general));
-}
-
-/**
- * Visits all triangles of sorted, distinct nodes by the definition, in integers, as the numbers of
- * their corners; see TestTriangulate.cxx.
- */
-template <typename Visit>
-void BruteForce(const std::vector<Node>& nodes, const LatticeMetric& metric, Visit&& visit)
-{
-  const int count = static_cast<int>(nodes.size());
-  for (int a = 0; a < count; ++a)
-  {
-    for (int i = a + 1; i < count; ++i)
-    {
-      for (int j = a + 1; j < count; ++j)
-      {
-        const Node &p = nodes[a], &q = nodes[i], &r = nodes[j];
-        if (CrossOf(p, q, r) <= 0)
-        {
-          continue;
-        }
-        bool isKept = true;
-        for (int k = 0; k < count && isKept; ++k)
-        {
-          const Node& d = nodes[k];
-          if (k == a || k == i || k == j)
-          {
-            continue;
-          }
-          const std::int64_t inside = DotOf(metric, d, p, p) * CrossOf(d, q, r) +
-            DotOf(metric, d, q, q) * CrossOf(d, r, p) + DotOf(metric, d, r, r) * CrossOf(d, p, q);
-          isKept = inside < 0 || (inside == 0 && k > a && CrossOf(q, r, d) > 0);
-        }
-        if (isKept)
-        {
-          visit(a, i, j);
-        }
-      }
-    }
-  }
-}
-
-std::vector<Node> SortedNodes(std::vector<Node> nodes)
-{
-  std::sort(nodes.begin(), nodes.end(), IsLowerNode);
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
-}
-
-std::vector<std::array<Node, 3>> NodeTriangles(
-  const std::vector<Node>& nodes, const Triangulation& triangulation)
-{
-  std::vector<std::array<Node, 3>> set;
-  for (std::size_t t = 0; t < triangulation.Triangles.size(); t += 3)
-  {
-    set.push_back({ nodes[triangulation.Triangles[t]], nodes[triangulation.Triangles[t + 1]],
-      nodes[triangulation.Triangles[t + 2]] });
-  }
-  std::sort(set.begin(), set.end());
-  return set;
-}
-} // namespace
-
-/** Nodes of a few rows and columns: any, dense, nearly on a line, on a circle, or many twice. */
-void SmallNodes(std::mt19937_64& random, int kind, std::vector<Node>& nodes)
-{
-  static const std::array<Node, 12> circle{ { { 5, 0 }, { 0, 5 }, { -5, 0 }, { 0, -5 }, { 3, 4 },
-    { -3, 4 }, { 3, -4 }, { -3, -4 }, { 4, 3 }, { -4, 3 }, { 4, -3 }, { -4, -3 } } };
-  std::uint64_t bits = random();
-  const auto below = [&](int end) {
-    const auto value = static_cast<std::int64_t>((bits & 0xff) * end >> 8);
-    bits = bits >> 8 | bits << 56;
-    return value;
-  };
-  const int count = 5 + static_cast<int>(below(6));
-  const int size = kind == 1 ? 3 : 2 + static_cast<int>(below(7));
-  bits ^= random() << 8;
-  nodes.clear();
-  const Node step{ 1 + below(3), below(3) };
-  for (int k = 0; k < count; ++k)
-  {
-    if (k % 8 == 4)
-    {
-      bits = random();
-    }
-    if (kind == 2 && k > 1)
-    {
-      const std::int64_t times = below(6);
-      nodes.push_back({ times * step[0], times * step[1] });
-    }
-    else if (kind == 3 && k > 1)
-    {
-      nodes.push_back(circle[below(12)]);
-    }
-    else if (kind == 4 && k % 2 == 1)
-    {
-      nodes.push_back(nodes[below(k)]);
-    }
-    else
-    {
-      const std::int64_t column = below(size);
-      nodes.push_back({ column, below(size) });
-    }
-  }
 }
 
 /** The same bytes for any number of threads and any strips. */
@@ -267,72 +74,7 @@ void ExpectSameForAnyStrips(
     }
   }
 }
-
-TEST(Lattice, IsTheDefinitionOnManySmallClouds)
-{
-  // Reduced steps of small integers: square, rectangular, turned, sheared to both sides, the last
-  // two as far as can be.
-  const std::array<std::array<Point2, 2>, 10> frames{ { { { { 1.0, 0.0 }, { 0.0, 1.0 } } },
-    { { { 2.0, 0.0 }, { 0.0, 3.0 } } }, { { { 3.0, 0.0 }, { 1.0, 3.0 } } },
-    { { { 1.0, 0.0 }, { 0.0, 1.0 } } }, { { { 3.0, 0.0 }, { -1.0, 3.0 } } },
-    { { { 2.0, 1.0 }, { -1.0, 2.0 } } }, { { { 5.0, 0.0 }, { 0.0, 1.0 } } },
-    { { { 4.0, 1.0 }, { 0.0, 5.0 } } }, { { { 2.0, 0.0 }, { 1.0, 2.0 } } },
-    { { { 2.0, 0.0 }, { -1.0, 2.0 } } } } };
-  std::mt19937_64 random(30);
-  std::vector<Node> nodes, sorted;
-  std::vector<int> set, expected; // of triangles, as the numbers of their corners
-  Cloud cloud;
-  DelaunayOptions options = Automatic(0.0);
-  int triangulated = 0;
-  for (int i = 0; i < 250000; ++i)
-  {
-    SmallNodes(random, i / 10 % 5, nodes);
-    sorted = SortedNodes(nodes);
-    const auto& frame = frames[i % 10];
-    LatticeSearch search;
-    search.Found = true;
-    search.Steps = { { 0.0, 0.0 }, frame[0], frame[1] };
-    search.Low = search.High = search.Steps.Node(double(nodes[0][0]), double(nodes[0][1]));
-    cloud.Coordinates.clear();
-    for (const Node& node : nodes)
-    {
-      const Point2 p = search.Steps.Node(double(node[0]), double(node[1]));
-      cloud.Add(p.X, p.Y);
-      search.Low = { std::min(search.Low.X, p.X), std::min(search.Low.Y, p.Y) };
-      search.High = { std::max(search.High.X, p.X), std::max(search.High.Y, p.Y) };
-    }
-    LatticeMetric metric;
-    ASSERT_TRUE(metric.Set(search.Steps));
-    expected.clear();
-    BruteForce(
-      sorted, metric, [&](int p, int q, int r) { expected.push_back(p << 8 | q << 4 | r); });
-    for (const Index perStrip : { 0, 1 })
-    {
-      options.PointsPerStrip = perStrip;
-      Triangulation triangulation;
-      const bool isDone = TriangulateOnLattice(cloud.View(), search, options, triangulation);
-      ASSERT_EQ(isDone, sorted.size() > 3 && !expected.empty()) << "cloud " << i;
-      if (!isDone)
-      {
-        break;
-      }
-      ++triangulated;
-      const auto numberOf = [&](Index id) {
-        return static_cast<int>(
-          std::lower_bound(sorted.begin(), sorted.end(), nodes[id], IsLowerNode) - sorted.begin());
-      };
-      set.clear();
-      for (std::size_t t = 0; t < triangulation.Triangles.size(); t += 3)
-      {
-        const Index* ids = triangulation.Triangles.data() + t;
-        set.push_back(numberOf(ids[0]) << 8 | numberOf(ids[1]) << 4 | numberOf(ids[2]));
-      }
-      std::sort(set.begin(), set.end());
-      ASSERT_EQ(set, expected) << "cloud " << i << ", strips of " << perStrip;
-    }
-  }
-  EXPECT_GT(triangulated, 375000);
-}
+} // namespace
 
 TEST(Lattice, IsTheSameForAnyNumberOfThreads)
 {
@@ -413,169 +155,6 @@ TEST(Lattice, LooksFarDownFromABorder)
   }
 }
 
-/** Expects the last of the points on each node, the same on any number of threads, in any order. */
-static void ExpectPlaced(
-  Cloud cloud, Index distinct, std::size_t notFinite, std::mt19937_64& random)
-{
-  const auto search = [&](int threads) {
-    return FindLattice(cloud.View(), 0.01, threads, Progress());
-  };
-  std::vector<Point2> byRank;
-  for (const bool isShuffled : { false, true })
-  {
-    cloud = isShuffled ? cloud.Shuffled(random) : cloud;
-    const LatticeSearch found = search(1);
-    ASSERT_TRUE(found.Found);
-    EXPECT_EQ(found.NotFinite.size(), notFinite);
-    LatticeNodes one;
-    ASSERT_TRUE(one.Place(cloud.View(), found, 0.01, DuplicatePolicy::KeepLast, 1, Progress()));
-    ASSERT_EQ(one.NumberOfPoints(), distinct);
-    const PointView view = cloud.View();
-    std::vector<Index> sorted(one.Ids.begin(), one.Ids.end());
-    sorted.insert(sorted.end(), one.Duplicates.begin(), one.Duplicates.end());
-    ASSERT_EQ(sorted.size() + notFinite, static_cast<std::size_t>(view.Count));
-    std::sort(sorted.begin(), sorted.end(), [&](Index a, Index b) {
-      const Point2 p = view.At(a), q = view.At(b);
-      return p == q ? a < b : IsLower(p, q);
-    });
-    std::vector<bool> isLast(view.Count, false);
-    for (std::size_t i = 0; i < sorted.size(); ++i)
-    {
-      isLast[sorted[i]] = i + 1 == sorted.size() || view.At(sorted[i]) != view.At(sorted[i + 1]);
-    }
-    for (Index rank = 0; rank < distinct; ++rank)
-    {
-      ASSERT_TRUE(isLast[one.Ids[rank]]);
-      const Point2 p = view.At(one.Ids[rank]);
-      if (!isShuffled)
-      {
-        byRank.push_back(p);
-      }
-      ASSERT_TRUE(p == byRank[rank]);
-    }
-    for (const int threads : { 2, 4 })
-    {
-      const LatticeSearch other = search(threads);
-      EXPECT_TRUE(other.Found);
-      EXPECT_TRUE(IsSame(found.Steps, other.Steps));
-      EXPECT_TRUE(found.Low == other.Low && found.High == other.High);
-      EXPECT_EQ(found.NotFinite, other.NotFinite);
-      LatticeNodes nodes;
-      ASSERT_TRUE(
-        nodes.Place(cloud.View(), other, 0.01, DuplicatePolicy::KeepLast, threads, Progress()));
-      EXPECT_TRUE(std::equal(one.Ids.begin(), one.Ids.end(), nodes.Ids.begin(), nodes.Ids.end()));
-      EXPECT_TRUE(
-        std::equal(one.Before.begin(), one.Before.end(), nodes.Before.begin(), nodes.Before.end()));
-      EXPECT_EQ(one.Duplicates, nodes.Duplicates);
-      EXPECT_EQ(one.LargestOffset, nodes.LargestOffset);
-    }
-  }
-}
-
-TEST(Lattice, IsFoundAndPlacedTheSameByAnyNumberOfThreads)
-{
-  // Many ranges of points, and so many points that those in no order are sorted; one in four is on
-  // a node that another one takes as well.
-  std::mt19937_64 random(55);
-  const Frame frame = MakeFrame(25.0, 30.0, 10.0, 110.0, { 612000.0, 6073000.0 });
-  Cloud cloud = CloudOn(frame, RandomNodes(random, 1200, 1500, 0.5));
-  const Index distinct = cloud.Count();
-  for (Index i = 0; i < distinct / 3; ++i)
-  {
-    const std::size_t id = random() % static_cast<std::size_t>(distinct);
-    for (Index times = i % 7 == 0 ? 2 : 1; times > 0; --times) // also one right after the other
-    {
-      cloud.Add(cloud.Coordinates[3 * id], cloud.Coordinates[3 * id + 1]);
-    }
-    if (i % 1000 == 0)
-    {
-      cloud.Add(0.0, INFINITY);
-    }
-  }
-  ExpectPlaced(cloud, distinct, static_cast<std::size_t>(distinct / 3 + 999) / 1000, random);
-}
-
-TEST(Lattice, IsLookedForInAShareOfTheCloudNotFewerThanAreFitted)
-{
-  std::mt19937_64 random(58);
-  for (const auto& [count, sampled] : std::map<Index, double>{
-         { 500, 500.0 }, { 4000, 1024.0 }, { 40000, 2500.0 }, { 600000, 4096.0 } })
-  {
-    const Cloud cloud = RandomCloud(random, count);
-    std::vector<Index> notFinite;
-    const LatticeSample sample = SampleForLattice(cloud.View(), count, 1, Progress(), notFinite);
-    const double chance = 5.0 * std::sqrt(sampled); // five standard deviations
-    EXPECT_NEAR(static_cast<double>(sample.Points.size()), sampled, count > 500 ? chance : 0.0);
-  }
-}
-
-TEST(Lattice, IsPlacedWhereMostPointsAreOnFewNodes)
-{
-  std::mt19937_64 random(56);
-  const Frame frame = MakeFrame(25.0, 25.0, 0.0);
-  Cloud cloud = CloudOn(frame, RandomNodes(random, 1500, 1500, 0.1));
-  const Index distinct = cloud.Count();
-  while (cloud.Count() < 3 << 20)
-  {
-    const std::size_t id = random() % 4 * (distinct / 4); // far from each other
-    cloud.Add(cloud.Coordinates[3 * id], cloud.Coordinates[3 * id + 1]);
-  }
-  ExpectPlaced(cloud, distinct, 0, random);
-}
-
-TEST(Lattice, IsFoundWhereMostPointsAreDuplicates)
-{
-  std::mt19937_64 random(57);
-  Cloud few = RandomCloud(random, 50);
-  for (int i = 0; i < 4000 * 50; ++i)
-  {
-    few.Add(few.Coordinates[3 * (i % 50)], few.Coordinates[3 * (i % 50) + 1]);
-  }
-  EXPECT_FALSE(Triangulate(few.View(), Automatic()).LatticeFound);
-  const Frame frame = MakeFrame(25.0, 30.0, 10.0, 110.0, { 612000.0, 6073000.0 });
-  for (const std::int64_t side : { 3, 30, 300 })
-  {
-    const std::vector<Node> nodes = RandomNodes(random, side, side, 1.0);
-    Cloud cloud = CloudOn(frame, nodes);
-    const Triangulation expected = Triangulate(cloud.View(), Automatic());
-    while (cloud.Count() < 2000000)
-    {
-      const std::size_t id = random() % nodes.size();
-      cloud.Add(cloud.Coordinates[3 * id], cloud.Coordinates[3 * id + 1]);
-    }
-    const Triangulation result = Triangulate(cloud.View(), Automatic());
-    EXPECT_TRUE(result.LatticeFound) << side;
-    EXPECT_NEAR(result.Steps.StepU.X, frame.U.X, 1e-5) << side;
-    EXPECT_NEAR(result.Steps.StepV.Y, frame.V.Y, 1e-5) << side;
-    ASSERT_EQ(expected.Triangles.size(), result.Triangles.size());
-    EXPECT_TRUE(
-      std::equal(expected.Triangles.begin(), expected.Triangles.end(), result.Triangles.begin()));
-  }
-}
-
-TEST(Lattice, IsLookedForInTheWholeCloudWhereThisCannotBeCut)
-{
-  std::mt19937_64 random(59);
-  for (int trial = 0; trial < 100; ++trial)
-  {
-    // Points that fit one cell, though they are more than a crowd; and those of one column or row.
-    const int kind = trial % 3;
-    LatticeSample sample;
-    const double width = Uniform(random), height = Uniform(random);
-    while (sample.Points.size() < 400)
-    {
-      const double x = width * Uniform(random), y = height * Uniform(random);
-      sample.Points.push_back({ kind == 1 ? 0.3 : x, kind == 2 ? 0.7 : y });
-      sample.Box::Add(sample.Points.back());
-    }
-    std::sort(sample.Points.begin(), sample.Points.end(), IsLower);
-    sample.CloudSize = sample.Count = kind == 0 ? 400.0 : 1e6;
-    const Box place = FullestPlace(sample);
-    EXPECT_EQ(place.Low, sample.Low) << trial;
-    EXPECT_EQ(place.High, sample.High) << trial;
-  }
-}
-
 TEST(Lattice, ReportsWithinLongRows)
 {
   // Rows as long as they may be, and one fan of nearly a whole row.
@@ -605,52 +184,6 @@ TEST(Lattice, ReportsWithinLongRows)
       EXPECT_LT(silence.Longest, threads * 45000000u);
     }
   }
-}
-
-TEST(Lattice, IsTheDefinitionOnSmallClouds)
-{
-  std::mt19937_64 random(31);
-  int found = 0;
-  for (int i = 0; i < 20000; ++i)
-  {
-    // Steps of small integers: square, rectangular, sheared to both sides, turned.
-    Frame frame{ { 0.0, 0.0 }, { 1.0, 0.0 }, { 0.0, 1.0 } };
-    if (i % 2)
-    {
-      do
-      {
-        const auto step = [&]() { return static_cast<double>(random() % 9) - 4.0; };
-        frame.U = { step(), step() };
-        frame.V = { step(), step() };
-      } while (frame.U.X * frame.V.Y == frame.U.Y * frame.V.X);
-    }
-    std::vector<Node> nodes;
-    const int size = 2 + static_cast<int>(random() % 6);
-    const int count = 6 + static_cast<int>(random() % 12);
-    for (int k = 0; k < count; ++k)
-    {
-      const auto column = static_cast<std::int64_t>(random() % size);
-      nodes.push_back({ column, static_cast<std::int64_t>(random() % size) });
-    }
-    const Cloud cloud = CloudOn(frame, nodes);
-    const Triangulation triangulation = Triangulate(cloud.View(), Automatic());
-    if (!triangulation.LatticeFound)
-    {
-      continue;
-    }
-    ++found;
-    LatticeMetric metric;
-    ASSERT_TRUE(metric.Set(triangulation.Steps));
-    const std::vector<Node> here = NodesOf(cloud, triangulation.Steps);
-    const std::vector<Node> sorted = SortedNodes(here);
-    std::vector<std::array<Node, 3>> expected;
-    BruteForce(sorted, metric, [&](int p, int q, int r) {
-      expected.push_back({ sorted[p], sorted[q], sorted[r] });
-    });
-    std::sort(expected.begin(), expected.end());
-    ASSERT_EQ(NodeTriangles(here, triangulation), expected) << "cloud " << i;
-  }
-  EXPECT_GT(found, 14000);
 }
 
 TEST(Lattice, IsTheSameByDivideAndConquer)
@@ -706,182 +239,6 @@ TEST(Lattice, TakesWorkInProportionAlongAFlatArc)
     EXPECT_TRUE(triangulation.LatticeFound);
     EXPECT_EQ(FindingsOf(arc, triangulation), "");
   }
-}
-
-TEST(Lattice, IsFoundInThinAndSmallOnes)
-{
-  for (const double offset : { 0.0, 5e6 })
-  {
-    for (const std::array<int, 2>& size : std::vector<std::array<int, 2>>{ { 2, 3 }, { 2, 8 },
-           { 3, 3 }, { 4, 5 }, { 3, 500 }, { 500, 3 }, { 2, 500 }, { 500, 2 }, { 40, 40 } })
-    {
-      for (const std::array<double, 2>& steps :
-        std::vector<std::array<double, 2>>{ { 1.0, 1.0 }, { 1.0, 20.0 }, { 50.0, 1.0 } })
-      {
-        SCOPED_TRACE(testing::Message() << size[0] << " x " << size[1] << ", steps " << steps[0]
-                                        << " x " << steps[1] << " at " << offset);
-        Cloud cloud;
-        for (int k = 0; k < size[0] * size[1]; ++k)
-        {
-          cloud.Add(offset + k % size[0] * steps[0], offset + k / size[0] * steps[1]);
-        }
-        const Triangulation triangulation = Triangulate(cloud.View(), Automatic());
-        EXPECT_TRUE(triangulation.LatticeFound);
-        EXPECT_EQ(triangulation.Steps.StepU, (Point2{ steps[0], 0.0 }));
-        EXPECT_EQ(triangulation.Steps.StepV, (Point2{ 0.0, steps[1] }));
-        cloud.Add(offset + 0.41421 * steps[0], offset + 0.31831 * steps[1]);
-        EXPECT_FALSE(Triangulate(cloud.View(), Automatic()).LatticeFound)
-          << "one point is between the nodes";
-      }
-    }
-  }
-}
-
-TEST(Lattice, IsFoundWhateverItsSteps)
-{
-  std::mt19937_64 random(32);
-  const Point2 map{ 612000.0, 6073000.0 };
-  for (const double fill : { 0.05, 0.1, 0.3, 0.8, 1.0 })
-  {
-    const std::vector<Node> nodes = RandomNodes(random, 90, 70, fill);
-    const std::string share = std::to_string(fill) + " filled, ";
-    Frame frame{ { 0.0, 0.0 }, { 1.0, 0.0 }, { 0.0, 1.0 } };
-    ExpectLattice(CloudOn(frame, nodes), frame.U, frame.V, share + "indices", 0.0);
-    frame = { map, { 30.0, 0.0 }, { 0.0, 30.0 } };
-    ExpectLattice(CloudOn(frame, nodes), frame.U, frame.V, share + "map", 0.0);
-    frame = MakeFrame(25.0, 12.5, 30.0, 90.0, map);
-    ExpectLattice(CloudOn(frame, nodes), frame.U, frame.V, share + "turned", 1e-5);
-    frame = MakeFrame(25.0, 25.0, -40.0, 90.0, map);
-    ExpectLattice(CloudOn(frame, nodes), frame.U, frame.V, share + "turned back", 1e-5);
-    frame = MakeFrame(68.31791615274783, 92.6624388704656, 0.0);
-    ExpectLattice(CloudOn(frame, nodes), frame.U, frame.V, share + "unequal", 1e-5);
-    frame = MakeFrame(25.0, 30.0, 10.0, 110.0, map);
-    ExpectLattice(CloudOn(frame, nodes), frame.U, frame.V, share + "obtuse", 1e-5);
-    frame = MakeFrame(25.0, 30.0, 5.0, 72.0, map);
-    ExpectLattice(CloudOn(frame, nodes), frame.U, frame.V, share + "acute", 1e-5);
-    frame = MakeFrame(10.0, 10.0, 0.0, 60.0);
-    ExpectLattice(CloudOn(frame, nodes), frame.U, frame.V, share + "hexagonal", 1e-5);
-    frame = MakeFrame(1.0, 20.0, 20.0);
-    ExpectLattice(CloudOn(frame, nodes), frame.U, frame.V, share + "long cells", 1e-5);
-  }
-}
-
-TEST(Lattice, IsFoundInRoundedCoordinates)
-{
-  std::mt19937_64 random(33);
-  for (const double fill : { 0.1, 0.5, 1.0 })
-  {
-    const std::vector<Node> nodes = RandomNodes(random, 400, 60, fill);
-    for (const double angle : { 0.0, 17.0, 45.0, 80.0 })
-    {
-      Frame frame = MakeFrame(25.0, 25.0, angle, 90.0, { 612000.0, 6073000.0 });
-      frame.Decimals = 0.1;
-      const std::string name = std::to_string(fill) + " filled, " + std::to_string(angle);
-      const Point2 u = frame.U, v = frame.V;
-      const bool isUp = angle > 45.0;
-      ExpectLattice(
-        CloudOn(frame, nodes), isUp ? Point2{ -v.X, -v.Y } : u, isUp ? u : v, name, 1e-3);
-    }
-    Frame frame = MakeFrame(12.5, 25.0, 31.7, 90.0, { 605000.0, 6073000.0 });
-    frame.Decimals = 0.01;
-    const Cloud cloud = CloudOn(frame, nodes);
-    ExpectLattice(cloud, frame.U, frame.V, std::to_string(fill) + " filled, unequal", 1e-3);
-    LatticeMetric metric;
-    EXPECT_TRUE(metric.Set(Triangulate(cloud.View(), Automatic()).Steps));
-    EXPECT_EQ(metric.C, 4 * metric.A);
-  }
-}
-
-TEST(Lattice, IsFoundWithOffsetsNearTheTolerance)
-{
-  std::mt19937_64 random(51);
-  for (const double fill : { 0.08, 0.3, 1.0 })
-  {
-    for (int i = 0; i < 20; ++i)
-    {
-      const Frame frame = MakeFrame(25.0, 20.0, 23.0, 95.0, { 612000.0, 6073000.0 });
-      Cloud cloud = CloudOn(frame, RandomNodes(random, 150, 100, fill));
-      for (Index id = 0; id < cloud.Count(); ++id)
-      {
-        const double p = 0.016 * (Uniform(random) - 0.5), q = 0.016 * (Uniform(random) - 0.5);
-        cloud.Coordinates[3 * id] += p * frame.U.X + q * frame.V.X;
-        cloud.Coordinates[3 * id + 1] += p * frame.U.Y + q * frame.V.Y;
-      }
-      const Triangulation triangulation = Triangulate(cloud.View(), Automatic());
-      EXPECT_TRUE(triangulation.LatticeFound) << fill << " filled, cloud " << i;
-      EXPECT_NEAR(triangulation.Steps.StepU.X, frame.U.X, 0.01);
-      EXPECT_NEAR(triangulation.Steps.StepV.Y, frame.V.Y, 0.01);
-    }
-  }
-}
-
-TEST(Lattice, IsFoundWithOneNodeInFiftyOccupied)
-{
-  std::mt19937_64 random(52);
-  for (int i = 0; i < 40; ++i)
-  {
-    const Frame frame = MakeFrame(3.0, 2.0, i * 4.5, 90.0, { 612000.0, 6073000.0 });
-    const Cloud cloud = CloudOn(frame, RandomNodes(random, 200 + 10 * i, 180, 0.02));
-    EXPECT_TRUE(Triangulate(cloud.View(), Automatic()).LatticeFound) << "cloud " << i;
-  }
-}
-
-TEST(Lattice, IsFoundWhereOffsetsThemselvesFitAFinerLattice)
-{
-  // Offsets of 0.03 steps: multiples of 0.01, which would be a hundred nodes a point.
-  Cloud cloud;
-  for (int j = 0; j < 12; ++j)
-  {
-    for (int i = 0; i < 12; ++i)
-    {
-      cloud.Add(i + (i == j ? 0.03 : 0.0), j);
-    }
-  }
-  EXPECT_FALSE(Triangulate(cloud.View(), Automatic()).LatticeFound);
-  const Triangulation triangulation = Triangulate(cloud.View(), Automatic(0.05));
-  ASSERT_TRUE(triangulation.LatticeFound);
-  EXPECT_NEAR(triangulation.Steps.StepU.X, 1.0, 0.01);
-  EXPECT_EQ(LatticeFindings(cloud, triangulation), "");
-}
-
-TEST(Lattice, IsFoundWhereOnlyLargeMultiplesOfAStepOccur)
-{
-  std::vector<Node> nodes;
-  for (std::int64_t j = 0; j < 50; ++j)
-  {
-    for (std::int64_t i = 0; i < 600; i += 15)
-    {
-      nodes.push_back({ i, j });
-      nodes.push_back({ i + 7, j });
-    }
-  }
-  const Frame frame = MakeFrame(12.5, 25.0, 31.0, 90.0, { 612000.0, 6073000.0 });
-  ExpectLattice(CloudOn(frame, nodes), frame.U, frame.V, "columns 7 and 8 apart", 1e-6);
-}
-
-TEST(Lattice, StaysExactOverALongRoundedLattice)
-{
-  // Steps of 12.5 along the diagonals, rounded to decimetres, over two thousand nodes.
-  std::mt19937_64 random(34);
-  Frame frame = MakeFrame(12.5, 12.5, 45.0, 90.0, { 612000.0, 6073000.0 });
-  frame.Decimals = 0.1;
-  const Cloud cloud = CloudOn(frame, RandomNodes(random, 2000, 20, 0.7));
-  ExpectLattice(cloud, frame.U, frame.V, "long", 5e-4);
-  const Lattice steps = Triangulate(cloud.View(), Automatic()).Steps;
-  EXPECT_NEAR(steps.StepU.X, frame.U.X, 1e-5);
-  EXPECT_NEAR(steps.StepU.Y, frame.U.Y, 1e-5);
-}
-
-TEST(Lattice, OriginIsTheLowestOccupiedNode)
-{
-  const Frame frame{ { 100.0, 200.0 }, { 5.0, 0.0 }, { 0.0, 2.0 } };
-  const Cloud cloud =
-    CloudOn(frame, { { 3, 1 }, { 4, 1 }, { 0, 2 }, { 1, 2 }, { 2, 3 }, { 6, 4 }, { 5, 3 } });
-  const Triangulation triangulation = Triangulate(cloud.View(), Automatic());
-  ASSERT_TRUE(triangulation.LatticeFound);
-  EXPECT_TRUE((triangulation.Steps.Origin == Point2{ 115.0, 202.0 }));
-  EXPECT_TRUE((triangulation.Steps.StepU == Point2{ 5.0, 0.0 }));
-  EXPECT_TRUE((triangulation.Steps.StepV == Point2{ 0.0, 2.0 }));
 }
 
 TEST(Lattice, GivesTheTrianglesOfTheGeneralPathOnGrids)
@@ -941,117 +298,6 @@ TEST(Lattice, DoubtsTrianglesWhereStepsAreVeryUnequal)
   LatticeNodes placed;
   ASSERT_TRUE(placed.Place(cloud.View(), search, 0.01, DuplicatePolicy::KeepFirst, 1, Progress()));
   EXPECT_GT(placed.LargestOffset, 1e-7);
-}
-
-TEST(Lattice, IsRefusedWhenAPointDoesNotFit)
-{
-  std::mt19937_64 random(36);
-  for (const double fill : { 0.3, 1.0 })
-  {
-    const Frame frame = MakeFrame(25.0, 20.0, 12.0, 80.0, { 612000.0, 6073000.0 });
-    const std::vector<Node> nodes = RandomNodes(random, 60, 60, fill);
-    Cloud cloud = CloudOn(frame, nodes);
-    const Index odd = cloud.Count() / 3;
-    cloud.Coordinates[3 * odd] += 0.03 * frame.U.X;
-    cloud.Coordinates[3 * odd + 1] += 0.03 * frame.U.Y;
-    const Triangulation triangulation = Triangulate(cloud.View(), Automatic());
-    EXPECT_FALSE(triangulation.LatticeFound);
-    EXPECT_EQ(FindingsOf(cloud, triangulation), "");
-    EXPECT_TRUE(Triangulate(cloud.View(), Automatic(0.04)).LatticeFound);
-    // Between the nodes.
-    cloud = CloudOn(frame, nodes);
-    cloud.Coordinates[3 * odd] += 0.37 * frame.U.X;
-    EXPECT_FALSE(Triangulate(cloud.View(), Automatic()).LatticeFound);
-  }
-  EXPECT_FALSE(Triangulate(RandomCloud(random, 10000).View(), Automatic()).LatticeFound);
-}
-
-TEST(Lattice, IsRefusedWhenTwoPointsShareANode)
-{
-  std::mt19937_64 random(37);
-  Cloud cloud = CloudOn(MakeFrame(10.0, 10.0, 0.0), RandomNodes(random, 20, 20, 0.8));
-  EXPECT_TRUE(Triangulate(cloud.View(), Automatic()).LatticeFound);
-  cloud.Add(cloud.Coordinates[30] + 0.05, cloud.Coordinates[31]);
-  const Triangulation triangulation = Triangulate(cloud.View(), Automatic());
-  EXPECT_FALSE(triangulation.LatticeFound);
-  EXPECT_EQ(triangulation.NumberOfDuplicates, 0);
-  EXPECT_EQ(FindingsOf(cloud, triangulation), "");
-
-  // Within the tolerance, and too few among many to be seen in a sample.
-  const Cloud large = CloudOn(MakeFrame(10.0, 10.0, 0.0), RandomNodes(random, 200, 200, 1.0));
-  for (int i = 0; i < 10; ++i)
-  {
-    cloud = large;
-    const std::size_t id = random() % static_cast<std::size_t>(cloud.Count());
-    cloud.Add(cloud.Coordinates[3 * id] + 0.05, cloud.Coordinates[3 * id + 1]);
-    EXPECT_FALSE(Triangulate(cloud.View(), Automatic()).LatticeFound);
-  }
-}
-
-TEST(Lattice, IsRefusedWhenTooWide)
-{
-  std::mt19937_64 random(38);
-  std::vector<Node> nodes = RandomNodes(random, 30, 30, 0.5);
-  nodes.push_back({ 200000, 170000 });
-  const Cloud cloud = CloudOn(MakeFrame(1.0, 1.0, 0.0), nodes);
-  const Triangulation triangulation = Triangulate(cloud.View(), Automatic());
-  EXPECT_FALSE(triangulation.LatticeFound);
-  EXPECT_EQ(FindingsOf(cloud, triangulation), "");
-  // More columns than products of 128 bits allow.
-  nodes.clear();
-  for (int i = 0; i < 100000; ++i)
-  {
-    nodes.push_back({ 11 * std::int64_t(i), i % 2 });
-    nodes.push_back({ 11 * std::int64_t(i) + 1, i % 2 });
-  }
-  EXPECT_FALSE(
-    Triangulate(CloudOn(MakeFrame(1.0, 1.0, 0.0), nodes).View(), Automatic()).LatticeFound);
-}
-
-TEST(Lattice, IsRefusedForTooFewPointsToTell)
-{
-  Cloud cloud;
-  cloud.Add(0.0, 0.0);
-  cloud.Add(3.0, 1.0);
-  cloud.Add(-1.0, 4.0);
-  EXPECT_FALSE(Triangulate(cloud.View(), Automatic()).LatticeFound);
-  std::mt19937_64 random(39);
-  for (int i = 0; i < 5000; ++i)
-  {
-    const Cloud any = RandomCloud(random, 3 + static_cast<Index>(random() % 10));
-    ASSERT_FALSE(Triangulate(any.View(), Automatic()).LatticeFound);
-    ASSERT_FALSE(Triangulate(any.View(), Automatic(0.1)).LatticeFound);
-  }
-  for (int i = 0; i < 20000; ++i)
-  {
-    ASSERT_FALSE(Triangulate(RandomCloud(random, 6).View(), Automatic(0.25)).LatticeFound);
-  }
-}
-
-TEST(Lattice, IsRefusedWhereATriangleWouldBeFlat)
-{
-  // A single node below a wide grid: thin triangles, the last one inverted by two points' offsets.
-  std::vector<Node> nodes{ { 0, 0 } };
-  for (std::int64_t j = 1; j <= 8; ++j)
-  {
-    for (std::int64_t i = -100; i <= 100; ++i)
-    {
-      nodes.push_back({ i, j });
-    }
-  }
-  const Frame frame = MakeFrame(50.0, 50.0, 0.0);
-  Cloud cloud = CloudOn(frame, nodes);
-  ExpectLattice(cloud, frame.U, frame.V, "no offset");
-  for (Index id = 0; id < cloud.Count(); ++id)
-  {
-    if (nodes[id][1] == 1 && nodes[id][0] >= 99)
-    {
-      cloud.Coordinates[3 * id + 1] += nodes[id][0] == 99 ? -0.4 : 0.4;
-    }
-  }
-  const Triangulation triangulation = Triangulate(cloud.View(), Automatic());
-  EXPECT_FALSE(triangulation.LatticeFound);
-  EXPECT_EQ(FindingsOf(cloud, triangulation), "");
 }
 
 TEST(Lattice, KeepsTheDuplicateThatIsAskedForAndReportsTheOthers)
@@ -1303,9 +549,12 @@ TEST(CompareProducts, IsExactForAllNumbers)
 #endif
 }
 
+namespace
+{
 class LatticeExtraData : public testing::TestWithParam<const char*>
 {
 };
+} // namespace
 
 TEST_P(LatticeExtraData, KeepsEveryRule)
 {

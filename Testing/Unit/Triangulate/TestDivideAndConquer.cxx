@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "HardClouds.h"
 #include "Kernel/Grow/DivideAndConquer.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "PointSets.h"
@@ -62,18 +63,6 @@ void ExpectSameUpToAnEdgeLength(const Cloud& cloud, double length)
   EXPECT_TRUE(Triangulated(cloud, options) == grown);
   EXPECT_GT(grown.size(), 0u);
   EXPECT_LT(grown.size(), Triangulated(cloud).size());
-}
-
-/** Points on the unit circle, within the precision of doubles. */
-Cloud CircleCloud(std::mt19937_64& random, int count)
-{
-  Cloud cloud;
-  for (int i = 0; i < count; ++i)
-  {
-    const double angle = 6.283185307179586 * Uniform(random);
-    cloud.Add(std::cos(angle), std::sin(angle));
-  }
-  return cloud;
 }
 
 /** All integer points exactly on the circle of radius 5 * 13 * 17 * 29 = 32045. */
@@ -150,51 +139,19 @@ TEST(DivideAndConquer, IsTheTriangulationOnLargerSets)
 TEST(DivideAndConquer, IsTheTriangulationWhereDensityIsUneven)
 {
   std::mt19937_64 random(84);
-  Cloud clustered, tracks, graded, rotated;
-  for (int i = 0; i < 5000; ++i)
+  for (const auto& [name, cloud] : UnevenClouds(random))
   {
-    const double angle = 6.283185307179586 * Uniform(random);
-    const double radius = std::pow(Uniform(random), 12.0);
-    clustered.Add(radius * std::cos(angle), radius * std::sin(angle));
-    const double along = 10000.0 * Uniform(random);
-    tracks.Add(along, 100.0 * static_cast<double>(random() % 20) + 0.3 * Uniform(random));
-    const double x = std::exp2(-30.0 * Uniform(random));
-    graded.Add(x, std::exp2(-30.0 * Uniform(random)));
-    const double u = 25.0 * (i % 70), v = 12.5 * (i / 70);
-    rotated.Add(612000.0 + std::cos(0.5) * u - std::sin(0.5) * v,
-      6073000.0 + std::sin(0.5) * u + std::cos(0.5) * v);
+    ExpectSame(cloud, name);
   }
-  ExpectSame(clustered, "clustered");
-  ExpectSame(tracks, "ship tracks");
-  ExpectSame(graded, "graded");
-  ExpectSame(rotated, "a rotated lattice");
-  clustered.Add(1e12, 3.0);
-  ExpectSame(clustered, "one far outlier");
 }
 
 TEST(DivideAndConquer, IsTheTriangulationOnNearlyDegeneratePoints)
 {
   std::mt19937_64 random(85);
-  Cloud twoLines, nearLine, spiral, comb, roundoffs, rows, columns;
-  for (int i = 0; i < 600; ++i)
+  for (const auto& [name, cloud] : NearlyDegenerateClouds(random))
   {
-    twoLines.Add(static_cast<double>(i), i % 2);
-    nearLine.Add(i, std::ldexp(static_cast<double>(random() % 3), -40) + i);
-    spiral.Add(0.01 * i * std::cos(0.3 * i), 0.01 * i * std::sin(0.3 * i));
-    comb.Add(i / 20, (i % 20) * (i / 20 % 2 ? 1.0 : 0.01));
-    roundoffs.Add(1.0 + std::ldexp(static_cast<double>(random() % 16), -52),
-      1.0 + std::ldexp(static_cast<double>(random() % 16), -52));
-    rows.Add(i, i == 300 ? 1.0 : 0.0);
-    columns.Add(i == 300 ? 1.0 : 0.0, i);
+    ExpectSame(cloud, name);
   }
-  ExpectSame(CircleCloud(random, 600), "circle");
-  ExpectSame(twoLines, "two lines");
-  ExpectSame(nearLine, "near a line");
-  ExpectSame(spiral, "spiral");
-  ExpectSame(comb, "comb");
-  ExpectSame(roundoffs, "a few roundoffs apart");
-  ExpectSame(rows, "a row and one point");
-  ExpectSame(columns, "a column and one point");
 }
 
 TEST(DivideAndConquer, IsTheTriangulationOverTheRangeOfDouble)

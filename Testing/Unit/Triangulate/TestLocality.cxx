@@ -5,6 +5,7 @@
  * A triangle depends on the points in and on its circle alone: what is farther away may be taken
  * away. Pieces of a cloud that are triangulated by themselves rest on this.
  */
+#include "HardClouds.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "PointSets.h"
 
@@ -89,39 +90,6 @@ void Compare(const std::vector<Corners>& whole, const Window& window,
   }
 }
 
-Cloud ClusteredCloud(std::mt19937_64& random, Index count)
-{
-  Cloud cloud;
-  for (Index i = 0; i < count; ++i)
-  {
-    const double angle = 6.283185307179586 * Uniform(random);
-    const double radius = std::pow(Uniform(random), 6.0);
-    cloud.Add(radius * std::cos(angle), radius * std::sin(angle));
-  }
-  return cloud;
-}
-
-Cloud GradedCloud(std::mt19937_64& random, Index count)
-{
-  Cloud cloud;
-  for (Index i = 0; i < count; ++i)
-  {
-    const double x = std::exp2(-20.0 * Uniform(random));
-    cloud.Add(x, std::exp2(-20.0 * Uniform(random)));
-  }
-  return cloud;
-}
-
-Cloud TracksCloud(std::mt19937_64& random, Index count)
-{
-  Cloud cloud;
-  for (Index i = 0; i < count; ++i)
-  {
-    const double along = 1000.0 * Uniform(random);
-    cloud.Add(along, 50.0 * static_cast<double>(random() % 12) + 0.3 * Uniform(random));
-  }
-  return cloud;
-}
 } // namespace
 
 TEST(Locality, TakingAwayAllPointsOutsideAWindowChangesNoTriangleWhoseCircleLiesInIt)
@@ -131,8 +99,8 @@ TEST(Locality, TakingAwayAllPointsOutsideAWindowChangesNoTriangleWhoseCircleLies
   for (int i = 0; i < 100; ++i)
   {
     const Cloud clouds[] = { RandomCloud(random, 400), LatticeCloud(random, 20, 1.0),
-      LatticeCloud(random, 30, 0.4), ClusteredCloud(random, 400), GradedCloud(random, 400),
-      TracksCloud(random, 400) };
+      LatticeCloud(random, 30, 0.4), ClusteredCloud(random, 400, 6.0),
+      GradedCloud(random, 400, 20.0), TracksCloud(random, 400, 1000.0, 50.0, 12) };
     for (const Cloud& cloud : clouds)
     {
       const std::vector<Corners> whole =

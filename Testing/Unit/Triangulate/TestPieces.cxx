@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "HardClouds.h"
 #include "Kernel/Base/Predicates.h"
 #include "Kernel/Cells/Pieces.h"
 #include "Kernel/Lattice/Lattice.h"
@@ -169,17 +170,6 @@ Cloud CircleCloud(Index count)
   return cloud;
 }
 
-Cloud UnevenCloud(std::mt19937_64& random, Index count)
-{
-  Cloud cloud;
-  for (Index i = 0; i < count; ++i)
-  {
-    const double angle = 6.283185307179586 * Uniform(random);
-    const double radius = std::pow(Uniform(random), 9.0);
-    cloud.Add(1e5 + radius * std::cos(angle), radius * std::sin(angle));
-  }
-  return cloud;
-}
 /** A cloud on a lattice that is turned and sheared, with coordinates rounded as in exports. */
 Cloud TurnedLattice(std::mt19937_64& random, Index side, double filled)
 {
@@ -278,8 +268,8 @@ TEST(Pieces, TogetherAreTheTriangulationOfTheWhole)
   {
     const Index count = 3 + static_cast<Index>(random() % 600);
     const Cloud clouds[] = { RandomCloud(random, count), LatticeCloud(random, 20, 1.0),
-      LatticeCloud(random, 30, 0.3), SmallLatticeCloud(random, 12, 90), UnevenCloud(random, count),
-      LineCloud(random, count), CircleCloud(count % 100) };
+      LatticeCloud(random, 30, 0.3), SmallLatticeCloud(random, 12, 90),
+      ClusteredCloud(random, count, 9.0, 1e5), LineCloud(random, count), CircleCloud(count % 100) };
     for (const Cloud& cloud : clouds)
     {
       const int pieces = 1 + static_cast<int>(random() % 17);
@@ -318,7 +308,7 @@ TEST(Pieces, OfACellSettleAllWhoseCircleItHoldsAndNoOther)
   {
     const Index count = 3 + static_cast<Index>(random() % 4000);
     const Cloud clouds[] = { RandomCloud(random, count), LatticeCloud(random, 30, 0.3),
-      UnevenCloud(random, count), CircleCloud(3 + count % 100) };
+      ClusteredCloud(random, count, 9.0, 1e5), CircleCloud(3 + count % 100) };
     const Cloud& whole = clouds[i % 4];
     const Point2 cut = whole.View().At(static_cast<Index>(random() % whole.Count()));
     Cell cell;

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "SimplifiedCloud.h"
+
 #include "Kernel/Mesh/Mesh.h"
-#include "Kernel/Simplify/FewerPieces.h"
-#include "Kernel/Simplify/Simplify.h"
-#include "Kernel/Constrain/Constrain.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "PointSets.h"
 
@@ -20,123 +19,6 @@ using namespace testing_points;
 
 namespace
 {
-/** Hills and a cliff. */
-double Terrain(double x, double y)
-{
-  return 30.0 * std::sin(5.0 * x) * std::cos(4.0 * y) + 8.0 * std::sin(31.0 * x * y) +
-    (x + 0.3 * y > 0.7 ? 25.0 : 0.0);
-}
-
-constexpr int Kinds = 9;
-
-/** A cloud in some place of the plane, of one of several kinds. */
-Cloud CloudOf(int kind, Index count, std::mt19937_64& random)
-{
-  Cloud cloud;
-  const Index side = static_cast<Index>(std::sqrt(static_cast<double>(count)));
-  for (Index i = 0; i < count; ++i)
-  {
-    double x = Uniform(random), y = Uniform(random);
-    const double along = y, noise = 6.0 * Uniform(random);
-    switch (kind)
-    {
-      case 1: // a lattice, with rounded coordinates
-      case 2: // the same with missing nodes
-        x = static_cast<double>(i % side) / side;
-        y = static_cast<double>(i / side) / side;
-        if (kind == 2 && random() % 4 == 0)
-        {
-          continue;
-        }
-        break;
-      case 3: // tracks
-        x = static_cast<double>(i % 12) / 12.0 + 0.01 * std::sin(9.0 * along);
-        break;
-      case 4: // clustered
-        x = x * x * x * x;
-        y = y * y * y;
-        break;
-      case 5: // few values of each coordinate
-        x = static_cast<double>(random() % 64) / 64.0;
-        y = static_cast<double>(random() % 64) / 64.0;
-        break;
-      case 6: // on a circle and inside
-        x = 0.5 + 0.5 * std::cos(40.0 * x) * (i % 2 ? 1.0 : y);
-        y = 0.5 + 0.5 * std::sin(40.0 * x) * (i % 2 ? 1.0 : y);
-        break;
-      default:
-        break;
-    }
-    if (kind ==
-      8) // clusters of a few units in the last place, which differences to far points lose
-    {
-      const double far = i % 3 == 0 ? 2000.0 : 0.0, unit = 0x1p-54 * (i % 2 ? 1.0 : 1024.0);
-      const double dx = static_cast<double>(random() % 8), dy = static_cast<double>(random() % 8);
-      const double u = static_cast<double>(random() % 5) / 9.0 + 0.1;
-      const double v = static_cast<double>(random() % 5) / 9.0 + 0.1;
-      cloud.Add(u + unit * dx + far * (x - 0.5), v + unit * dy + far * (y - 0.5),
-        Terrain(u, v) + 3.0 * dx - 2.0 * dy + (far > 0.0 ? 40.0 * x : 0.0));
-      continue;
-    }
-    const double z = Terrain(x, y) + (kind == 7 ? noise : 0.0);
-    if (kind == 1 || kind == 2)
-    {
-      // Turned, and rounded to centimetres.
-      const double u = 1000.0 * (0.8 * x - 0.6 * y), v = 1000.0 * (0.6 * x + 0.8 * y);
-      cloud.Add(std::round(100.0 * u) / 100.0 + 4e5, std::round(100.0 * v) / 100.0 + 5e6, z);
-      continue;
-    }
-    cloud.Add(1000.0 * x + 4e5, 1000.0 * y + 5e6, z);
-  }
-  return cloud;
-}
-
-DelaunayOptions WithError(double error)
-{
-  DelaunayOptions options;
-  options.UseLattice = LatticeMode::Automatic;
-  options.MaximumElevationError = error;
-  return options;
-}
-
-/** Points that need not be near the surface. */
-std::vector<Index> ExemptOf(const Triangulation& made)
-{
-  std::vector<Index> exempt;
-  for (std::size_t i = 0; i < made.UnusedPoints.size(); ++i)
-  {
-    if (made.UnusedReasons[i] != UnusedReason::WithinError)
-    {
-      exempt.push_back(made.UnusedPoints[i]);
-    }
-  }
-  return exempt;
-}
-
-Mesh MeshOfTriangles(const Cloud& cloud, const Buffer<Index>& triangles)
-{
-  Mesh mesh;
-  for (Index i = 0; i < cloud.Count(); ++i)
-  {
-    mesh.Points.push_back(cloud.View().At(i));
-  }
-  mesh.Triangles.assign(triangles.begin(), triangles.end());
-  return mesh;
-}
-
-std::vector<Index> ChosenOf(const Cloud& cloud, const Triangulation& made)
-{
-  std::vector<Index> chosen;
-  for (Index i = 0; i < cloud.Count(); ++i)
-  {
-    if (!std::binary_search(made.UnusedPoints.begin(), made.UnusedPoints.end(), i))
-    {
-      chosen.push_back(i);
-    }
-  }
-  return chosen;
-}
-
 /** The triangles of the chosen points alone, by their ids in the cloud. */
 std::vector<Index> TrianglesOfChosen(
   const Cloud& cloud, const std::vector<Index>& chosen, DelaunayOptions options)
@@ -160,13 +42,9 @@ std::vector<Index> TrianglesOfChosen(
 /** Checks all that is promised. */
 void Check(const Cloud& cloud, const DelaunayOptions& options, const Triangulation& made)
 {
-  const Mesh mesh = MeshOfTriangles(cloud, made.Triangles);
-  // On a lattice, points at the border may lie beside their nodes, and so beside the mesh.
-  const Point2 &u = made.Steps.StepU, &v = made.Steps.StepV;
-  const double ofBoth = std::hypot(u.X, u.Y) + std::hypot(v.X, v.Y);
-  const double besideBy = made.LatticeFound ? 2.0 * options.LatticeTolerance * ofBoth : 0.0;
-  const auto far =
-    ValidateDistance(mesh, cloud.View(), options.MaximumElevationError, besideBy, ExemptOf(made));
+  const Mesh mesh = MeshOf(cloud, made);
+  const auto far = ValidateDistance(
+    mesh, cloud.View(), options.MaximumElevationError, BesideBy(made, options), ExemptOf(made));
   EXPECT_TRUE(far.empty()) << ToString(far);
   EXPECT_LE(made.LargestElevationError, options.MaximumElevationError);
   DelaunayOptions again = options;
@@ -252,12 +130,8 @@ TEST(Simplify, TakesAtMostATenthMorePointsThanOneAtATime)
     for (;;)
     {
       const std::vector<Index> triangles = TrianglesOfChosen(cloud, chosen, plain);
-      Buffer<Index> ids;
-      for (const Index corner : triangles)
-      {
-        ids.Append(corner);
-      }
-      const Mesh mesh = MeshOfTriangles(cloud, ids);
+      Mesh mesh = MeshOf(cloud, Triangulation());
+      mesh.Triangles = triangles;
       double largest = 0.0;
       Index worst = None;
       for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
@@ -416,214 +290,6 @@ TEST(Simplify, ALatticeWhosePointsLieBesideTheirNodesIsMeasuredByCoordinates)
   }
 }
 
-namespace
-{
-/** The lines of a triangulation of chosen points: each piece by its two ends. */
-struct Chords
-{
-  Cloud Ends;
-  ConstraintLines Lines;
-};
-
-/** The lines without the points that they need not have. */
-Chords ChordsOf(const Cloud& whole, const ConstrainedTriangulation& made, double error)
-{
-  const PlacedPoints placed = PlaceInBins(whole.View(), DelaunayOptions(), 1, Progress());
-  Chords chords;
-  for (const Segment& piece :
-    FewerPieces(placed, PiecesByPlaces(made.Pieces, placed, Progress()), error, Progress()))
-  {
-    for (const Index place : { piece.A, piece.B })
-    {
-      chords.Lines.Vertices.push_back(chords.Ends.Count());
-      chords.Ends.Add(placed.At(place).X, placed.At(place).Y, placed.Places[place].Z);
-    }
-    chords.Lines.Offsets.push_back(chords.Ends.Count());
-    chords.Lines.IsClosed.push_back(0);
-    chords.Lines.Cells.push_back(0);
-  }
-  chords.Lines.Points = chords.Ends.View();
-  return chords;
-}
-} // namespace
-
-TEST(Simplify, LinesStayEdgesAndTheTrianglesAreThoseOfTheChosenWithThem)
-{
-  std::mt19937_64 random(7);
-  for (int trial = 0; trial < 120; ++trial)
-  {
-    SCOPED_TRACE(trial);
-    const int kind = trial % 8;
-    const Cloud cloud = CloudOf(kind, trial % 3 == 0 ? 40 : 2500, random);
-    // Lines across the cloud, through some of its points, that cross.
-    Cloud ends;
-    ConstraintLines lines;
-    for (int line = 0; line < 4; ++line)
-    {
-      const double x = 4e5 - 500.0 + 1500.0 * Uniform(random), y = 5e6 + 900.0 * Uniform(random);
-      for (int k = 0; k < 6; ++k)
-      {
-        const Index id = static_cast<Index>(random() % static_cast<unsigned>(cloud.Count()));
-        const Point2 p = cloud.View().At(id);
-        const bool isOfCloud = k % 2 == 0;
-        ends.Add(isOfCloud ? p.X : x + 100.0 * k, isOfCloud ? p.Y : y + 40.0 * k * Uniform(random),
-          20.0 * Uniform(random));
-        lines.Vertices.push_back(ends.Count() - 1);
-      }
-      lines.Offsets.push_back(static_cast<Index>(lines.Vertices.size()));
-      lines.IsClosed.push_back(line == 1 ? 1 : 0);
-      lines.Cells.push_back(line);
-    }
-    lines.Points = ends.View();
-    for (const double error : { 0.3, 6.0, 1e6 })
-    {
-      DelaunayOptions options = WithError(error);
-      options.SimplifyConstraints = trial % 2 == 1;
-      const ConstrainedTriangulation made = TriangulateConstrained(cloud.View(), lines, options);
-      Cloud whole = cloud; // with the points of lines
-      for (const AddedPoint& point : made.Added)
-      {
-        whole.Add(point.Position.X, point.Position.Y, point.Elevation);
-      }
-      const Mesh mesh = MeshOfTriangles(whole, made.Result.Triangles);
-      const auto far = ValidateDistance(mesh, whole.View(), error, 0.0, ExemptOf(made.Result));
-      EXPECT_TRUE(far.empty()) << ToString(far);
-      const std::vector<Index> chosen = ChosenOf(whole, made.Result);
-      Cloud few;
-      for (const Index id : chosen)
-      {
-        const double* const p = whole.Coordinates.data() + 3 * static_cast<std::size_t>(id);
-        few.Add(p[0], p[1], p[2]);
-      }
-      options.MaximumElevationError = 0.0;
-      const Chords chords = ChordsOf(whole, made, error);
-      const ConstrainedTriangulation again = TriangulateConstrained(
-        few.View(), options.SimplifyConstraints ? chords.Lines : lines, options);
-      EXPECT_TRUE(again.Added.empty());
-      std::vector<Index> triangles;
-      for (const Index corner : again.Result.Triangles)
-      {
-        triangles.push_back(chosen[corner]);
-      }
-      EXPECT_EQ(
-        std::vector<Index>(made.Result.Triangles.begin(), made.Result.Triangles.end()), triangles);
-    }
-  }
-}
-
-TEST(Simplify, WithDataDependentEdgesEveryPointIsWithinTheErrorForFewerPoints)
-{
-  std::mt19937_64 random(8);
-  Index few = 0, fewer = 0;
-  for (int kind = 0; kind < Kinds; ++kind)
-  {
-    for (const Index count : { 5, 60, 900, 20000 })
-    {
-      const Cloud cloud = CloudOf(kind, count, random);
-      for (const double error : { 0.3, 5.0, 1e6 })
-      {
-        SCOPED_TRACE("kind " + std::to_string(kind) + ", " + std::to_string(count) +
-          " points, error " + std::to_string(error));
-        DelaunayOptions options = WithError(error);
-        const Triangulation delaunay = Triangulate(cloud.View(), options);
-        options.Edges = EdgeCriterion::DataDependent;
-        const Triangulation made = Triangulate(cloud.View(), options);
-        const Mesh mesh = MeshOfTriangles(cloud, made.Triangles);
-        const Point2 &u = made.Steps.StepU, &v = made.Steps.StepV;
-        const double besideBy = made.LatticeFound
-          ? 2.0 * options.LatticeTolerance * (std::hypot(u.X, u.Y) + std::hypot(v.X, v.Y))
-          : 0.0;
-        const auto far = ValidateDistance(mesh, cloud.View(), error, besideBy, ExemptOf(made));
-        EXPECT_TRUE(far.empty()) << ToString(far);
-        ValidateOptions rules;
-        rules.Delaunay = false;
-        rules.ConvexHull = !made.LatticeFound; // its points may lie beside their nodes
-        rules.UnusedPoints = &made.UnusedPoints;
-        const auto broken = Validate(mesh, rules);
-        EXPECT_TRUE(broken.empty()) << ToString(broken);
-        options.NumberOfThreads = 3;
-        const Triangulation again = Triangulate(cloud.View(), options);
-        EXPECT_TRUE(std::equal(made.Triangles.begin(), made.Triangles.end(),
-          again.Triangles.begin(), again.Triangles.end()));
-        EXPECT_EQ(made.UnusedPoints, again.UnusedPoints);
-        if (count == 20000 && error == 0.3 && kind != 7 && kind != 8) // noise is not to be followed
-        {
-          few += cloud.Count() - delaunay.NumberOfRedundant;
-          fewer += cloud.Count() - made.NumberOfRedundant;
-        }
-      }
-    }
-  }
-  EXPECT_LT(static_cast<double>(fewer), 0.92 * static_cast<double>(few)) << fewer << " " << few;
-}
-
-TEST(Simplify, WithDataDependentEdgesIsTheSameInAnyUnitOfElevation)
-{
-  std::mt19937_64 random(14);
-  const Cloud cloud = CloudOf(0, 5000, random);
-  const auto trianglesIn = [&](double unit) {
-    Cloud scaled;
-    for (Index i = 0; i < cloud.Count(); ++i)
-    {
-      const Point2 p = cloud.View().At(i);
-      scaled.Add(p.X, p.Y, unit * cloud.View().Elevation(i));
-    }
-    DelaunayOptions options = WithError(unit);
-    options.Edges = EdgeCriterion::DataDependent;
-    const Triangulation made = Triangulate(scaled.View(), options);
-    EXPECT_EQ(made.LatticeFound, false);
-    return std::vector<Index>(made.Triangles.begin(), made.Triangles.end());
-  };
-  const std::vector<Index> expected = trianglesIn(1.0);
-  EXPECT_GT(expected.size(), 3u * 500u);
-  for (const double unit : { 0x1p-20, 0x1p-6, 0x1p6, 0x1p20 })
-  {
-    EXPECT_EQ(trianglesIn(unit), expected) << unit;
-  }
-}
-
-TEST(Simplify, WithDataDependentEdgesLinesStayEdges)
-{
-  std::mt19937_64 random(9);
-  for (int trial = 0; trial < 40; ++trial)
-  {
-    SCOPED_TRACE(trial);
-    const Cloud cloud = CloudOf(trial % 8, 3000, random);
-    Cloud ends;
-    ConstraintLines lines;
-    for (int k = 0; k < 8; ++k)
-    {
-      const Index id = static_cast<Index>(random() % static_cast<unsigned>(cloud.Count()));
-      const Point2 p = cloud.View().At(id);
-      ends.Add(k % 3 ? p.X : 4e5 + 1000.0 * Uniform(random),
-        k % 3 ? p.Y : 5e6 + 1000.0 * Uniform(random), 20.0 * Uniform(random));
-      lines.Vertices.push_back(k);
-    }
-    lines.Offsets.push_back(8);
-    lines.IsClosed.push_back(0);
-    lines.Cells.push_back(0);
-    lines.Points = ends.View();
-    DelaunayOptions options = WithError(1.0);
-    options.Edges = EdgeCriterion::DataDependent;
-    const ConstrainedTriangulation made = TriangulateConstrained(cloud.View(), lines, options);
-    Cloud whole = cloud;
-    for (const AddedPoint& point : made.Added)
-    {
-      whole.Add(point.Position.X, point.Position.Y, point.Elevation);
-    }
-    Mesh mesh = MeshOfTriangles(whole, made.Result.Triangles);
-    const auto far = ValidateDistance(mesh, whole.View(), 1.0, 0.0, ExemptOf(made.Result));
-    EXPECT_TRUE(far.empty()) << ToString(far);
-    ValidateOptions rules;
-    rules.Delaunay = false;
-    rules.UnusedPoints = &made.Result.UnusedPoints;
-    EXPECT_TRUE(Validate(mesh, rules).empty()) << ToString(Validate(mesh, rules));
-    mesh.ConnectTwins();
-    std::vector<char> flags;
-    EXPECT_EQ(RecoverSegments(mesh, made.Pieces, flags), 0); // none is missing
-  }
-}
-
 TEST(Simplify, EndsWithElevationsAndErrorsBeyondTheRangeOfFloat)
 {
   std::mt19937_64 random(10);
@@ -645,8 +311,8 @@ TEST(Simplify, EndsWithElevationsAndErrorsBeyondTheRangeOfFloat)
         std::int64_t calls = 0;
         options.Monitor = [&calls](double) { return ++calls < 1000; }; // else for ever
         const Triangulation made = Triangulate(cloud.View(), options);
-        const auto far = ValidateDistance(
-          MeshOfTriangles(cloud, made.Triangles), cloud.View(), error, 0.0, ExemptOf(made));
+        const auto far =
+          ValidateDistance(MeshOf(cloud, made), cloud.View(), error, 0.0, ExemptOf(made));
         EXPECT_TRUE(far.empty()) << ToString(far);
       }
     }
@@ -672,8 +338,8 @@ TEST(Simplify, EveryPointIsWithinTheErrorWhereProductsOfCoordinatesLeaveTheRange
       options.UseLattice = LatticeMode::Off;
       options.Edges = edges;
       const Triangulation made = Triangulate(cloud.View(), options);
-      const auto far = ValidateDistance(
-        MeshOfTriangles(cloud, made.Triangles), cloud.View(), 0.3, 0.0, ExemptOf(made));
+      const auto far =
+        ValidateDistance(MeshOf(cloud, made), cloud.View(), 0.3, 0.0, ExemptOf(made));
       EXPECT_TRUE(far.empty()) << ToString(far);
     }
   }
@@ -711,34 +377,10 @@ TEST(Simplify, PointsFarFromTheNodesOfAGivenLatticeAreTriangulatedByCoordinates)
   options.GivenLattice.StepV = { 0.0, 1.0 };
   const Triangulation made = Triangulate(cloud.View(), options);
   EXPECT_FALSE(made.LatticeFound); // long triangles would be inverted
-  const auto far = ValidateDistance(
-    MeshOfTriangles(cloud, made.Triangles), cloud.View(), 1.0, 0.0, ExemptOf(made));
+  const auto far = ValidateDistance(MeshOf(cloud, made), cloud.View(), 1.0, 0.0, ExemptOf(made));
   EXPECT_TRUE(far.empty()) << ToString(far);
   options.GivenLattice.StepU = { 2.0, 0.0 }; // nodes of which points are too far
   EXPECT_THROW(Triangulate(cloud.View(), options), Error);
-}
-
-TEST(Simplify, StopsWhileLinesBecomeEdges)
-{
-  std::mt19937_64 random(11);
-  Cloud cloud;
-  std::vector<Segment> pieces;
-  for (Index i = 0; i < 60000; ++i)
-  {
-    cloud.Add(i % 300 + 0.5 * Uniform(random), i / 300 + 0.5 * Uniform(random));
-    if (i % 300 > 0)
-    {
-      pieces.push_back({ i - 1, i });
-    }
-  }
-  DelaunayOptions options = WithError(1.0);
-  double reached = 0.0;
-  options.Monitor = [&reached](double fraction) {
-    reached = std::max(reached, fraction);
-    return fraction <= 0.2; // where points are placed
-  };
-  EXPECT_THROW(TriangulateFew(cloud.View(), options, pieces), Aborted);
-  EXPECT_LT(reached, 0.22);
 }
 
 TEST(Simplify, ReportsProgressThatRises)

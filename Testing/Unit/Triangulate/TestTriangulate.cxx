@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "HardClouds.h"
 #include "Kernel/Base/Predicates.h"
-#include "Kernel/Triangulate/Triangulate.h"
 #include "Kernel/Base/Threads.h"
+#include "Kernel/Triangulate/Triangulate.h"
 #include "PointSets.h"
 #include "WorkOf.h"
 
@@ -207,31 +208,10 @@ TEST(Delaunay, KeepsEveryRuleOnARotatedLatticeInMapCoordinates)
 TEST(Delaunay, KeepsEveryRuleOnUnevenDensity)
 {
   std::mt19937_64 random(22);
-  Cloud clustered, tracks, rotated, graded, voids;
-  for (int i = 0; i < 5000; ++i)
+  for (const auto& [name, cloud] : UnevenClouds(random))
   {
-    const double angle = 6.283185307179586 * Uniform(random);
-    const double radius = std::pow(Uniform(random), 12.0);
-    clustered.Add(radius * std::cos(angle), radius * std::sin(angle));
-    const double along = 10000.0 * Uniform(random);
-    tracks.Add(along, 100.0 * static_cast<double>(random() % 20) + 0.3 * Uniform(random));
-    const double across = 100.0 * static_cast<double>(random() % 20) + Uniform(random);
-    rotated.Add(0.8 * along - 0.6 * across, 0.6 * along + 0.8 * across);
-    const double u = Uniform(random), v = Uniform(random);
-    if (std::hypot(std::fmod(u, 0.25) - 0.125, std::fmod(v, 0.25) - 0.125) > 0.11)
-    {
-      voids.Add(u, v);
-    }
-    const double x = std::exp2(-30.0 * Uniform(random));
-    graded.Add(x, std::exp2(-30.0 * Uniform(random)));
+    ExpectValid(cloud, name);
   }
-  ExpectValid(clustered, "clustered");
-  ExpectValid(tracks, "ship tracks");
-  ExpectValid(rotated, "ship tracks askew");
-  ExpectValid(graded, "graded");
-  ExpectValid(voids, "voids");
-  clustered.Add(1e12, 3.0);
-  ExpectValid(clustered, "one far outlier");
 }
 
 TEST(Delaunay, KeepsEveryRuleOnPointsARoundoffApart)
@@ -261,24 +241,10 @@ TEST(Delaunay, KeepsEveryRuleOnPointsARoundoffApart)
 TEST(Delaunay, KeepsEveryRuleOnAdversarialPoints)
 {
   std::mt19937_64 random(23);
-  Cloud circle, twoLines, nearLine, spiral, comb, roundoffs;
-  for (int i = 0; i < 600; ++i)
+  for (const auto& [name, cloud] : NearlyDegenerateClouds(random))
   {
-    const double angle = 6.283185307179586 * Uniform(random);
-    circle.Add(std::cos(angle), std::sin(angle));
-    twoLines.Add(static_cast<double>(i), i % 2);
-    nearLine.Add(i, std::ldexp(static_cast<double>(random() % 3), -40) + i);
-    spiral.Add(0.01 * i * std::cos(0.3 * i), 0.01 * i * std::sin(0.3 * i));
-    comb.Add(i / 20, (i % 20) * (i / 20 % 2 ? 1.0 : 0.01));
-    roundoffs.Add(1.0 + std::ldexp(static_cast<double>(random() % 16), -52),
-      1.0 + std::ldexp(static_cast<double>(random() % 16), -52));
+    ExpectValid(cloud, name);
   }
-  ExpectValid(circle, "circle");
-  ExpectValid(twoLines, "two lines");
-  ExpectValid(nearLine, "near a line");
-  ExpectValid(spiral, "spiral");
-  ExpectValid(comb, "comb");
-  ExpectValid(roundoffs, "a few roundoffs apart");
 }
 
 TEST(Delaunay, KeepsEveryRuleInATinyCrowdBesideAHugeCoordinate)

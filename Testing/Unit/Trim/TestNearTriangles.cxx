@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DelaunayMesh.h"
+#include "BoundaryRings.h"
 #include "ErrorMessage.h"
 #include "Surface.h"
 
@@ -18,47 +18,7 @@ using namespace testing_surfaces;
 
 namespace
 {
-Surface RandomSurface(Random& random, int count)
-{
-  std::vector<Point2> points;
-  for (int i = 0; i < count; ++i)
-  {
-    points.push_back({ random.Unit(), random.Unit() });
-  }
-  return SurfaceOf(Delaunay(points));
-}
-
-/** A ring with a lake in it, as rings of points. */
-struct Lines
-{
-  std::vector<Point2> Points;
-  Rings Lines;
-
-  void Add(Random& random, double radius, int corners)
-  {
-    for (int i = 0; i < corners; ++i)
-    {
-      const double angle = 6.283185307179586 * i / corners;
-      const double r = radius * (0.7 + 0.3 * random.Unit());
-      this->Lines.Vertices.push_back(static_cast<Index>(this->Points.size()));
-      this->Points.push_back({ 0.5 + r * std::cos(angle), 0.5 + r * std::sin(angle) });
-    }
-    this->Lines.Offsets.push_back(static_cast<Index>(this->Lines.Vertices.size()));
-  }
-};
-
-/** A surface with the given triangles of another. */
-Surface Chosen(const Surface& surface, const std::vector<Index>& triangles)
-{
-  Surface chosen;
-  chosen.Coordinates = surface.Coordinates;
-  for (const Index t : triangles)
-  {
-    chosen.Corners.insert(
-      chosen.Corners.end(), surface.Corners.begin() + 3 * t, surface.Corners.begin() + 3 * t + 3);
-  }
-  return chosen;
-}
+constexpr Point2 middle{ 0.5, 0.5 };
 
 std::vector<BorderEdge> Sorted(std::vector<BorderEdge> border)
 {
@@ -79,9 +39,9 @@ TEST(NearTriangles, OfPartsAreThoseOfTheWhole)
   for (int round = 0; round < 12; ++round)
   {
     const Surface whole = RandomSurface(random, 50 << round % 6);
-    Lines lines;
-    lines.Add(random, 0.45, 5 + 3 * round);
-    lines.Add(random, 0.2, 4 + round);
+    Boundary lines;
+    lines.Add(Star(random, middle, 0.315, 0.45, 5 + 3 * round));
+    lines.Add(Star(random, middle, 0.14, 0.2, 4 + round));
     const TriangleList list = whole.List();
     const auto expected =
       SweepAlongRings(list, lines.Points, lines.Lines, list.Count, 1, Progress());
@@ -180,9 +140,9 @@ TEST(NearTriangles, AreTrimmedAloneAsInTheWholeMesh)
   for (int round = 0; round < 12; ++round)
   {
     const Surface whole = RandomSurface(random, 100 << round % 5);
-    Lines drawn;
-    drawn.Add(random, 0.45, 5 + 3 * round);
-    drawn.Add(random, 0.2, 4 + round);
+    Boundary drawn;
+    drawn.Add(Star(random, middle, 0.315, 0.45, 5 + 3 * round));
+    drawn.Add(Star(random, middle, 0.14, 0.2, 4 + round));
     const BoundaryLines lines = LinesOf(drawn.Points, drawn.Lines);
     const TriangleList list = whole.List();
     const auto swept = SweepAlongRings(list, drawn.Points, drawn.Lines, list.Count, 1, Progress());
@@ -226,15 +186,15 @@ TEST(NearTriangles, MayAllBeOutward)
 {
   Random random(33);
   const Surface none;
-  Lines drawn;
-  drawn.Add(random, 0.3, 9);
+  Boundary drawn;
+  drawn.Add(Star(random, middle, 0.21, 0.3, 9));
   const BoundaryLines lines = LinesOf(drawn.Points, drawn.Lines);
   TrimOptions options;
   const std::vector<BorderEdge> border;
   const Trimmed trimmed = TrimNear(none.List(), lines, border, options);
   EXPECT_EQ(trimmed.Boundary.Vertices, drawn.Lines.Vertices);
   EXPECT_EQ(trimmed.NumberOfOutwardTriangles, 0);
-  Lines beside = drawn;
+  Boundary beside = drawn;
   for (Point2& p : beside.Points)
   {
     p.X += 10.0;

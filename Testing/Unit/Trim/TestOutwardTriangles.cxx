@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "BoundaryRings.h"
 #include "DelaunayMesh.h"
 #include "ErrorMessage.h"
 #include "Location.h"
@@ -55,35 +56,6 @@ void AddRing(const Mesh& mesh, const std::vector<Point2>& places, Rings& rings)
   rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
 }
 
-double KeptTwiceArea(const Mesh& mesh, const std::vector<char>& isOutward)
-{
-  double area = 0.0;
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    area += isOutward[t] ? 0.0 : TwiceArea(mesh, t);
-  }
-  return area;
-}
-
-/** Whether a triangle is inside, by the even-odd rule for its middle, at three times the scale. */
-bool MiddleIsInside(const Mesh& mesh, const Rings& rings, Index t)
-{
-  std::vector<Point2> points = mesh.Points;
-  Point2 middle{ 0, 0 };
-  for (Index h = 3 * t; h < 3 * t + 3; ++h)
-  {
-    middle.X += mesh.PointOf(mesh.Origin(h)).X;
-    middle.Y += mesh.PointOf(mesh.Origin(h)).Y;
-  }
-  for (Point2& p : points)
-  {
-    p = { 3 * p.X, 3 * p.Y };
-  }
-  const Location location = Locate(points, rings, middle);
-  EXPECT_NE(location, Location::On);
-  return location == Location::Inside;
-}
-
 std::string MessageOf(Mesh mesh, const Rings& rings, bool recover)
 {
   return testing_errors::MessageFrom([&]() { FindOutward(mesh, rings, recover); });
@@ -101,25 +73,10 @@ TEST(FindOutward, KeepsExactlyTheInsideOfNestedRings)
   AddRing(mesh, { { 5, 5 }, { 6, 13 }, { 14, 14 }, { 13, 6 } }, rings); // lake, clockwise
   AddRing(mesh, { { 7, 7 }, { 11, 8 }, { 8, 11 } }, rings);             // island
   AddRing(mesh, { { 8, 8 }, { 9, 8 }, { 8, 9 } }, rings);               // pond
-  const auto twice = [](const std::vector<Point2>& ring) {
-    double area = 0.0;
-    for (std::size_t i = 0; i < ring.size(); ++i)
-    {
-      const Point2& p = ring[i];
-      const Point2& q = ring[(i + 1) % ring.size()];
-      area += p.X * q.Y - p.Y * q.X;
-    }
-    return std::abs(area);
-  };
   double expected = 0.0;
   for (Index ring = 0; ring < rings.Count(); ++ring)
   {
-    std::vector<Point2> places;
-    for (const Index* v = rings.Begin(ring); v != rings.End(ring); ++v)
-    {
-      places.push_back(mesh.PointOf(*v));
-    }
-    expected += (ring % 2 ? -1 : 1) * twice(places);
+    expected += (ring % 2 ? -1 : 1) * std::fabs(TwiceArea(mesh.Points, rings, ring));
   }
   const Index count = mesh.NumberOfTriangles();
   const OutwardTriangles trimmed = FindOutward(mesh, rings, true);
@@ -130,7 +87,7 @@ TEST(FindOutward, KeepsExactlyTheInsideOfNestedRings)
   EXPECT_LE(trimmed.NumberOfRecoveredEdges, 14);
   for (Index t = 0; t < count; ++t)
   {
-    EXPECT_EQ(MiddleIsInside(mesh, rings, t), !trimmed.IsOutward[t]);
+    EXPECT_EQ(IsInside(mesh, mesh.Points, rings, t), !trimmed.IsOutward[t]);
   }
 }
 
@@ -168,7 +125,7 @@ TEST(FindOutward, OfRandomTriangleRingsAgreesWithTheEvenOddRule)
     const RingLocator locator(mesh.Points, rings);
     for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
     {
-      const bool isInside = MiddleIsInside(mesh, rings, t);
+      const bool isInside = IsInside(mesh, mesh.Points, rings, t);
       ASSERT_EQ(isInside, !trimmed.IsOutward[t]);
       // Also when all corners of the triangle are on the rings.
       ASSERT_EQ(isInside,
@@ -287,18 +244,8 @@ TEST(FindOutward, AlongTheExtractedBoundaryKeepsWhatWasFoundAsSurface)
     const ExtractedBoundary boundary = ExtractBoundary(mesh, options);
     ASSERT_GT(boundary.Vertices.Count(), 0);
     const OutwardTriangles trimmed = FindOutward(mesh, boundary.Vertices, false);
-    double area = 0.0; // around surface counter-clockwise, around lakes clockwise
-    for (Index ring = 0; ring < boundary.Vertices.Count(); ++ring)
-    {
-      for (Index i = 0; i < boundary.Vertices.Size(ring); ++i)
-      {
-        const Point2& p = mesh.PointOf(boundary.Vertices.Begin(ring)[i]);
-        const Point2& q =
-          mesh.PointOf(boundary.Vertices.Begin(ring)[(i + 1) % boundary.Vertices.Size(ring)]);
-        area += p.X * q.Y - p.Y * q.X;
-      }
-    }
-    ASSERT_EQ(KeptTwiceArea(mesh, trimmed.IsOutward), area);
+    // Around surface they run counter-clockwise, around lakes clockwise.
+    ASSERT_EQ(KeptTwiceArea(mesh, trimmed.IsOutward), TwiceArea(mesh.Points, boundary.Vertices));
   }
 }
 
@@ -356,29 +303,14 @@ std::vector<char> WalkAlong(const Mesh& mesh, const Rings& rings)
   return isOutward;
 }
 
-/** A closed curve around the middle of the unit square. */
-std::vector<Point2> Star(Random& random, double least, double most, int corners, bool isClockwise)
-{
-  std::vector<Point2> ring;
-  for (int i = 0; i < corners; ++i)
-  {
-    const double angle = 6.283185307179586 * (i + 0.5 * random.Unit()) / corners;
-    const double radius = least + (most - least) * random.Unit();
-    ring.push_back({ 0.5 + radius * std::cos(angle), 0.5 + radius * std::sin(angle) });
-  }
-  if (isClockwise)
-  {
-    std::reverse(ring.begin(), ring.end());
-  }
-  return ring;
-}
-
 /** A star with a lake, and points around: everywhere, or on the surface alone. */
 Mesh MakeStar(Random& random, int count, bool everywhere, Rings& rings)
 {
-  std::vector<Point2> points = Star(random, 0.25, 0.5, 10 + random.Below(40), true);
+  const Point2 middle{ 0.5, 0.5 };
+  std::vector<Point2> points = Star(random, middle, 0.25, 0.5, 10 + random.Below(40));
+  std::reverse(points.begin(), points.end()); // clockwise, as the walk needs it
   const Index first = static_cast<Index>(points.size());
-  const std::vector<Point2> lake = Star(random, 0.1, 0.2, 5 + random.Below(15), false);
+  const std::vector<Point2> lake = Star(random, middle, 0.1, 0.2, 5 + random.Below(15));
   points.insert(points.end(), lake.begin(), lake.end());
   rings.Offsets = { 0, first, static_cast<Index>(points.size()) };
   for (Index v = 0; v < rings.Offsets[2]; ++v)

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "BoundaryRings.h"
 #include "DelaunayMesh.h"
 #include "ErrorMessage.h"
 #include "Location.h"
@@ -44,17 +45,6 @@ BoundaryLines MakeLines(
     lines.Cells.push_back(static_cast<Index>(10 + i));
   }
   return lines;
-}
-
-/** A 4 x 4 lattice, point x + 4 y at (x, y). */
-Mesh Lattice4()
-{
-  std::vector<Point2> points;
-  for (int i = 0; i < 16; ++i)
-  {
-    points.push_back({ static_cast<double>(i % 4), static_cast<double>(i / 4) });
-  }
-  return Delaunay(points);
 }
 
 std::string MessageOf(const BoundaryLines& lines)
@@ -154,7 +144,7 @@ TEST(RingLocator, AgreesWithEveryEdgeAsked)
 
 TEST(JoinLines, TakesClosedLinesPolygonsAndChains)
 {
-  const Mesh mesh = Lattice4();
+  const Mesh mesh = LatticeMesh(4); // point x + 4 y at (x, y)
   Rings joined = JoinLines(MakeLines(mesh.Points, { { 0, 3, 15, 12, 0 } }, false));
   EXPECT_EQ(joined.Vertices, (std::vector<Index>{ 0, 3, 15, 12 }));
   joined = JoinLines(MakeLines(mesh.Points, { { 5, 6, 10 }, { 0, 3, 15 } }, true));
@@ -178,7 +168,7 @@ TEST(JoinLines, TakesClosedLinesPolygonsAndChains)
 
 TEST(JoinLines, TakesARingThatIsThereTwiceOnce)
 {
-  std::vector<Point2> points = Lattice4().Points;
+  std::vector<Point2> points = LatticeMesh(4).Points;
   points.push_back({ 3.0, -0.0 }); // again, as point 16
   Message repeated;
   Rings joined =
@@ -204,7 +194,7 @@ TEST(JoinLines, TakesARingThatIsThereTwiceOnce)
 TEST(JoinLines, TakesLooseEdgesOfParcelsInAnyOrder)
 {
   // Two parcels side by side, cut into edges, so that the one they share is there twice.
-  const Mesh mesh = Lattice4();
+  const Mesh mesh = LatticeMesh(4); // point x + 4 y at (x, y)
   std::vector<std::vector<Index>> edges{ { 1, 9 }, { 9, 1 }, { 9, 8 }, { 8, 0 }, { 0, 1 }, { 1, 3 },
     { 3, 11 }, { 11, 9 } };
   Random random(17);
@@ -240,7 +230,7 @@ TEST(JoinLines, DoesNotLetRingsCrossWhereManyLinesEnd)
   mesh.Points = { { -9, -9 }, { 9, -9 }, { 9, 9 }, { -9, 9 } };
   mesh.Triangles = { 0, 1, 2, 0, 2, 3 };
   mesh.ConnectTwins();
-  const std::vector<Point2> points = Lattice4().Points;
+  const std::vector<Point2> points = LatticeMesh(4).Points;
   Random random(18);
   for (int round = 0; round < 2000; ++round)
   {
@@ -275,7 +265,7 @@ TEST(JoinLines, DoesNotLetRingsCrossWhereManyLinesEnd)
 
 TEST(JoinLines, RefusesWhatIsNoBoundaryByName)
 {
-  const std::vector<Point2> points = Lattice4().Points;
+  const std::vector<Point2> points = LatticeMesh(4).Points;
   EXPECT_HAS(MessageOf(MakeLines(points, {}, false)), "no line and no polygon");
   std::string message = MessageOf(MakeLines(points, { { 0, 3, 15, 0 }, { 5, 6, 10 } }, false));
   EXPECT_HAS(message, "not closed: line (cell 11) ends at point 5 (1, 1)");

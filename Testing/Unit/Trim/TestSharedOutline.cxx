@@ -115,13 +115,7 @@ Joined Join(const Surface& surface, const std::vector<std::vector<Index>>& parts
   options.Grid = grid;
   for (const std::vector<Index>& triangles : parts)
   {
-    Surface own;
-    own.Coordinates = surface.Coordinates;
-    for (const Index t : triangles)
-    {
-      own.Corners.insert(
-        own.Corners.end(), surface.Corners.begin() + 3 * t, surface.Corners.begin() + 3 * t + 3);
-    }
+    const Surface own = Chosen(surface, triangles);
     OutlinePart part;
     if (!FindOutlinePart(own.List(), margin, options, part))
     {
@@ -166,7 +160,7 @@ TEST(OutlineOfParts, IsThatOfTheWhole)
   for (int round = 0; round < 60; ++round)
   {
     const int count = 100 + 200 * round % 15000;
-    const Surface surface = SurfaceOf(Delaunay(Torn(random, Cloud(random, round % 4, count))));
+    const Surface surface = SurfaceOf(Torn(random, Cloud(random, round % 4, count)));
     TrimOptions options;
     options.GapTolerance = round % 5 == 0 ? 3.0 : 0.0;
     if (round % 4 == 1)
@@ -223,17 +217,16 @@ TEST(OutlineOfParts, DecidesBySpacingOnlyTrianglesWhoseSpacingsAreAllKnown)
   Index decided = 0, open = 0;
   for (int round = 0; round < 40; ++round)
   {
-    const Surface surface = SurfaceOf(Delaunay(Torn(random, Cloud(random, 2, 2000))));
-    Surface half;
-    half.Coordinates = surface.Coordinates;
+    const Surface surface = SurfaceOf(Torn(random, Cloud(random, 2, 2000)));
+    std::vector<Index> low;
     for (Index t = 0; t < surface.List().Count; ++t)
     {
-      const auto corners = surface.Corners.begin() + 3 * t;
-      if (surface.At(*corners).Y < 0.5)
+      if (surface.At(surface.Corners[3 * t]).Y < 0.5)
       {
-        half.Corners.insert(half.Corners.end(), corners, corners + 3);
+        low.push_back(t);
       }
     }
+    const Surface half = Chosen(surface, low);
     OutlinePart part;
     ASSERT_TRUE(FindOutlinePart(half.List(), 4, ExtractOptions(), part));
     for (std::size_t i = 0; i < part.Triangles.size(); ++i)
@@ -255,7 +248,7 @@ TEST(OutlineOfParts, DecidesBySpacingOnlyTrianglesWhoseSpacingsAreAllKnown)
 TEST(OutlineOfParts, NeedsFewTrianglesOfALargeSurface)
 {
   Random random(42);
-  const Surface surface = SurfaceOf(Delaunay(Cloud(random, 0, 60000)));
+  const Surface surface = SurfaceOf(Cloud(random, 0, 60000));
   const TriangleList list = surface.List();
   const Joined parts = Join(surface, Split(random, surface, 0), 0.0);
   EXPECT_LT(static_cast<Index>(parts.Triangles.size()), list.Count / 2);

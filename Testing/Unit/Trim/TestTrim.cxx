@@ -1,149 +1,25 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "BoundaryRings.h"
 #include "DelaunayMesh.h"
 #include "ErrorMessage.h"
 #include "Surface.h"
+#include "TrimmedSurface.h"
 
 #include "Kernel/Mesh/Holes.h"
 #include "Kernel/Mesh/TriangleSweep.h"
-#include "Kernel/Trim/Outline.h"
 #include "Kernel/Trim/OutwardTriangles.h"
 #include "Kernel/Trim/Trim.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
 using namespace elevation;
 using namespace testing_surfaces;
 
 namespace
 {
-
-Surface SurfaceOf(const std::vector<Point2>& points)
-{
-  return testing_surfaces::SurfaceOf(Delaunay(points));
-}
-
-Surface RandomSurface(Random& random, int count)
-{
-  std::vector<Point2> points;
-  for (int i = 0; i < count; ++i)
-  {
-    points.push_back({ random.Unit(), random.Unit() });
-  }
-  return SurfaceOf(points);
-}
-
-/** Takes out the triangles with the flag. */
-void Remove(Surface& surface, const std::function<bool(double, double)>& isOut)
-{
-  std::vector<Index> corners;
-  for (std::size_t h = 0; h < surface.Corners.size(); h += 3)
-  {
-    double x = 0.0, y = 0.0;
-    for (std::size_t i = h; i < h + 3; ++i)
-    {
-      x += surface.At(surface.Corners[i]).X / 3.0;
-      y += surface.At(surface.Corners[i]).Y / 3.0;
-    }
-    if (!isOut(x, y))
-    {
-      corners.insert(corners.end(), surface.Corners.begin() + h, surface.Corners.begin() + h + 3);
-    }
-  }
-  surface.Corners = corners;
-}
-
-void Shuffle(Surface& surface, Random& random)
-{
-  std::vector<std::array<Index, 3>> triangles;
-  for (std::size_t h = 0; h < surface.Corners.size(); h += 3)
-  {
-    const Index* t = &surface.Corners[h];
-    const int first = random.Below(3);
-    triangles.push_back({ { t[first], t[(first + 1) % 3], t[(first + 2) % 3] } });
-  }
-  random.Shuffle(triangles);
-  surface.Corners.clear();
-  for (const std::array<Index, 3>& t : triangles)
-  {
-    surface.Corners.insert(surface.Corners.end(), t.begin(), t.end());
-  }
-}
-
-struct Boundary
-{
-  std::vector<Point2> Points;
-  Rings Lines;
-
-  void Add(const std::vector<Point2>& ring)
-  {
-    for (const Point2& p : ring)
-    {
-      this->Lines.Vertices.push_back(static_cast<Index>(this->Points.size()));
-      this->Points.push_back(p);
-    }
-    this->Lines.Offsets.push_back(static_cast<Index>(this->Lines.Vertices.size()));
-  }
-};
-
-std::vector<Point2> Star(Random& random, Point2 middle, double radius, int corners)
-{
-  std::vector<Point2> ring;
-  const double turn = random.Unit();
-  for (int i = 0; i < corners; ++i)
-  {
-    const double angle = 6.283185307179586 * (i + turn) / corners;
-    const double r = radius * (0.7 + 0.3 * random.Unit());
-    ring.push_back({ middle.X + r * std::cos(angle), middle.Y + r * std::sin(angle) });
-  }
-  return ring;
-}
-
-/** Everything that comes of trimming. */
-struct Everything
-{
-  std::vector<Index> Corners[2]; ///< of the triangles kept, and of the outward ones
-  std::vector<Index> Parents[2];
-  Index NumberOfRecoveredEdges = 0;
-  std::vector<double> Inserted;
-
-  bool operator==(const Everything& other) const
-  {
-    return this->Corners[0] == other.Corners[0] && this->Corners[1] == other.Corners[1] &&
-      this->Parents[0] == other.Parents[0] && this->Parents[1] == other.Parents[1] &&
-      this->NumberOfRecoveredEdges == other.NumberOfRecoveredEdges &&
-      this->Inserted == other.Inserted;
-  }
-
-  void Add(const std::vector<InsertedVertex>& inserted, const std::vector<Point2>& places)
-  {
-    for (std::size_t i = 0; i < inserted.size(); ++i)
-    {
-      this->Inserted.insert(this->Inserted.end(), { places[i].X, places[i].Y });
-      for (int k = 0; k < 3; ++k)
-      {
-        this->Inserted.push_back(inserted[i].Corners[k]);
-        this->Inserted.push_back(inserted[i].Weights[k]);
-      }
-    }
-  }
-};
-
-Mesh MeshOf(const Surface& surface)
-{
-  Mesh mesh;
-  mesh.Triangles = surface.Corners;
-  for (Index i = 0; i < surface.List().Points.Count; ++i)
-  {
-    mesh.Points.push_back(surface.At(i));
-  }
-  mesh.ConnectTwins();
-  return mesh;
-}
-
 /** Step by step, in a mesh of all triangles. @throws Error */
 Everything TrimStepByStep(const Surface& surface, const Boundary& boundary, bool recover,
   BoundaryEdges edges = BoundaryEdges::FollowSurface)
@@ -171,28 +47,6 @@ Everything TrimStepByStep(const Surface& surface, const Boundary& boundary, bool
   return everything;
 }
 
-Everything EverythingOf(const Surface& surface, const Trimmed& trimmed)
-{
-  Everything everything;
-  const TrimmedSide* const sides[2] = { &trimmed.Kept, &trimmed.Outward };
-  for (int side = 0; side < 2; ++side)
-  {
-    everything.Corners[side].assign(sides[side]->Corners.begin(), sides[side]->Corners.end());
-    if (sides[side]->IsWholeList)
-    {
-      EXPECT_TRUE(everything.Corners[side].empty());
-      everything.Corners[side] = surface.Corners;
-    }
-    everything.Parents[side].assign(sides[side]->Parents.begin(), sides[side]->Parents.end());
-    EXPECT_EQ(everything.Corners[side].size(), 3 * everything.Parents[side].size());
-  }
-  EXPECT_EQ(
-    static_cast<std::size_t>(trimmed.NumberOfOutwardTriangles), everything.Parents[1].size());
-  everything.NumberOfRecoveredEdges = trimmed.NumberOfRecoveredEdges;
-  everything.Add(trimmed.Inserted, trimmed.Places);
-  return everything;
-}
-
 /** @throws Error */
 Everything TrimAlong(const Surface& surface, const Boundary& boundary, bool recover = true,
   int threads = 1, BoundaryEdges edges = BoundaryEdges::FollowSurface)
@@ -207,13 +61,6 @@ Everything TrimAlong(const Surface& surface, const Boundary& boundary, bool reco
   EXPECT_EQ(trimmed.Boundary.Offsets, boundary.Lines.Offsets);
   EXPECT_EQ(trimmed.GapTolerance, 0.0);
   return EverythingOf(surface, trimmed);
-}
-
-/** The surface with one triangle clockwise, so that all of it is turned and proven first. */
-Surface Turned(Surface surface, std::size_t triangle)
-{
-  std::swap(surface.Corners[3 * triangle + 1], surface.Corners[3 * triangle + 2]);
-  return surface;
 }
 
 /** Trim() gives what its steps give, in whatever order triangles and corners are. */
@@ -242,68 +89,11 @@ void ExpectSame(const Surface& surface, const Boundary& boundary, Random& random
   EXPECT_TRUE(EverythingOf(rounded, trimmed) == TrimAlong(rounded, boundary));
 }
 
-/**
- * What is extracted is the outline of the mesh, and what is trimmed by it is what is not surface.
- */
-Rings ExpectSameOutline(const Surface& surface, double tolerance)
-{
-  Mesh mesh = MeshOf(surface);
-  ExtractOptions extraction;
-  extraction.GapTolerance = tolerance;
-  const ExtractedBoundary expected = ExtractBoundary(mesh, extraction);
-  if (expected.Vertices.Count() == 0)
-  {
-    TrimOptions options;
-    options.GapTolerance = tolerance;
-    EXPECT_HAS(testing_errors::MessageFrom([&] { Trim(surface.List(), nullptr, options); }),
-      "leaves out every point: at a gap tolerance of");
-    return Rings();
-  }
-  Everything all;
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    const int side = !expected.IsSurface[t];
-    all.Corners[side].insert(
-      all.Corners[side].end(), mesh.Triangles.begin() + 3 * t, mesh.Triangles.begin() + 3 * t + 3);
-    all.Parents[side].push_back(t);
-  }
-  for (const int threads : { 1, 3, 0 })
-  {
-    TrimOptions options;
-    options.GapTolerance = tolerance;
-    options.NumberOfThreads = threads;
-    // Once more as no sweep takes it.
-    const Surface other = threads > 0 ? surface : Turned(surface, 0);
-    const Trimmed trimmed = Trim(other.List(), nullptr, options);
-    EXPECT_EQ(trimmed.GapTolerance, expected.GapTolerance);
-    EXPECT_EQ(trimmed.NumberOfPointsLeftOut, expected.NumberOfPointsLeftOut);
-    EXPECT_EQ(trimmed.Boundary.Offsets, expected.Vertices.Offsets);
-    EXPECT_EQ(trimmed.Boundary.Vertices, expected.Vertices.Vertices);
-    EXPECT_TRUE(EverythingOf(other, trimmed) == all);
-  }
-  if (expected.Vertices.Count() > 0)
-  {
-    const OutwardTriangles outward = FindOutward(mesh, expected.Vertices, true);
-    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-    {
-      EXPECT_NE(outward.IsOutward[t], expected.IsSurface[t]);
-    }
-    EXPECT_EQ(outward.NumberOfRecoveredEdges, 0);
-  }
-  return expected.Vertices;
-}
-
 std::string MessageOf(
   const Surface& surface, const Boundary& boundary, bool recover = true, int threads = 1)
 {
   return MessageOfTrim(surface, boundary.Points, boundary.Lines, recover, threads);
 }
-
-std::string MessageOfExtraction(const Surface& surface)
-{
-  return testing_errors::MessageFrom([&]() { Trim(surface.List(), nullptr, TrimOptions()); });
-}
-
 } // namespace
 
 TEST(Trim, TakesAHundredRings)
@@ -313,7 +103,8 @@ TEST(Trim, TakesAHundredRings)
   Boundary boundary;
   for (int i = 0; i < 100; ++i)
   {
-    boundary.Add(Star(random, { 0.05 + 0.1 * (i % 10), 0.05 + 0.1 * (i / 10) }, 0.045, 3 + i % 20));
+    boundary.Add(
+      Star(random, { 0.05 + 0.1 * (i % 10), 0.05 + 0.1 * (i / 10) }, 0.0315, 0.045, 3 + i % 20));
   }
   ExpectSame(surface, boundary, random);
 }
@@ -325,9 +116,9 @@ TEST(Trim, IsTheSameAsStepByStepAlongRingsAnywhere)
   {
     const Surface surface = RandomSurface(random, 200 + 400 * round);
     Boundary boundary;
-    boundary.Add(Star(random, { 0.5, 0.5 }, 0.45, 3 + 5 * round));
-    boundary.Add(Star(random, { 0.5, 0.5 }, 0.2, 3 + round));  // a lake
-    boundary.Add(Star(random, { 0.5, 0.5 }, 0.05, 3 + round)); // an island in it
+    boundary.Add(Star(random, { 0.5, 0.5 }, 0.315, 0.45, 5 + 5 * round));
+    boundary.Add(Star(random, { 0.5, 0.5 }, 0.14, 0.2, 4 + round));   // a lake
+    boundary.Add(Star(random, { 0.5, 0.5 }, 0.035, 0.05, 3 + round)); // an island in it
     ExpectSame(surface, boundary, random);
   }
 }
@@ -359,8 +150,8 @@ TEST(Trim, IsTheSameForPartsHolesAndRingsThatLeaveTheMesh)
         (std::hypot(x - 0.2, y - 0.3) < 0.15 && std::hypot(x - 0.2, y - 0.3) > 0.05);
     });
     Boundary boundary;
-    boundary.Add(Star(random, { 0.4, 0.4 }, 0.9, 9));
-    boundary.Add(Star(random, { 0.7, 0.5 }, 0.2, 7));
+    boundary.Add(Star(random, { 0.4, 0.4 }, 0.63, 0.9, 9));
+    boundary.Add(Star(random, { 0.7, 0.5 }, 0.14, 0.2, 7));
     ExpectSame(surface, boundary, random);
   }
 }
@@ -416,7 +207,7 @@ TEST(Trim, LongTrianglesAreNotTakenForTheirCorners)
   }
   points.insert(points.end(), { { -50, 0.5 }, { 60, 0.4 }, { 0.5, 70 } });
   Boundary small;
-  small.Add(Star(random, { 0.5, 0.5 }, 0.3, 40));
+  small.Add(Star(random, { 0.5, 0.5 }, 0.21, 0.3, 40));
   ExpectSame(SurfaceOf(points), small, random);
 }
 
@@ -424,8 +215,8 @@ TEST(Trim, IsTheSameOnSeveralThreads)
 {
   Random random(81);
   Boundary boundary;
-  boundary.Add(Star(random, { 0.5, 0.5 }, 0.45, 60));
-  boundary.Add(Star(random, { 0.5, 0.5 }, 0.1, 30));
+  boundary.Add(Star(random, { 0.5, 0.5 }, 0.315, 0.45, 60));
+  boundary.Add(Star(random, { 0.5, 0.5 }, 0.07, 0.1, 30));
   Surface surface = RandomSurface(random, 12000);
   // As they are, threads share the vertices of one row; dealt out in turns, those of many.
   for (const std::size_t dealt : { 1, 2, 40 })
@@ -488,12 +279,12 @@ TEST(SplitAlong, MakesLinesThatCrossChainsOfEdges)
     const Everything everything = EverythingOf(surface, split);
     EXPECT_TRUE(everything.Corners[1].empty());
     Mesh mesh = MeshOf(surface);
-    const double area = testing_surfaces::TwiceArea(mesh);
+    const double area = TwiceArea(mesh);
     mesh.Points.insert(mesh.Points.end(), split.Places.begin(), split.Places.end());
     mesh.Triangles = everything.Corners[0];
     mesh.ConnectTwins();
     ASSERT_EQ(FindingsOf(mesh), "");
-    EXPECT_NEAR(testing_surfaces::TwiceArea(mesh), area, 1e-12);
+    EXPECT_NEAR(TwiceArea(mesh), area, 1e-12);
     // No edge crosses a line: each has both ends on it, within rounding, or on one side.
     for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
     {
@@ -517,7 +308,7 @@ TEST(Trim, RefusesByNameWhatIsNoSurfaceOrNoBoundary)
   Random random(76);
   const Surface surface = RandomSurface(random, 2000);
   Boundary boundary;
-  boundary.Add(Star(random, { 0.5, 0.5 }, 0.3, 12));
+  boundary.Add(Star(random, { 0.5, 0.5 }, 0.21, 0.3, 12));
   ASSERT_EQ(MessageOf(surface, boundary), "no error");
   EXPECT_HAS(MessageOf(surface, boundary, false), "is not a corner of the mesh");
   const std::size_t last = surface.Corners.size() - 3;
@@ -575,220 +366,12 @@ TEST(Trim, RefusesByNameWhatIsNoSurfaceOrNoBoundary)
   EXPECT_EQ(MessageOf(Surface(), boundary), "no error");
 }
 
-TEST(TrimAlongTheOutline, IsTheSameAsExtractBoundary)
-{
-  Random random(78);
-  const auto isSea = [](double x, double y) {
-    return x < 0.1 + 0.05 * std::sin(20 * y) || std::hypot(x - 0.5, y - 0.4) < 0.15 ||
-      std::fabs(x - y) < 0.04;
-  };
-  for (int round = 0; round < 8; ++round)
-  {
-    // Random points, then the nodes of a lattice; with islands and lone points at sea.
-    std::vector<Point2> points;
-    for (const Point2& p : LatticePoints(random, 90, 90, 3000 + 400 * round))
-    {
-      const Point2 q =
-        round % 2 ? Point2{ p.X / 90, p.Y / 90 } : Point2{ random.Unit(), random.Unit() };
-      if (!isSea(q.X, q.Y) || random.Below(40) == 0)
-      {
-        points.push_back(q);
-      }
-    }
-    Surface surface = SurfaceOf(points);
-    for (const double tolerance : { 0.0, 1.5, 2.5, 8.0, 1e-9, 1e9 })
-    {
-      ExpectSameOutline(surface, tolerance);
-    }
-    EXPECT_GT(ExpectSameOutline(surface, 0.0).Count(), 1);
-    Remove(surface, [](double x, double y) {
-      return std::hypot(x - 0.7, y - 0.8) < 0.1 || std::fabs(x - 0.4) < 0.02;
-    });
-    ExpectSameOutline(surface, 0.0);
-    if (round < 2)
-    {
-      Surface shuffled = surface;
-      Shuffle(shuffled, random);
-      ExpectSameOutline(shuffled, 0.0);
-    }
-  }
-}
-
-/** Lists triangles, as far as possible, by closed fans. @return how many of these there are */
-int DealOutStars(Surface& surface)
-{
-  const Index count = surface.List().Count;
-  std::vector<std::vector<Index>> at(surface.List().Points.Count); // half-edges that leave a vertex
-  for (Index h = 0; h < 3 * count; ++h)
-  {
-    at[surface.Corners[h]].push_back(h);
-  }
-  std::vector<char> isListed(count, 0);
-  std::vector<Index> corners;
-  int stars = 0;
-  for (Index v = 0; v < surface.List().Points.Count; ++v)
-  {
-    std::vector<Index> star;
-    const auto cornerAfter = [&](Index h, int steps) {
-      return surface.Corners[Mesh::Triangle(h) * 3 + (h + steps) % 3];
-    };
-    Index next = at[v].empty() ? None : cornerAfter(at[v][0], 1);
-    for (std::size_t i = 0; i < at[v].size() && next != None; ++i)
-    {
-      const auto h = std::find_if(at[v].begin(), at[v].end(), [&](Index other) {
-        return cornerAfter(other, 1) == next && !isListed[Mesh::Triangle(other)];
-      });
-      next = h == at[v].end() ? None : cornerAfter(*h, 2);
-      if (next != None)
-      {
-        star.push_back(*h);
-      }
-    }
-    if (star.size() == at[v].size() && !star.empty() && next == cornerAfter(star[0], 1))
-    {
-      ++stars;
-      for (const Index h : star)
-      {
-        isListed[Mesh::Triangle(h)] = 1;
-        corners.insert(corners.end(), { v, cornerAfter(h, 1), cornerAfter(h, 2) });
-      }
-    }
-  }
-  for (Index t = 0; t < count; ++t)
-  {
-    if (!isListed[t])
-    {
-      corners.insert(
-        corners.end(), surface.Corners.begin() + 3 * t, surface.Corners.begin() + 3 * t + 3);
-    }
-  }
-  surface.Corners = corners;
-  return stars;
-}
-
-/** A visitor of a sweep that only looks. */
-struct Nobody
-{
-  using Vertex = SweptVertex;
-  void Begin(const Vertex&, const Vertex&) {}
-  void Visit(Index, const Vertex&, const Vertex&, const Vertex&) {}
-};
-
-TEST(TriangleSweep, ClosedFansLeaveNoSlit)
-{
-  Surface surface;
-  surface.Coordinates = { 0, 0, 0 };
-  for (int i = 0; i < 6; ++i)
-  {
-    const double angle = 1.0471975511965976 * i;
-    surface.Coordinates.insert(
-      surface.Coordinates.end(), { std::cos(angle), std::sin(angle), 0.0 });
-    surface.Corners.insert(surface.Corners.end(), { 0, 1 + i, 1 + (i + 1) % 6 });
-  }
-  const TriangleList list = surface.List();
-  TriangleSweep<Nobody> sweep(list, 1);
-  ASSERT_TRUE(sweep.Run(Nobody(), Progress()));
-  EXPECT_EQ(sweep
-              .Border(
-                7, Progress(), [](Index id) { return id; }, [](Index, const SweptVertex*) {})
-              .size(),
-    6u);
-
-  Random random(84);
-  for (int round = 0; round < 12; ++round)
-  {
-    surface = RandomSurface(random, 1000);
-    EXPECT_GT(DealOutStars(surface), 100);
-    for (const double tolerance : { 0.0, 2.0, 6.0 })
-    {
-      ExpectSameOutline(surface, tolerance);
-    }
-  }
-}
-
-TEST(TriangleSweep, ReportsWhileItGoesThroughWhatIsPutOff)
-{
-  // Every other row of squares first, so that both halves of the list share all vertices.
-  constexpr Index side = 300;
-  Surface surface;
-  for (Index i = 0; i < (side + 1) * (side + 1); ++i)
-  {
-    surface.Coordinates.insert(surface.Coordinates.end(),
-      { static_cast<double>(i % (side + 1)), static_cast<double>(i / (side + 1)), 0.0 });
-  }
-  for (Index i = 0; i < side * side; ++i)
-  {
-    const Index row = i / side < side / 2 ? 2 * (i / side) : 2 * (i / side - side / 2) + 1;
-    const Index v = row * (side + 1) + i % side, above = v + side + 1;
-    surface.Corners.insert(surface.Corners.end(), { v, v + 1, above + 1, v, above + 1, above });
-  }
-  const TriangleList list = surface.List();
-  TriangleSweep<Nobody> sweep(list, 2);
-  int reports = 0; // in the last tenth, where that is
-  ASSERT_TRUE(sweep.Run(Nobody(), [&reports](double done) {
-    reports += done >= 0.9;
-    return true;
-  }));
-  EXPECT_GE(reports, sweep.NumberOfRanges() > 1 ? list.Count / 20000 : 0);
-  EXPECT_EQ(sweep
-              .Border(
-                list.Points.Count, Progress(), [](Index id) { return id; },
-                [](Index, const SweptVertex*) {})
-              .size(),
-    4u * side);
-}
-
-TEST(TrimAlongTheOutline, SeesAllOfASmallPiece)
-{
-  // A lattice, and apart from it six points: a triangle in another one. The inner one is not near
-  // the border, but the piece is too small.
-  std::vector<Point2> points;
-  for (int i = 0; i < 900; ++i)
-  {
-    points.push_back({ static_cast<double>(i % 30), static_cast<double>(i / 30) });
-  }
-  Surface surface = SurfaceOf(points);
-  const Index first = 900;
-  surface.Coordinates.insert(surface.Coordinates.end(), { 100, 0, 0, 102, 0, 0, 101, 1.8, 0 });
-  surface.Coordinates.insert(
-    surface.Coordinates.end(), { 100.8, 0.5, 0, 101.2, 0.5, 0, 101, 0.8, 0 });
-  for (const Index corner : { 0, 1, 3, 1, 4, 3, 1, 2, 4, 2, 5, 4, 2, 0, 5, 0, 3, 5, 3, 4, 5 })
-  {
-    surface.Corners.push_back(first + corner);
-  }
-  EXPECT_EQ(ExpectSameOutline(surface, 0.0).Count(), 1);
-  // Without the inner one, all is near the border.
-  surface.Corners.resize(surface.Corners.size() - 3);
-  EXPECT_EQ(ExpectSameOutline(surface, 0.0).Count(), 1);
-}
-
-TEST(TrimAlongTheOutline, RefusesByNameWhatIsNoSurface)
-{
-  Random random(79);
-  const Surface surface = RandomSurface(random, 500);
-  EXPECT_EQ(MessageOfExtraction(surface), "no error");
-  Surface folded = surface;
-  folded.Coordinates.insert(folded.Coordinates.end(), { 0.1, 0.1, 0, 0.9, 0.1, 0, 0.5, 0.9, 0 });
-  folded.Corners.insert(folded.Corners.end(), { 500, 501, 502 });
-  EXPECT_HAS(MessageOfExtraction(folded), "over");
-  Surface turned = surface;
-  std::swap(turned.Corners[0], turned.Corners[1]);
-  EXPECT_EQ(MessageOfExtraction(turned), "no error");
-  Surface large = surface;
-  for (double& value : large.Coordinates)
-  {
-    value *= 1e120;
-  }
-  ExpectSameOutline(large, 0.0);
-  EXPECT_EQ(MessageOfExtraction(Surface()), "no error");
-}
-
 TEST(Trim, StopsWhenAsked)
 {
   Random random(77);
   const Surface surface = RandomSurface(random, 3000);
   Boundary boundary;
-  boundary.Add(Star(random, { 0.5, 0.5 }, 0.3, 12));
+  boundary.Add(Star(random, { 0.5, 0.5 }, 0.21, 0.3, 12));
   for (int stop = 0; stop < 3; ++stop)
   {
     int reports = 0;
