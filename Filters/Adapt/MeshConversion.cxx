@@ -218,6 +218,11 @@ void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress, int thread
   mesh = MeshOf(ViewTriangles(input).View, threads, progress);
 }
 
+std::string Possessive(const std::string& name)
+{
+  return name + (name.back() == 's' ? "'" : "'s");
+}
+
 // Each cell is checked before it is visited, so a visitor may use its ids.
 void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& progress,
   const std::function<void(const DataSetLine&)>& visit)
@@ -226,7 +231,7 @@ void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& pr
   {
     throw MakeError<sentences::StripsInLines>(name);
   }
-  const std::string owner = name + (name.back() == 's' ? "'" : "'s");
+  const std::string owner = Possessive(name);
   CheckCells(input, "The " + owner);
   const vtkIdType numberOfPoints = input->GetNumberOfPoints();
   const std::size_t count = static_cast<std::size_t>(input->GetNumberOfCells()) + 1;

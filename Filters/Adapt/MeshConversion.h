@@ -64,6 +64,9 @@ struct DataSetLine
   vtkIdType Cell;
 };
 
+/** "boundary's", but "constraints'". */
+std::string Possessive(const std::string& name);
+
 /**
  * Calls visit for each line, then each polygon, of a polydata.
  * @param name  what messages call the polydata: "boundary"
