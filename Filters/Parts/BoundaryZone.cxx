@@ -26,7 +26,6 @@
 #include "PackedData.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
@@ -241,14 +240,9 @@ bool BoundaryZone::AreSamePlaces() const
 std::vector<BorderEdge> BoundaryZone::PartBorders() const
 {
   std::vector<BorderEdge> all;
-  auto each = vtk::TakeSmartPointer(this->JoinedParts->GetLines()->NewIterator());
-  for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell())
-  {
-    const vtkIdType* ids = nullptr;
-    vtkIdType size = 0;
-    each->GetCurrentCell(size, ids);
+  ForEachCell(this->JoinedParts->GetLines(), [&all](vtkIdType, const vtkIdType* ids) {
     all.push_back({ static_cast<Index>(ids[0]), static_cast<Index>(ids[1]) });
-  }
+  });
   return all;
 }
 

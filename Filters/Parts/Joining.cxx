@@ -12,7 +12,6 @@
 #include "CommonPoints.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
@@ -188,19 +187,14 @@ vtkSmartPointer<vtkCellArray> JoinCells(const Parts& parts, const std::vector<vt
     vtkUnsignedCharArray* const ghosts = GhostsOf(parts[part]->GetCellData());
     // Cells of a kind follow those of the kinds before, and so do their tuples.
     vtkIdType cell = firstCells[part];
-    auto each = vtk::TakeSmartPointer(kind[part]->NewIterator());
-    for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell(), ++cell)
-    {
+    ForEachCell(kind[part], [&](vtkIdType size, const vtkIdType* ids) {
       ReportStep(progress, static_cast<std::size_t>(cell),
         static_cast<std::size_t>(parts[part]->GetNumberOfCells()));
       // Its owner is another part, and has it.
-      if (IsCopy(ghosts, cell))
+      if (IsCopy(ghosts, cell++))
       {
-        continue;
+        return;
       }
-      const vtkIdType* ids = nullptr;
-      vtkIdType size = 0;
-      each->GetCurrentCell(size, ids);
       corners.clear();
       for (vtkIdType i = 0; i < size; ++i)
       {
@@ -208,8 +202,8 @@ vtkSmartPointer<vtkCellArray> JoinCells(const Parts& parts, const std::vector<vt
       }
       cells->InsertNextCell(size, corners.data());
       // From the cell of the part to the next of the joined ones, which are counted over all kinds.
-      rows[part].Add(cell, count++);
-    }
+      rows[part].Add(cell - 1, count++);
+    });
   }
   return cells;
 }

@@ -27,7 +27,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <new>
 #include <numeric>
 #include <tuple>
 
@@ -70,12 +69,7 @@ vtkSmartPointer<vtkAbstractArray> MakeArray(const ArrayKind& kind, vtkIdType cou
   {
     array->SetComponentName(static_cast<vtkIdType>(i), kind.ComponentNames[i].c_str());
   }
-  array->SetNumberOfTuples(count);
-  // VTK does not throw where memory ends; the array stays as it was.
-  if (array->GetNumberOfTuples() != count)
-  {
-    throw std::bad_alloc();
-  }
+  SetTuples(count, array);
   return array;
 }
 
@@ -384,11 +378,7 @@ void PointTable::Unpack(const Bytes* packed, std::size_t count)
   for (const auto& array : this->Arrays)
   {
     ReserveTuples(array, all); // keeps the values, unlike the next
-    array->SetNumberOfTuples(all);
-    if (array->GetNumberOfTuples() != all)
-    {
-      throw std::bad_alloc();
-    }
+    SetTuples(all, array);
   }
   for (const Bytes* bytes = packed; bytes != packed + count; ++bytes)
   {

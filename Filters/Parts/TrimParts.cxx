@@ -242,7 +242,6 @@ bool TrimParts::TrimNear()
   return IsOnAny(all, isTrimmed);
 }
 
-/** Pass 3, on the rank that has trimmed the near triangles. */
 // Pass 3, the half of the rank that has trimmed. The other half is Write(), at the part's own time.
 void TrimParts::SendBack(const BoundaryZone& zone)
 {

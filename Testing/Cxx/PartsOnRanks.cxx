@@ -146,7 +146,7 @@ std::vector<Corners> AllAtOnce(
   points.Count = static_cast<Index>(cloud.size());
   const DataSetPoints own = source ? ViewPoints(source) : DataSetPoints();
   const ConstrainedTriangulation all = TriangulateConstrained(
-    points, source ? ToLines(source, own, Progress()) : ConstraintLines(), options);
+    points, source ? ToConstraintLines(source, own, Progress()) : ConstraintLines(), options);
   return ByPlaces(all.Result.Triangles, [&](Index i) {
     return i < points.Count ? points.At(i) : all.Added[i - points.Count].Position;
   });
@@ -651,7 +651,7 @@ std::vector<Corners> TrimmedAtOnce(const std::vector<Place>& cloud, vtkPolyData*
   points.Double = cloud.front().data();
   points.Count = static_cast<Index>(cloud.size());
   const Triangulation whole = Triangulate(points, DelaunayOptions());
-  const BoundaryLines lines = boundary ? ToLines(boundary, Progress()) : BoundaryLines();
+  const BoundaryLines lines = boundary ? ToBoundaryLines(boundary, Progress()) : BoundaryLines();
   TriangleList list;
   list.Points = points;
   list.Corners = whole.Triangles.data();
