@@ -87,7 +87,8 @@ ConstraintLines LinesOf(vtkPolyData* source, const elevation::DataSetPoints& own
   const elevation::PointView& points, int threads, const Progress& progress,
   std::vector<elevation::Message>& warnings)
 {
-  const ConstraintLines lines = elevation::ToLines(source, own, progress.Between(0.0, 0.5));
+  const ConstraintLines lines =
+    elevation::ToConstraintLines(source, own, progress.Between(0.0, 0.5));
   // By all finite points, not only those that become vertices.
   const elevation::Box box =
     elevation::FindExtent(points, elevation::ResolveNumberOfThreads(threads),
@@ -131,11 +132,11 @@ Index CountInTriangles(
   return static_cast<Index>(std::count(has.begin(), has.end(), char(1)));
 }
 
-/** The value that a part of the values, of which there are some, is at most. */
-double Quantile(std::vector<double>& values, double part)
+/** The value that a share of the values, of which there are some, is at most. */
+double Quantile(std::vector<double>& values, double share)
 {
   const auto at =
-    values.begin() + elevation::QuantilePlace(part, static_cast<vtkIdType>(values.size()));
+    values.begin() + elevation::QuantilePlace(share, static_cast<vtkIdType>(values.size()));
   // Linear: one value is looked for, and the rest needs no order.
   std::nth_element(values.begin(), at, values.end());
   return *at;
@@ -287,12 +288,7 @@ elevation::ConstrainedTriangulation TriangulateSpread(
   const elevation::TriangulateParts::Totals& all = parts.GetTotals();
   elevation::WarnOfLeftOut("point", parts.LeftOut(), block.Warnings);
   std::vector<std::array<double, 3>> sample;
-  ranks.Agree([&] {
-    if (block.Input)
-    {
-      sample = elevation::SampleOf(elevation::ViewPoints(block.Input).View);
-    }
-  });
+  ranks.Agree([&] { sample = elevation::SampleOf(elevation::ViewPoints(block.Input).View); });
   // All ranks get the whole sample, and so the same warning, which is reported once.
   elevation::WarnOfWall(ranks.Collect(sample), block.Warnings);
   parts.WarnOfMissing(block.Warnings);
@@ -309,10 +305,7 @@ elevation::ConstrainedTriangulation TriangulateSpread(
     elevation::SurfacePart part = parts.Take(parts.FirstOwn(), progress);
     counts.Added.resize(static_cast<std::size_t>(part.AddedPoints));
     elevation::PassPart(part, elevation::ResolveNumberOfThreads(options.NumberOfThreads), output);
-    if (block.Input)
-    {
-      output->GetFieldData()->PassData(block.Input->GetFieldData());
-    }
+    output->GetFieldData()->PassData(block.Input->GetFieldData());
     counts.Result = std::move(part.Result);
     elevation::AddReport(counts, progress, output->GetFieldData());
     elevation::AddWork(ranks.GetTraffic(), parts.GetEffort(), output->GetFieldData());

@@ -131,7 +131,7 @@ elevation::TrimCounts TrimBlock(elevation::TrimOptions options, elevation::Block
   elevation::BoundaryLines lines;
   if (isGiven)
   {
-    lines = elevation::ToLines(given, progress.Between(0.0, 0.02));
+    lines = elevation::ToBoundaryLines(given, progress.Between(0.0, 0.02));
   }
   // Without cell data parents are not needed. Cell data take time to pass, all else is shared.
   options.ReturnParents = input->GetCellData()->GetNumberOfArrays() > 0;

@@ -135,6 +135,37 @@ void PlaceCamera(vtkSMRenderViewProxy* view, vtkPVXMLElement* xml, double bounds
   view->SynchronizeCameraProperties();
 }
 
+// Scales z as what a view shows already; where that is nothing, or the input alone, as suits the relief.
+// A view that nobody has turned then looks at it obliquely. A scale that has been chosen stays.
+void ScaleAndPlace(vtkSMProxy* representation, vtkSMSourceProxy* source, vtkPVXMLElement* xml,
+  vtkMTimeType begun, vtkSMRenderViewProxy* view, double bounds[6])
+{
+  const std::vector<vtkSMProxy*> shown = view ? ShownIn(view) : std::vector<vtkSMProxy*>();
+  const auto scaled =
+    std::find_if(shown.begin(), shown.end(), [](vtkSMProxy* one) { return ScaleOf(one) != 1.0; });
+  const bool isFirst = std::all_of(shown.begin(), shown.end(),
+                         [&](vtkSMProxy* one) { return InputOf(one) == InputOf(source); }) &&
+    scaled == shown.end();
+  const bool isNew =
+    isFirst && view && LooksStraightDown(view) && (LooksAtOrigin(view) || !shown.empty());
+  double factor = scaled == shown.end() ? 1.0 : ScaleOf(*scaled);
+  if (isNew || (isFirst && shown.empty()))
+  {
+    factor = ExaggerationOf(source, bounds);
+  }
+  if (representation->GetProperty("Scale")->GetMTime() < begun)
+  {
+    const double scale[3] = { 1.0, 1.0, factor };
+    vtkSMPropertyHelper(representation, "Scale").Set(scale, 3);
+  }
+  if (isNew)
+  {
+    bounds[4] *= ScaleOf(representation);
+    bounds[5] *= ScaleOf(representation);
+    PlaceCamera(view, xml, bounds);
+  }
+}
+
 // A colour map of elevations, unless one has been chosen.
 void ColourByElevation(vtkSMProxy* colours, vtkPVXMLElement* xml, const double range[2])
 {
@@ -180,6 +211,23 @@ void WritePlainNumbers(vtkSMProxy* colours, vtkSMProxy* view, const double range
   vtkSMPropertyHelper(bar, "RangeLabelFormat").Set(format.c_str());
   vtkSMPropertyHelper(bar, "Visibility").Set(0);
   bar->UpdateVTKObjects();
+}
+
+// Colours elevations, if there are any, next to plain numbers in a view.
+void ShowElevations(vtkPVDataInformation* data, vtkSMSessionProxyManager* proxies,
+  vtkPVXMLElement* xml, vtkSMProxy* view)
+{
+  if (vtkPVArrayInformation* heights = data->GetArrayInformation(ARRAY, vtkDataObject::POINT))
+  {
+    const double* range = heights->GetComponentRange(0);
+    vtkNew<vtkSMTransferFunctionManager> manager;
+    vtkSMProxy* colours = manager->GetColorTransferFunction(ARRAY, proxies);
+    ColourByElevation(colours, xml, range);
+    if (view)
+    {
+      WritePlainNumbers(colours, view, range);
+    }
+  }
 }
 
 // Colours the words of a cell array, each in its colour, unless that has been chosen.
@@ -250,33 +298,7 @@ public:
     vtkSMSessionProxyManager* proxies = representation->GetSessionProxyManager();
     vtkSMProxySelectionModel* active = proxies->GetSelectionModel("ActiveView");
     auto* view = vtkSMRenderViewProxy::SafeDownCast(active ? active->GetCurrentProxy() : nullptr);
-
-    // z as of what is shown already; where that is nothing, or the input alone, as suits the relief.
-    const std::vector<vtkSMProxy*> shown = view ? ShownIn(view) : std::vector<vtkSMProxy*>();
-    const auto scaled =
-      std::find_if(shown.begin(), shown.end(), [](vtkSMProxy* one) { return ScaleOf(one) != 1.0; });
-    const bool isFirst = std::all_of(shown.begin(), shown.end(),
-                           [&](vtkSMProxy* one) { return InputOf(one) == InputOf(source); }) &&
-      scaled == shown.end();
-    const bool isNew =
-      isFirst && view && LooksStraightDown(view) && (LooksAtOrigin(view) || !shown.empty());
-    double factor = scaled == shown.end() ? 1.0 : ScaleOf(*scaled);
-    if (isNew || (isFirst && shown.empty()))
-    {
-      factor = ExaggerationOf(source, bounds);
-    }
-    if (representation->GetProperty("Scale")->GetMTime() < begun)
-    {
-      const double scale[3] = { 1.0, 1.0, factor };
-      vtkSMPropertyHelper(representation, "Scale").Set(scale, 3);
-    }
-    if (isNew)
-    {
-      bounds[4] *= ScaleOf(representation);
-      bounds[5] *= ScaleOf(representation);
-      PlaceCamera(view, xml, bounds);
-    }
-
+    ScaleAndPlace(representation, source, xml, begun, view, bounds);
     if (xml->GetAttribute("line_width"))
     {
       double width = 1.0;
@@ -287,17 +309,9 @@ public:
     {
       ColourByWords(representation, xml);
     }
-    vtkPVArrayInformation* heights = data->GetArrayInformation(ARRAY, vtkDataObject::POINT);
-    if (heights && xml->GetAttribute("land"))
+    if (xml->GetAttribute("land"))
     {
-      const double* range = heights->GetComponentRange(0);
-      vtkNew<vtkSMTransferFunctionManager> manager;
-      vtkSMProxy* colours = manager->GetColorTransferFunction(ARRAY, proxies);
-      ColourByElevation(colours, xml, range);
-      if (view)
-      {
-        WritePlainNumbers(colours, view, range);
-      }
+      ShowElevations(data, proxies, xml, view);
     }
     representation->UpdateVTKObjects();
   }

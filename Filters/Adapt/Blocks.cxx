@@ -220,7 +220,7 @@ vtkSmartPointer<vtkPolyData> JoinBlocks(vtkDataObject* input, const std::string&
         "; lines and polygons are in a vtkPolyData.");
     }
     // Before they are appended, so that the message can name the cell.
-    CheckArrays(parts.back(), "The " + name + (name.back() == 's' ? "'" : "'s"));
+    CheckArrays(parts.back(), "The " + Possessive(name));
     parts.back() = WithoutHiddenCells(parts.back());
   }
   return parts.empty() ? vtkSmartPointer<vtkPolyData>::New() : Append(parts);

@@ -22,7 +22,8 @@
 namespace elevation
 {
 
-ConstraintLines ToLines(vtkPolyData* source, const DataSetPoints& points, const Progress& progress)
+ConstraintLines ToConstraintLines(
+  vtkPolyData* source, const DataSetPoints& points, const Progress& progress)
 {
   ConstraintLines lines;
   lines.Points = points.View;

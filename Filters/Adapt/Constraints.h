@@ -20,7 +20,8 @@ namespace elevation
 {
 
 /** The lines and polygons of the constraints; @a points must outlive them. */
-ConstraintLines ToLines(vtkPolyData* source, const DataSetPoints& points, const Progress& progress);
+ConstraintLines ToConstraintLines(
+  vtkPolyData* source, const DataSetPoints& points, const Progress& progress);
 
 /** Warns of a given lattice, which lines do not keep to. */
 void WarnOfLattice(const DelaunayOptions& options, std::vector<Message>& warnings);

@@ -10,6 +10,7 @@
 
 #include "vtkDataSetAttributes.h"
 #include "vtkIdList.h"
+#include "vtkIdTypeArray.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -111,31 +112,15 @@ void SetNewTuples(vtkAbstractArray* input, const NewValues& values, bool areNorm
  * is not the largest of all: FilledPart numbers them again.
  * @return whether the type has numbers for them
  */
-bool NumberNewTuples(vtkIdType numberOfNew, vtkAbstractArray* output)
+bool NumberNewTuples(vtkAbstractArray* input, vtkIdType numberOfNew, vtkAbstractArray* output)
 {
-  auto* const ids = vtkArrayDownCast<vtkDataArray>(output);
-  if (!ids || IsFloatingPoint(ids) || ids->GetNumberOfComponents() != 1)
+  const vtkIdType largest = LargestId(vtkArrayDownCast<vtkDataArray>(input));
+  const bool canNumber = CanNumber(input, largest, numberOfNew);
+  for (vtkIdType i = 0; canNumber && i < numberOfNew; ++i)
   {
-    return false;
+    output->SetVariantValue(input->GetNumberOfTuples() + i, vtkVariant(largest + 1 + i));
   }
-  const vtkIdType count = ids->GetNumberOfTuples() - numberOfNew;
-  // Ids below 0 count for nothing.
-  double first = 0.0;
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    first = std::max(first, ids->GetComponent(i, 0) + 1.0);
-  }
-  constexpr double largest = 9007199254740992.0; // up to which doubles are exact
-  // As an array of bytes has no number after 255.
-  if (first + static_cast<double>(numberOfNew) > std::min(largest, ids->GetDataTypeMax()))
-  {
-    return false;
-  }
-  for (vtkIdType i = 0; i < numberOfNew; ++i)
-  {
-    ids->SetComponent(count + i, 0, first + static_cast<double>(i));
-  }
-  return true;
+  return canNumber;
 }
 } // namespace
 
@@ -201,6 +186,14 @@ vtkUnsignedCharArray* GhostsOf(vtkDataSetAttributes* data)
     data->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
 }
 
+bool IsCopy(vtkUnsignedCharArray* ghosts, vtkIdType i)
+{
+  // The flag of a copy is the same for points and cells.
+  static_assert(
+    int(vtkDataSetAttributes::DUPLICATEPOINT) == vtkDataSetAttributes::DUPLICATECELL, "one flag");
+  return ghosts && (ghosts->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT);
+}
+
 vtkSmartPointer<vtkAbstractArray> NewLike(vtkAbstractArray* array)
 {
   auto made = vtk::TakeSmartPointer(vtkAbstractArray::CreateArray(array->GetDataType()));
@@ -230,6 +223,41 @@ bool IsIdArray(vtkDataSetAttributes* data, vtkAbstractArray* array)
     array == data->GetAbstractAttribute(vtkDataSetAttributes::PEDIGREEIDS);
 }
 
+// A vtkIdTypeArray is what filters write, and is read without a vtkVariant for each value.
+vtkIdType IdAt(vtkDataArray* ids, vtkIdType i)
+{
+  auto* const plain = vtkIdTypeArray::FastDownCast(ids);
+  return plain ? plain->GetValue(i) : ids->GetVariantValue(i).ToTypeInt64();
+}
+
+vtkIdType PlaceOfLargest(vtkDataArray* ids)
+{
+  vtkIdType place = -1, largest = -1;
+  for (vtkIdType i = 0; ids && i < ids->GetNumberOfTuples(); ++i)
+  {
+    const vtkIdType id = IdAt(ids, i);
+    place = id > largest ? i : place;
+    largest = std::max(largest, id);
+  }
+  return place;
+}
+
+vtkIdType LargestId(vtkDataArray* ids)
+{
+  const vtkIdType place = PlaceOfLargest(ids);
+  return place < 0 ? -1 : IdAt(ids, place);
+}
+
+bool CanNumber(vtkAbstractArray* array, vtkIdType largest, vtkIdType count)
+{
+  constexpr double exact = 9007199254740992.0; // up to which doubles are
+  auto* const ids = vtkArrayDownCast<vtkDataArray>(array);
+  // As an array of bytes has no number after 255.
+  return ids && !IsFloatingPoint(ids) && ids->GetNumberOfComponents() == 1 &&
+    static_cast<double>(largest) + 1.0 + static_cast<double>(count) <=
+    std::min(exact, ids->GetDataTypeMax());
+}
+
 vtkSmartPointer<vtkPoints> AppendPoints(vtkPoints* input, vtkIdType numberOfNew,
   const Progress& progress, const std::function<void(vtkIdType i, double* xyz)>& place)
 {
@@ -242,7 +270,7 @@ vtkSmartPointer<vtkPoints> AppendPoints(vtkPoints* input, vtkIdType numberOfNew,
   auto points = vtkSmartPointer<vtkPoints>::New();
   // An input without points may have none whose type could be taken.
   points->SetDataType(input ? input->GetDataType() : VTK_DOUBLE);
-  points->SetNumberOfPoints(count + numberOfNew);
+  SetTuples(count + numberOfNew, points->GetData());
   if (input)
   {
     CopyToBegin(input->GetData(), all, progress, points->GetData());
@@ -277,7 +305,7 @@ void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSet
       before, numberOfNew, areOriginalIds || IsIdArray(input, before), ofArray.Between(0.0, 0.5));
     const bool areGlobalIds =
       before == input->GetAbstractAttribute(vtkDataSetAttributes::GLOBALIDS) &&
-      NumberNewTuples(numberOfNew, after);
+      NumberNewTuples(before, numberOfNew, after);
     if (valuesOf && !areGlobalIds && !areOriginalIds && !IsGhostArray(before))
     {
       const NewValues values = valuesOf(before, after, ofArray.Between(0.5, 0.7));

@@ -39,6 +39,8 @@ bool IsGhostArray(vtkAbstractArray* array);
 
 /** The flags of ghosts, or nullptr. */
 vtkUnsignedCharArray* GhostsOf(vtkDataSetAttributes* data);
+/** Whether flags, if any, say that a point or cell is a copy of another rank's. */
+bool IsCopy(vtkUnsignedCharArray* ghosts, vtkIdType i);
 
 /** An empty array of the same type, name, components and information. */
 vtkSmartPointer<vtkAbstractArray> NewLike(vtkAbstractArray* array);
@@ -48,6 +50,15 @@ void SetTuples(vtkIdType count, vtkAbstractArray* array);
 
 /** Whether an array of @a data holds global or pedigree ids. */
 bool IsIdArray(vtkDataSetAttributes* data, vtkAbstractArray* array);
+
+/** An id of an array of any integers. */
+vtkIdType IdAt(vtkDataArray* ids, vtkIdType i);
+/** The tuple with the largest id; -1: there is none from 0 on, or no array. */
+vtkIdType PlaceOfLargest(vtkDataArray* ids);
+/** The largest id, or -1. */
+vtkIdType LargestId(vtkDataArray* ids);
+/** Whether an array of ids has @a count numbers after the largest, which may be elsewhere. */
+bool CanNumber(vtkAbstractArray* array, vtkIdType largest, vtkIdType count);
 
 /**
  * The points of an input, if any, followed by new ones; place(i, xyz) sets the coordinates of new

@@ -46,9 +46,9 @@ constexpr double MostShare = 0.95, MedianShare = 0.5;
  * The place of a quantile among some sorted values: 0 is the least, 1 the largest. One formula for
  * one rank, which sorts its values, and for several, which count them.
  */
-inline vtkIdType QuantilePlace(double part, vtkIdType count)
+inline vtkIdType QuantilePlace(double share, vtkIdType count)
 {
-  return static_cast<vtkIdType>(part * static_cast<double>(count - 1));
+  return static_cast<vtkIdType>(share * static_cast<double>(count - 1));
 }
 
 /** Warns that points, if there are any, have made no triangle. */

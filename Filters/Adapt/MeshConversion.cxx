@@ -15,8 +15,6 @@
 
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkAppendPolyData.h"
-#include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
@@ -218,6 +216,11 @@ void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress, int thread
   mesh = MeshOf(ViewTriangles(input).View, threads, progress);
 }
 
+std::string Possessive(const std::string& name)
+{
+  return name + (name.back() == 's' ? "'" : "'s");
+}
+
 // Each cell is checked before it is visited, so a visitor may use its ids.
 void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& progress,
   const std::function<void(const DataSetLine&)>& visit)
@@ -226,7 +229,7 @@ void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& pr
   {
     throw MakeError<sentences::StripsInLines>(name);
   }
-  const std::string owner = name + (name.back() == 's' ? "'" : "'s");
+  const std::string owner = Possessive(name);
   CheckCells(input, "The " + owner);
   const vtkIdType numberOfPoints = input->GetNumberOfPoints();
   const std::size_t count = static_cast<std::size_t>(input->GetNumberOfCells()) + 1;
@@ -235,26 +238,26 @@ void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& pr
   for (vtkCellArray* cells : { input->GetLines(), input->GetPolys() })
   {
     line.IsPolygon = cells == input->GetPolys();
-    auto each = vtk::TakeSmartPointer(cells->NewIterator());
-    for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell(), ++line.Cell)
-    {
+    ForEachCell(cells, [&](vtkIdType size, const vtkIdType* ids) {
       ReportStep(progress, static_cast<std::size_t>(line.Cell), count);
-      each->GetCurrentCell(line.Size, line.Ids);
-      sum += line.Size;
+      line.Size = size;
+      line.Ids = ids;
+      sum += size;
       // Vertices of lines are counted by an Index; a point may be in many lines.
       if (sum > MaximumNumberOfPoints)
       {
         throw MakeError<sentences::TooManyPointsInLines>(name, MaximumNumberOfPoints);
       }
-      for (vtkIdType i = 0; i < line.Size; ++i)
+      for (vtkIdType i = 0; i < size; ++i)
       {
-        if (line.Ids[i] < 0 || line.Ids[i] >= numberOfPoints)
+        if (ids[i] < 0 || ids[i] >= numberOfPoints)
         {
-          throw MakeError<sentences::NoSuchPointOfLine>(line.Ids[i], owner, line.Cell);
+          throw MakeError<sentences::NoSuchPointOfLine>(ids[i], owner, line.Cell);
         }
       }
       visit(line);
-    }
+      ++line.Cell;
+    });
   }
 }
 

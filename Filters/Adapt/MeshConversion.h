@@ -12,6 +12,8 @@
 #include "Kernel/Mesh/Mesh.h"
 #include "VTKClasses.h"
 
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
 #include "vtkSmartPointer.h"
 
 #include <functional>
@@ -55,6 +57,20 @@ DataSetTriangles ViewTriangles(vtkPolyData* input);
 /** The triangles as a mesh. @throws Error as ViewTriangles() and MeshOf() */
 void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress = Progress(), int threads = 1);
 
+/** Visits the cells of an array: visit(size, ids). */
+template <typename Visit>
+void ForEachCell(vtkCellArray* cells, const Visit& visit)
+{
+  const auto each = vtk::TakeSmartPointer(cells->NewIterator());
+  for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell())
+  {
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    each->GetCurrentCell(size, ids);
+    visit(size, ids);
+  }
+}
+
 /** A line or polygon: its point ids, which all exist, and their number. */
 struct DataSetLine
 {
@@ -63,6 +79,9 @@ struct DataSetLine
   bool IsPolygon;
   vtkIdType Cell;
 };
+
+/** "boundary's", but "constraints'". */
+std::string Possessive(const std::string& name);
 
 /**
  * Calls visit for each line, then each polygon, of a polydata.

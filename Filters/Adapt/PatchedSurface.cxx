@@ -231,7 +231,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   const vtkIdType before = input->GetNumberOfPoints();
   vtkNew<vtkUnsignedCharArray> isNew;
   isNew->SetName("FilledPoint");
-  isNew->SetNumberOfTuples(output->GetNumberOfPoints());
+  SetTuples(output->GetNumberOfPoints(), isNew);
   const auto asInInput = [](vtkIdType i) { return i; };
   PassEarlier(input->GetPointData(), before, 0, asInInput, isNew.Get());
   std::fill_n(isNew->GetPointer(0) + before, patches.NumberOfPoints(), 1);
@@ -241,7 +241,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   Report(progress, isExtended ? 0.62 : 0.3);
   vtkNew<vtkDoubleArray> errors;
   errors->SetName("FilledError");
-  errors->SetNumberOfTuples(output->GetNumberOfPoints());
+  SetTuples(output->GetNumberOfPoints(), errors);
   PassEarlier(input->GetPointData(), before, 0.0, asInInput, errors.Get());
   std::copy(patches.StandardErrors.begin(), patches.StandardErrors.end(),
     errors->GetPointer(0) + before);
@@ -256,7 +256,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   holeIds->SetName(HoleIdName);
   const vtkIdType first = FirstPolygon(input);
   const vtkIdType ofInput = first + static_cast<vtkIdType>(kept.size());
-  holeIds->SetNumberOfTuples(ofInput + patches.NumberOfTriangles());
+  SetTuples(ofInput + patches.NumberOfTriangles(), holeIds);
   PassEarlier(input->GetCellData(), ofInput, -1,
     [&](vtkIdType cell) { return cell < first ? cell : first + kept[cell - first]; }, holeIds.Get());
   vtkIdType* holeId = holeIds->GetPointer(0) + ofInput;

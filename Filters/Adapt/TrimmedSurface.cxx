@@ -50,7 +50,8 @@ void CheckOptions(const TrimOptions& options)
  * Lines by ids of the data set first; TakePoints() then copies the points that they use, so that a
  * boundary inside of a large data set does not keep all of it.
  */
-BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress, const std::string& name)
+BoundaryLines ToBoundaryLines(
+  vtkPolyData* boundary, const Progress& progress, const std::string& name)
 {
   const DataSetPoints points = ViewPoints(boundary);
   BoundaryLines lines;
@@ -62,9 +63,8 @@ BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress, const std
       // x,y.
       if (!std::isfinite(points.View.Elevation(id)))
       {
-        throw Error("Point " + std::to_string(id) + " of the " + name +
-          (name.back() == 's' ? "' cell " : "'s cell ") + std::to_string(line.Cell) +
-          " is not finite.");
+        throw Error("Point " + std::to_string(id) + " of the " + Possessive(name) + " cell " +
+          std::to_string(line.Cell) + " is not finite.");
       }
       lines.Lines.Vertices.push_back(id);
     }
@@ -90,8 +90,8 @@ vtkIdType SplitSurface(
   options.ReturnParents = false;
   options.NumberOfThreads = threads;
   options.Monitor = progress.Between(0.05, 0.9);
-  Trimmed split = SplitAlong(
-    triangles.View, ToLines(constraints, progress.Between(0.0, 0.05), "constraints"), options);
+  Trimmed split = SplitAlong(triangles.View,
+    ToBoundaryLines(constraints, progress.Between(0.0, 0.05), "constraints"), options);
   // Else no line meets a triangle, and the surface stays as it is.
   if (!split.Kept.IsWholeList)
   {
@@ -261,6 +261,10 @@ void PassTrimmedPoints(
     {
       after->AddArray(Extended(array, points)); // in place of the input's
     }
+  }
+  if (!points.AreNumbered)
+  {
+    after->SetActiveAttribute(-1, vtkDataSetAttributes::GLOBALIDS);
   }
   if (points.AreMarked || (added > 0 && GhostsOf(before)))
   {

@@ -29,7 +29,7 @@ void CheckOptions(const TrimOptions& options);
  * @param[in] name  what messages call them
  * @throws Error naming the cell
  */
-BoundaryLines ToLines(
+BoundaryLines ToBoundaryLines(
   vtkPolyData* boundary, const Progress& progress, const std::string& name = "boundary");
 
 /**
@@ -64,6 +64,7 @@ struct TrimmedPoints
   std::vector<vtkIdType> Added;     ///< the new points that it gets
   std::vector<Index> OfOthers;      ///< of the output: points that another part owns
   bool AreMarked = false;           ///< points of any part: all have the flags of ghosts then
+  bool AreNumbered = true; ///< new points of all parts; else no part has global ids any more
 };
 
 void PassTrimmedPoints(

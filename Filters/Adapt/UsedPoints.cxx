@@ -11,7 +11,6 @@
 #include "MeshConversion.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
@@ -35,20 +34,6 @@ vtkAbstractArray* OriginalIdsOf(vtkPointSet* data)
 {
   vtkAbstractArray* const ids = data->GetPointData()->GetAbstractArray(OriginalIdsName);
   return ids && IsOriginalIds(ids) ? ids : nullptr;
-}
-
-/** Visits the cells of an array: visit(size, ids). */
-template <typename Visit>
-void ForEachCell(vtkCellArray* cells, const Visit& visit)
-{
-  auto each = vtk::TakeSmartPointer(cells->NewIterator());
-  for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell())
-  {
-    vtkIdType size = 0;
-    const vtkIdType* ids = nullptr;
-    each->GetCurrentCell(size, ids);
-    visit(size, ids);
-  }
 }
 
 /** Cells with other numbers of their points. */

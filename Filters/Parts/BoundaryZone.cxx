@@ -26,7 +26,6 @@
 #include "PackedData.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
@@ -53,7 +52,8 @@ struct FieldsOf<TrimmedZone>
   static auto In(Zone& zone)
   {
     return std::tie(zone.Parents[0], zone.Corners[0], zone.Parents[1], zone.Corners[1],
-      zone.IsInserted, zone.IsOwned, zone.OfOthers, zone.OnBoundary, zone.FarOnBoundary);
+      zone.IsInserted, zone.IsOwned, zone.OfOthers, zone.AreNumbered, zone.OnBoundary,
+      zone.FarOnBoundary);
   }
 };
 
@@ -80,13 +80,11 @@ TrimmedZone::TrimmedZone(const Bytes& bytes)
   }
 }
 
-// The same CommonPoints are found twice, here and in Join(), which does not hand them out.
 void BoundaryZone::JoinAll(const Progress& progress)
 {
   std::vector<Message> warnings; // none: all have the same arrays
-  this->Common =
-    std::make_unique<CommonPoints>(this->GivenParts, PartKind::Mesh, progress.Between(0.0, 0.3));
-  this->JoinedParts = Join(this->GivenParts, PartKind::Mesh, progress.Between(0.3, 1.0), warnings);
+  this->Common = std::make_unique<CommonPoints>(this->GivenParts, PartKind::Mesh, progress);
+  this->JoinedParts = Join(this->GivenParts, PartKind::Mesh, *this->Common, progress, warnings);
   this->FirstTriangles = { 0 };
   for (const auto& part : this->GivenParts)
   {
@@ -112,15 +110,9 @@ bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& option
   // Messages then name points as the user numbers them, inserted ones as they will be numbered.
   if (vtkDataArray* const ids = this->JoinedParts->GetPointData()->GetGlobalIds())
   {
-    const Index count = list.Points.Count;
-    std::int64_t largest = 0; // of all parts, each of which has sent its own
-    for (Index i = 0; i < count; ++i)
-    {
-      largest = std::max<std::int64_t>(largest, ids->GetVariantValue(i).ToTypeInt64());
-    }
-    ofNear.NumberOf = [ids, count, largest](Index id) {
-      return id < count ? ids->GetVariantValue(id).ToTypeInt64() : largest + 1 + id - count;
-    };
+    // Of all parts, each of which has sent its own.
+    ofNear.NumberOf = [ids, count = list.Points.Count, largest = LargestId(ids)](
+                        Index id) { return id < count ? IdAt(ids, id) : largest + 1 + id - count; };
   }
   this->Sides = TrimNear(list, boundary, this->Border, ofNear);
   PassPoints(this->JoinedParts, this->Sides, options.Monitor.Between(0.9, 1.0), this->Points);
@@ -248,14 +240,9 @@ bool BoundaryZone::AreSamePlaces() const
 std::vector<BorderEdge> BoundaryZone::PartBorders() const
 {
   std::vector<BorderEdge> all;
-  auto each = vtk::TakeSmartPointer(this->JoinedParts->GetLines()->NewIterator());
-  for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell())
-  {
-    const vtkIdType* ids = nullptr;
-    vtkIdType size = 0;
-    each->GetCurrentCell(size, ids);
+  ForEachCell(this->JoinedParts->GetLines(), [&all](vtkIdType, const vtkIdType* ids) {
     all.push_back({ static_cast<Index>(ids[0]), static_cast<Index>(ids[1]) });
-  }
+  });
   return all;
 }
 
@@ -325,6 +312,8 @@ std::vector<TrimmedZone> BoundaryZone::Split(const Progress& progress) const
   for (TrimmedZone& split : splits)
   {
     split.FarOnBoundary = KeysOf(this->JoinedParts, byIds, &far);
+    // Of a type without numbers for them, values are no longer global ids, whoever has new points.
+    split.AreNumbered = !byIds || this->Points->GetPointData()->GetGlobalIds();
   }
   std::vector<Index> places(static_cast<std::size_t>(this->Points->GetNumberOfPoints()), None);
   for (std::size_t part = 0; part < splits.size(); ++part)
@@ -351,7 +340,7 @@ std::vector<Index> BoundaryZone::FindOwners(std::vector<TrimmedZone>& splits) co
       for (vtkIdType i = 0; i < this->GivenParts[part]->GetNumberOfPoints(); ++i)
       {
         std::size_t& owner = owners[this->Common->Place(part, i)];
-        const bool isMarked = marks && (marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT);
+        const bool isMarked = IsCopy(marks, i);
         if (isLooking)
         {
           // First the owners of all, then, in the second round, who has a point of another owner.

@@ -51,6 +51,7 @@ struct TrimmedZone
   std::vector<char> IsInserted; ///< one a new point; else it is another rank's
   std::vector<char> IsOwned;    ///< one a new point
   std::vector<Index> OfOthers;  ///< points of the rank's near part that another rank owns
+  bool AreNumbered = true;      ///< new points of all parts, if points have global ids
   /** Points on a boundary that was given: of the near part, followed by the new points. */
   std::vector<Index> OnBoundary;
   /** The same of points whose triangles are all other parts': the part that owns one finds it. */

@@ -69,11 +69,20 @@ void TakeFrom(const char*& from, Value* values, std::size_t count)
   }
 }
 
+/** Appends values to those that are there. */
 template <typename Value>
 void TakeFrom(const char*& from, std::size_t count, std::vector<Value>& values)
 {
-  values.resize(count);
-  TakeFrom(from, values.data(), count);
+  values.resize(values.size() + count);
+  TakeFrom(from, values.data() + values.size() - count, count);
+}
+
+/** The same with as many as fit into the bytes. */
+template <typename Value>
+void TakeAll(const Bytes& bytes, std::vector<Value>& values)
+{
+  const char* from = bytes.data();
+  TakeFrom(from, bytes.size() / sizeof(Value), values);
 }
 
 /** A list or text of plain values with its length, so that it can be taken without knowing that. */

@@ -78,7 +78,7 @@ void CommonPoints::ReadMarks(const Parts& parts)
     vtkUnsignedCharArray* const ghosts = GhostsOf(parts[part]->GetPointData());
     for (vtkIdType i = 0; ghosts && i < ghosts->GetNumberOfTuples(); ++i)
     {
-      if (ghosts->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT)
+      if (IsCopy(ghosts, i))
       {
         // Only now: without any mark the list stays empty.
         this->IsMarked.resize(this->First.size(), 0);
@@ -151,9 +151,9 @@ void CommonPoints::Match(const vtkIdType* begin, const vtkIdType* end, PartKind 
 }
 
 // Of points that are one, the values of the first count: those of the owner, or of the first part.
-std::vector<Rows> CommonPoints::Sources() const
+std::vector<JoinedRows> CommonPoints::Sources() const
 {
-  std::vector<Rows> sources(this->Offsets.size() - 1);
+  std::vector<JoinedRows> sources(this->Offsets.size() - 1);
   for (std::size_t part = 0; part < sources.size(); ++part)
   {
     for (vtkIdType i = this->Offsets[part]; i < this->Offsets[part + 1]; ++i)

@@ -30,7 +30,7 @@ enum class PartKind
 };
 
 /** Tuples of one part, and which of the joined tuples they are. */
-struct Rows
+struct JoinedRows
 {
   std::vector<vtkIdType> From, To;
 
@@ -62,7 +62,7 @@ public:
     return this->Places[this->Offsets[part] + point];
   }
   /** Of each part, the points whose values the joined ones have. */
-  std::vector<Rows> Sources() const;
+  std::vector<JoinedRows> Sources() const;
 
 private:
   void ReadMarks(const Parts& parts);

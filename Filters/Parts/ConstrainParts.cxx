@@ -83,7 +83,7 @@ void AddedLines::Read()
   this->AllRanks.Agree([&]() {
     CheckPointArrays(this->Source, "The constraints'");
     this->SourcePoints = ViewPoints(this->Source);
-    this->Lines = ToLines(this->Source, this->SourcePoints, Progress());
+    this->Lines = ToConstraintLines(this->Source, this->SourcePoints, Progress());
   });
 }
 
@@ -171,7 +171,7 @@ void AddedLines::PassNear(vtkPolyData* output) const
   const SurfacePart& common = this->Store.Part;
   vtkNew<vtkPoints> points;
   points->SetDataType(common.PointType);
-  points->SetNumberOfPoints(static_cast<vtkIdType>(this->Near.Count()));
+  SetTuples(static_cast<vtkIdType>(this->Near.Count()), points->GetData());
   for (std::size_t i = 0; i < this->Near.Count(); ++i)
   {
     points->SetPoint(static_cast<vtkIdType>(i), this->Near.At(i));
@@ -201,7 +201,7 @@ void AddedLines::AddPoints()
     const vtkIdType ofNear = static_cast<vtkIdType>(this->Near.Count());
     PointTable rows(common.Kinds);
     // Numbered such that the first added point gets the id after the largest.
-    rows.Read(extended, this->LargestId + 1 - ofNear, watched);
+    rows.Read(extended, this->LargestId + 1 - ofNear);
     std::vector<vtkIdType> counts;
     std::map<int, std::vector<vtkIdType>> added; // rows, for each part
     for (int part = 0; part < crew.PartCount(); ++part)

@@ -232,8 +232,10 @@ void Engine::Deliver(const Progress& progress)
     {
       // Element 0 of a list has the labels, element i + 1 message i.
       std::vector<Label> labels;
-      const char* from = list.empty() ? nullptr : list.front().data();
-      TakeFrom(from, list.empty() ? 0 : list.front().size() / sizeof(Label), labels);
+      if (!list.empty())
+      {
+        TakeAll(list.front(), labels);
+      }
       for (std::size_t i = 0; i < labels.size(); ++i)
       {
         Report(watched, 1.0);

@@ -177,12 +177,7 @@ template <typename Value>
 std::vector<Value> ValuesIn(const Inbox& box)
 {
   std::vector<Value> values;
-  box.ForEach([&values](const Bytes& bytes) {
-    const char* from = bytes.data();
-    const std::size_t before = values.size(), count = bytes.size() / sizeof(Value);
-    values.resize(before + count);
-    TakeFrom(from, values.data() + before, count);
-  });
+  box.ForEach([&values](const Bytes& bytes) { TakeAll(bytes, values); });
   return values;
 }
 

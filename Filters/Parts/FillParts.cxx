@@ -8,7 +8,6 @@
 #include "FillParts.h"
 
 #include "Adapt/Adapt.h"
-#include "BoundaryZone.h"
 #include "FilterRun.h"
 #include "PackedData.h"
 
@@ -83,7 +82,7 @@ FillParts::KnownPart FillParts::Describe(int part, const FilledPart& one)
   known.Triangles = one.OwnMesh.NumberOfTriangles();
   known.Points = one.Input->GetNumberOfPoints();
   known.OwnPoints = one.OwnCount();
-  known.LargestId = one.LargestId();
+  known.LargestId = elevation::LargestId(one.Input->GetPointData()->GetGlobalIds());
   known.NextHole = NextHole(one.Input);
   for (std::size_t t = 0; t < one.RegionOf.size(); ++t)
   {
@@ -394,9 +393,9 @@ void FillParts::Surround(const std::vector<char>& areWaiting, const Progress& pr
         }
         // Groups of this rank may be many, so what goes to their files is not kept.
         Bytes packed = PackData(ChosenTriangles(one.Input, one.OwnMesh, near));
-        isInFiles&& this->GroupCrew->IsOwn(group)
-          ? this->GroupCrew->At(group, Surrounding).Append(std::move(packed))
-          : this->GroupCrew->Send(group, Surrounding, std::move(packed));
+        const bool isOwnFile = isInFiles && this->GroupCrew->IsOwn(group);
+        isOwnFile ? this->GroupCrew->At(group, Surrounding).Append(std::move(packed))
+                  : this->GroupCrew->Send(group, Surrounding, std::move(packed));
       }
     });
   });

@@ -9,13 +9,11 @@
 #include "FilledPart.h"
 
 #include "Adapt/Adapt.h"
-#include "BoundaryZone.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
-#include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -91,13 +89,10 @@ void FilledPart::ListShared(bool byIds)
 std::vector<char> FilledPart::AreOthers() const
 {
   std::vector<char> areOthers(static_cast<std::size_t>(this->Input->GetNumberOfPoints()), 0);
-  if (vtkUnsignedCharArray* const marks = GhostsOf(this->Input->GetPointData()))
+  vtkUnsignedCharArray* const marks = GhostsOf(this->Input->GetPointData());
+  for (std::size_t i = 0; i < areOthers.size(); ++i)
   {
-    for (std::size_t i = 0; i < areOthers.size(); ++i)
-    {
-      const vtkIdType at = static_cast<vtkIdType>(i);
-      areOthers[i] = marks->GetValue(at) & vtkDataSetAttributes::DUPLICATEPOINT;
-    }
+    areOthers[i] = IsCopy(marks, static_cast<vtkIdType>(i));
   }
   for (std::size_t i = 0; i < this->Shared.Places.size(); ++i)
   {
@@ -171,22 +166,6 @@ vtkIdType FilledPart::OtherCount() const
 {
   const std::vector<char>& copies = this->Shared.AreCopies;
   return static_cast<vtkIdType>(this->Added.size()) + std::count(copies.begin(), copies.end(), 1);
-}
-
-vtkIdType FilledPart::LargestId() const
-{
-  vtkDataArray* const ids = this->Input->GetPointData()->GetGlobalIds();
-  vtkIdType largest = -1;
-  if (auto* const plain = vtkIdTypeArray::FastDownCast(ids))
-  {
-    const vtkIdType* const begin = plain->GetPointer(0);
-    return std::max(largest, *std::max_element(begin, begin + plain->GetNumberOfTuples()));
-  }
-  for (vtkIdType i = 0; ids && i < ids->GetNumberOfTuples(); ++i)
-  {
-    largest = std::max<vtkIdType>(largest, ids->GetVariantValue(i).ToTypeInt64());
-  }
-  return largest;
 }
 
 /** The input and the corners of others; of points that parts have in common, one is not a ghost. */
@@ -285,19 +264,27 @@ void FilledPart::PlaceAttributes(vtkPolyData* input, FillResult& placed) const
   }
 }
 
-/** Global ids after the largest of all parts, in the order of the holes. */
+/**
+ * Global ids after the largest of all parts, in the order of the holes. Where their type has no
+ * such numbers they are -1, and the array is no longer one of global ids, on all parts alike.
+ */
 void FilledPart::NumberNewPoints(
-  const SharedHoles& all, vtkIdType largest, vtkPolyData* output) const
+  const SharedHoles& all, vtkIdType largest, vtkPointData* output) const
 {
-  vtkDataArray* const ids = output->GetPointData()->GetGlobalIds();
+  vtkDataArray* const ids = output->GetGlobalIds();
+  const bool canNumber = CanNumber(ids, largest, all.FirstNewPoints.back());
   // New points come last, hole by hole, as Numbers lists the holes.
-  vtkIdType next = output->GetNumberOfPoints() - this->Filled.Patches.NumberOfPoints();
+  vtkIdType next = output->GetNumberOfTuples() - this->Filled.Patches.NumberOfPoints();
   for (const Index hole : this->Filled.Numbers)
   {
     for (vtkIdType i = all.FirstNewPoints[hole]; ids && i < all.FirstNewPoints[hole + 1]; ++i)
     {
-      ids->SetComponent(next++, 0, static_cast<double>(largest + 1 + i));
+      ids->SetVariantValue(next++, vtkVariant(canNumber ? largest + 1 + i : -1));
     }
+  }
+  if (!canNumber && all.FirstNewPoints.back() > 0)
+  {
+    output->SetActiveAttribute(-1, vtkDataSetAttributes::GLOBALIDS);
   }
 }
 
@@ -309,7 +296,7 @@ void FilledPart::Write(const SharedHoles& all, bool areMarked, vtkIdType largest
     this->WithCorners(areMarked, progress.Between(0.0, 0.2));
   MakeSurface(input, this->OwnMesh, this->PlacedPatches(all, input), all.Interpolate,
     progress.Between(0.2, 1.0), output);
-  this->NumberNewPoints(all, largestId, output);
+  this->NumberNewPoints(all, largestId, output->GetPointData());
 }
 
 vtkSmartPointer<vtkPolyData> FilledPart::PointsOnBorder() const

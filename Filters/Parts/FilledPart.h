@@ -57,8 +57,6 @@ struct FilledPart
   std::vector<Index> PlaceOf; ///< of points of the surrounding, after the input's points
   /** How many points are other parts' in the output, as far as it is not marked in the input. */
   vtkIdType OtherCount() const;
-  /** The largest global id, or -1. */
-  vtkIdType LargestId() const;
 
   /**
    * Writes the triangles and the patches.
@@ -79,7 +77,7 @@ private:
   vtkSmartPointer<vtkPolyData> WithCorners(bool areMarked, const Progress& progress) const;
   FillResult PlacedPatches(const SharedHoles& all, vtkPolyData* input) const;
   void PlaceAttributes(vtkPolyData* input, FillResult& placed) const;
-  void NumberNewPoints(const SharedHoles& all, vtkIdType largest, vtkPolyData* output) const;
+  void NumberNewPoints(const SharedHoles& all, vtkIdType largest, vtkPointData* output) const;
 };
 
 /** Output 1 of the filter. @param[in] points  of the border of all parts; a point may come again */

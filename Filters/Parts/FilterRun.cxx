@@ -20,7 +20,6 @@
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
-#include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
@@ -28,9 +27,10 @@
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkStringArray.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <iterator>
 #include <map>
 #include <numeric>
@@ -74,13 +74,6 @@ void EmptyOutputs(const Place& place)
   }
 }
 
-/** Whether it is another rank's. */
-bool IsCopy(vtkPolyData* surface, vtkIdType point)
-{
-  vtkUnsignedCharArray* const marks = GhostsOf(surface->GetPointData());
-  return marks && (marks->GetValue(point) & vtkDataSetAttributes::DUPLICATEPOINT);
-}
-
 /**
  * Removes the points that no cell has. A rank keeps its own that cells of another have, so that
  * each point still belongs to one. All ranks call it, those without an output with nullptr.
@@ -92,16 +85,24 @@ bool IsCopy(vtkPolyData* surface, vtkIdType point)
 void KeepUsed(vtkPolyData* surface, const Ranks& ranks, const Progress& progress)
 {
   std::vector<char> areUsed;
-  std::vector<PointKey> keys; // of points of others that are used here
+  // Of points of others that are used here. Without ids, points at one place are known by their
+  // order, as in CommonPoints: the last number counts those before.
+  using UsedKey = std::array<std::int64_t, 4>;
+  std::vector<UsedKey> keys;
+  std::map<PointKey, std::int64_t> counts;
+  const auto next = [&counts](const PointKey& key) {
+    return UsedKey{ { key[0], key[1], key[2], counts[key]++ } };
+  };
   const bool hasPoints = surface && surface->GetNumberOfPoints() > 0;
   // Either all ranks go by ids or none does: keys of both kinds would not meet.
   const bool byIds = !IsOnAny(ranks, hasPoints && !surface->GetPointData()->GetGlobalIds());
-  // With areCopies: ghosts that are used here. Without: own points that are not.
-  const auto forEach = [&](bool areCopies, const auto& visit) {
+  // Ghosts or own points, that are used here or not.
+  const auto forEach = [&](bool areCopies, bool areUsedHere, const auto& visit) {
     for (std::size_t i = 0; i < areUsed.size(); ++i)
     {
       const vtkIdType point = static_cast<vtkIdType>(i);
-      if (bool(areUsed[i]) == areCopies && IsCopy(surface, point) == areCopies)
+      if (bool(areUsed[i]) == areUsedHere &&
+        IsCopy(GhostsOf(surface->GetPointData()), point) == areCopies)
       {
         visit(areUsed[i], PointKeys(surface, byIds).Of(point));
       }
@@ -109,15 +110,22 @@ void KeepUsed(vtkPolyData* surface, const Ranks& ranks, const Progress& progress
   };
   ranks.Agree([&] {
     areUsed = hasPoints ? FlagUsed(surface) : std::vector<char>();
-    forEach(true, [&keys](char, const PointKey& key) { keys.push_back(key); });
+    forEach(true, true, [&](char, const PointKey& key) { keys.push_back(next(key)); });
   });
   keys = ranks.Collect(keys);
   ranks.Agree([&] {
     // Only now is it known which of the own points another rank uses.
     std::sort(keys.begin(), keys.end());
-    forEach(false, [&keys](char& isUsed, const PointKey& key) {
-      isUsed = std::binary_search(keys.begin(), keys.end(), key);
-    });
+    counts.clear();
+    const auto isUsedBy = [&](const PointKey& key) {
+      const auto has = [&keys](const UsedKey& used) {
+        return std::binary_search(keys.begin(), keys.end(), used);
+      };
+      return has({ { key[0], key[1], key[2], 0 } }) && has(next(key));
+    };
+    // A point that is used here may be the one; then no other at its place stays.
+    forEach(false, true, [&](char, const PointKey& key) { isUsedBy(key); });
+    forEach(false, false, [&](char& isUsed, const PointKey& key) { isUsed = isUsedBy(key); });
     if (hasPoints)
     {
       KeepFlagged(areUsed, progress, surface);
@@ -214,19 +222,17 @@ bool FilterRun::ShouldReport(const Place& place, const Ranks& ranks) const
 {
   // A block that is empty on all ranks is reported on by rank 0, so that somebody is.
   return HasPoints(place) || IsOtherType(place) ||
-    (ranks.OwnRank() == 0 &&
-      !std::binary_search(this->Occupied.begin(), this->Occupied.end(), IdOf(place.Path)));
+    (ranks.OwnRank() == 0 && this->Occupied.count(place.Path) == 0);
 }
 
 double FilterRun::GatherSpreadBlocks(
   std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress)
 {
-  const std::map<vtkIdType, int> spread = FindSpread(places, ranks, this->Occupied);
+  const std::map<std::string, int> spread = FindSpread(places, ranks, this->Occupied);
   // Gathering alone is short; the filter's own way on ranks is nearly all of the work.
   const double share = this->Spread ? 0.9 : 0.1;
   double done = 0.0;
-  // In the order of their numbers, which is the same on all ranks: each block is a series of
-  // meetings.
+  // In the order of their paths, the same on all ranks: each block is a series of meetings.
   for (const auto& block : spread)
   {
     const double next = done + share / static_cast<double>(spread.size());
@@ -237,7 +243,7 @@ double FilterRun::GatherSpreadBlocks(
     {
       // A rank may have several places of a block: partitions. An image among them is an error
       // later.
-      if (IdOf(place.Path) == block.first && !IsOtherType(place))
+      if (place.Path == block.first && !IsOtherType(place))
       {
         own.push_back(&place);
       }

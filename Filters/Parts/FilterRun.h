@@ -28,6 +28,7 @@
 
 #include <exception>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -148,7 +149,7 @@ private:
   vtkStringArray* Messages;
   std::vector<Message> Errors, Warnings;
   bool IsAborted = false;
-  std::vector<vtkIdType> Occupied; ///< numbers of the blocks with points, on any rank
+  std::set<std::string> Occupied; ///< paths of the blocks with points, on any rank
 };
 
 } // namespace elevation

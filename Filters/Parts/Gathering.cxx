@@ -13,7 +13,6 @@
 #include "Ranks.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -34,12 +33,7 @@ void CheckCorners(vtkPolyData* part)
   // In this order, by which cells are numbered; strips have been refused.
   for (vtkCellArray* cells : { part->GetVerts(), part->GetLines(), part->GetPolys() })
   {
-    auto each = vtk::TakeSmartPointer(cells->NewIterator());
-    for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell(), ++cell)
-    {
-      vtkIdType size = 0;
-      const vtkIdType* ids = nullptr;
-      each->GetCurrentCell(size, ids);
+    ForEachCell(cells, [&](vtkIdType size, const vtkIdType* ids) {
       for (vtkIdType i = 0; i < size; ++i)
       {
         if (ids[i] < 0 || ids[i] >= count)
@@ -47,7 +41,8 @@ void CheckCorners(vtkPolyData* part)
           throw Error(NoSuchPoint(cell, ids[i], count));
         }
       }
-    }
+      ++cell;
+    });
   }
 }
 

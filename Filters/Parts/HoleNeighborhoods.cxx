@@ -8,8 +8,6 @@
  */
 #include "HoleNeighborhoods.h"
 
-#include "BoundaryZone.h"
-
 #include "vtkCellArray.h"
 #include "vtkNew.h"
 #include "vtkPolyData.h"

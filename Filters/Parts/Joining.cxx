@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 /*
- * Rows say which tuple of which part each joined tuple is. Points, point data, cells and cell data
- * are then the same copying of rows. The passes: which points are the same (CommonPoints.h); points
- * and their arrays; field data; then, for a mesh, vertices, lines and polygons in this order, as
- * VTK numbers cells, and their arrays.
+ * JoinedRows say which tuple of which part each joined tuple is. Points, point data, cells and cell
+ * data are then the same copying of rows. The passes: which points are the same (CommonPoints.h);
+ * points and their arrays; field data; then, for a mesh, vertices, lines and polygons in this
+ * order, as VTK numbers cells, and their arrays.
  */
 #include "Joining.h"
 
@@ -12,7 +12,6 @@
 #include "CommonPoints.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
@@ -35,7 +34,7 @@ namespace
 {
 /** Copies some tuples; copy(to, from) does, for two lists of the same length. */
 template <typename Copy>
-void CopyRows(const Rows& rows, const Progress& progress, const Copy& copy)
+void CopyRows(const JoinedRows& rows, const Progress& progress, const Copy& copy)
 {
   // VTK's lists of ids are copies; so many are made at a time, and progress is reported in between.
   constexpr std::size_t atOnce = 65536;
@@ -55,8 +54,8 @@ void CopyRows(const Rows& rows, const Progress& progress, const Copy& copy)
   }
 }
 
-vtkSmartPointer<vtkPoints> JoinPoints(
-  const Parts& parts, const std::vector<Rows>& rows, vtkIdType count, const Progress& progress)
+vtkSmartPointer<vtkPoints> JoinPoints(const Parts& parts, const std::vector<JoinedRows>& rows,
+  vtkIdType count, const Progress& progress)
 {
   auto points = vtkSmartPointer<vtkPoints>::New();
   const auto isFloat = [](const auto& part) {
@@ -76,8 +75,8 @@ vtkSmartPointer<vtkPoints> JoinPoints(
 
 /** The joined array that begins with one of the first part; nullptr if not all parts have it. */
 vtkSmartPointer<vtkAbstractArray> JoinArray(vtkAbstractArray* first,
-  const std::vector<vtkDataSetAttributes*>& data, const std::vector<Rows>& rows, vtkIdType count,
-  const Progress& progress)
+  const std::vector<vtkDataSetAttributes*>& data, const std::vector<JoinedRows>& rows,
+  vtkIdType count, const Progress& progress)
 {
   std::vector<vtkAbstractArray*> arrays = { first };
   // All parts are looked at before anything is copied.
@@ -102,7 +101,7 @@ vtkSmartPointer<vtkAbstractArray> JoinArray(vtkAbstractArray* first,
 }
 
 /** Adds the ghost flags where some are left; what was a copy of another rank's is none any more. */
-void JoinGhosts(const std::vector<vtkDataSetAttributes*>& data, const std::vector<Rows>& rows,
+void JoinGhosts(const std::vector<vtkDataSetAttributes*>& data, const std::vector<JoinedRows>& rows,
   vtkIdType count, vtkDataSetAttributes* output)
 {
   vtkNew<vtkUnsignedCharArray> flags;
@@ -115,10 +114,6 @@ void JoinGhosts(const std::vector<vtkDataSetAttributes*>& data, const std::vecto
     vtkUnsignedCharArray* const ghosts = GhostsOf(data[part]);
     for (std::size_t i = 0; ghosts && i < rows[part].From.size(); ++i)
     {
-      // The flag of a copy is the same for points and cells.
-      static_assert(
-        int(vtkDataSetAttributes::DUPLICATEPOINT) == vtkDataSetAttributes::DUPLICATECELL,
-        "one flag");
       const unsigned char flag =
         ghosts->GetValue(rows[part].From[i]) & ~vtkDataSetAttributes::DUPLICATEPOINT;
       flags->SetValue(rows[part].To[i], flag);
@@ -136,7 +131,7 @@ void JoinGhosts(const std::vector<vtkDataSetAttributes*>& data, const std::vecto
  * @return the names of the others
  */
 std::set<std::string> JoinArrays(const std::vector<vtkDataSetAttributes*>& data,
-  const std::vector<Rows>& rows, vtkIdType count, const Progress& progress,
+  const std::vector<JoinedRows>& rows, vtkIdType count, const Progress& progress,
   vtkDataSetAttributes* output)
 {
   for (int i = 0; i < data.front()->GetNumberOfArrays(); ++i)
@@ -183,7 +178,7 @@ std::set<std::string> JoinArrays(const std::vector<vtkDataSetAttributes*>& data,
 /** The joined cells of one kind. @param[in,out] rows  of the cells, to which they are added */
 vtkSmartPointer<vtkCellArray> JoinCells(const Parts& parts, const std::vector<vtkCellArray*>& kind,
   const CommonPoints& points, const std::vector<vtkIdType>& firstCells, const Progress& progress,
-  vtkIdType& count, std::vector<Rows>& rows)
+  vtkIdType& count, std::vector<JoinedRows>& rows)
 {
   auto cells = vtkSmartPointer<vtkCellArray>::New();
   std::vector<vtkIdType> corners;
@@ -192,19 +187,14 @@ vtkSmartPointer<vtkCellArray> JoinCells(const Parts& parts, const std::vector<vt
     vtkUnsignedCharArray* const ghosts = GhostsOf(parts[part]->GetCellData());
     // Cells of a kind follow those of the kinds before, and so do their tuples.
     vtkIdType cell = firstCells[part];
-    auto each = vtk::TakeSmartPointer(kind[part]->NewIterator());
-    for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell(), ++cell)
-    {
+    ForEachCell(kind[part], [&](vtkIdType size, const vtkIdType* ids) {
       ReportStep(progress, static_cast<std::size_t>(cell),
         static_cast<std::size_t>(parts[part]->GetNumberOfCells()));
       // Its owner is another part, and has it.
-      if (ghosts && (ghosts->GetValue(cell) & vtkDataSetAttributes::DUPLICATECELL))
+      if (IsCopy(ghosts, cell++))
       {
-        continue;
+        return;
       }
-      const vtkIdType* ids = nullptr;
-      vtkIdType size = 0;
-      each->GetCurrentCell(size, ids);
       corners.clear();
       for (vtkIdType i = 0; i < size; ++i)
       {
@@ -212,8 +202,8 @@ vtkSmartPointer<vtkCellArray> JoinCells(const Parts& parts, const std::vector<vt
       }
       cells->InsertNextCell(size, corners.data());
       // From the cell of the part to the next of the joined ones, which are counted over all kinds.
-      rows[part].Add(cell, count++);
-    }
+      rows[part].Add(cell - 1, count++);
+    });
   }
   return cells;
 }
@@ -285,17 +275,19 @@ void WarnOfLeftOut(
   }
 }
 
-/*
- * The progress is that of finding common points: copying moves on at its end, and only hears
- * aborts.
- */
+// The sort takes most of the time.
 vtkSmartPointer<vtkPolyData> Join(
   const Parts& parts, PartKind kind, const Progress& progress, std::vector<Message>& warnings)
 {
+  return Join(parts, kind, CommonPoints(parts, kind, progress), progress, warnings);
+}
+
+// The progress has been that of finding common points: copying does not move it, and hears aborts.
+vtkSmartPointer<vtkPolyData> Join(const Parts& parts, PartKind kind, const CommonPoints& points,
+  const Progress& progress, std::vector<Message>& warnings)
+{
   auto joined = vtkSmartPointer<vtkPolyData>::New();
-  // The sort takes most of the time.
-  const CommonPoints points(parts, kind, progress.Between(0.0, 1.0));
-  std::vector<Rows> rows = points.Sources();
+  std::vector<JoinedRows> rows = points.Sources();
   const Progress copying = progress.Between(1.0, 1.0);
   joined->SetPoints(JoinPoints(parts, rows, points.Count(), copying));
   std::vector<vtkDataSetAttributes*> data;
@@ -311,7 +303,7 @@ vtkSmartPointer<vtkPolyData> Join(
     return joined;
   }
   // From here on of cells, which JoinCells() adds kind by kind.
-  rows.assign(parts.size(), Rows());
+  rows.assign(parts.size(), JoinedRows());
   data.clear();
   // The cells of a kind, and the first of them, of each part.
   std::vector<vtkCellArray*> vertices, lines, polygons;

@@ -39,8 +39,12 @@ namespace elevation
  *
  * @param[in] parts     each has points; their arrays have the right length, their cells points that
  *                      exist; no triangle strips
+ * @param[in] points    theirs, by the same kind
  * @param[out] warnings one is added where arrays are left out, because not all parts have them
  */
+vtkSmartPointer<vtkPolyData> Join(const Parts& parts, PartKind kind, const CommonPoints& points,
+  const Progress& progress, std::vector<Message>& warnings);
+/** The same, which finds common points first. */
 vtkSmartPointer<vtkPolyData> Join(
   const Parts& parts, PartKind kind, const Progress& progress, std::vector<Message>& warnings);
 

@@ -27,7 +27,7 @@ namespace elevation
 
 namespace
 {
-std::array<vtkFieldData*, 3> FieldsOf(vtkPolyData* data)
+std::array<vtkFieldData*, 3> ArraysOf(vtkPolyData* data)
 {
   return { data->GetPointData(), data->GetCellData(), data->GetFieldData() };
 }
@@ -52,7 +52,7 @@ int Replace(vtkFieldData* fields, const std::string& name, int type, int compone
 /** What VTK's communicators do not keep of each array. */
 struct ArrayMark
 {
-  int Field; // of FieldsOf()
+  int Field; // of ArraysOf()
   int Type;
   int Components;
   int Attributes; // a bit for each
@@ -67,7 +67,7 @@ struct ArrayMark
 Bytes MarkArrays(vtkPolyData* data)
 {
   Bytes marks;
-  const std::array<vtkFieldData*, 3> all = FieldsOf(data);
+  const std::array<vtkFieldData*, 3> all = ArraysOf(data);
   for (int k = 0; k < 3; ++k)
   {
     auto* const attributes = vtkDataSetAttributes::SafeDownCast(all[k]);
@@ -115,7 +115,7 @@ void RestoreArrays(const char* marks, const char* end, vtkPolyData* data)
     std::string name;
     TakeFrom(marks, &mark, 1);
     TakeList(marks, name);
-    vtkFieldData* const fields = FieldsOf(data)[mark.Field];
+    vtkFieldData* const fields = ArraysOf(data)[mark.Field];
     int index = -1;
     vtkAbstractArray* const array = fields->GetAbstractArray(name.c_str(), index);
     if (!array || array->GetDataType() != mark.Type)

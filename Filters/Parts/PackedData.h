@@ -20,7 +20,7 @@ namespace elevation
 /**
  * A data set as bytes, and back, by VTK's communicator. What that changes stays: the order of
  * arrays with names, their types, all their attributes, and the 64 bits of a vtkIdType. Arrays
- * without a name go as VTK takes them.
+ * without values come last, and arrays without a name go as VTK takes them.
  *
  *     | size of the marks | marks of the arrays | what VTK makes of points, cells and arrays |
  *

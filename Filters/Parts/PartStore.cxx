@@ -132,6 +132,7 @@ void PartStore::KeepSettled(int part, const SurfacePart& own, SettledCell& settl
     return;
   }
   Bytes unused;
+  // Hidden points have been counted by Settling, so their number is not kept.
   const Index counts[] = { result.NumberOfDuplicates, result.NumberOfNotFinite };
   AppendTo(unused, counts, 2);
   AppendList(unused, result.UnusedPoints);

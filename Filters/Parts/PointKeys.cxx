@@ -3,10 +3,8 @@
 #include "PointKeys.h"
 
 #include "vtkDataArray.h"
-#include "vtkIdTypeArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkVariant.h"
 
 #include <cstddef>
 #include <cstring>
@@ -25,9 +23,7 @@ PointKey PointKeys::Of(vtkIdType point) const
   PointKey key{ { 0, 0, 0 } };
   if (this->Ids)
   {
-    // A vtkIdTypeArray is what filters write, and is read without a vtkVariant for each value.
-    auto* const plain = vtkIdTypeArray::FastDownCast(this->Ids);
-    key[0] = plain ? plain->GetValue(point) : this->Ids->GetVariantValue(point).ToTypeInt64();
+    key[0] = IdAt(this->Ids, point);
     return key;
   }
   double xyz[3];
@@ -38,6 +34,15 @@ PointKey PointKeys::Of(vtkIdType point) const
   }
   std::memcpy(key.data(), xyz, sizeof(xyz));
   return key;
+}
+
+// By Fibonacci hashing: the multiplier is 2^64 divided by the golden ratio. One round alone would
+// keep a rule in the upper bits, as successive numbers go on by the same step there. Without the
+// 1, the hash of 0 would be 0, and point 0 in every sample.
+std::uint64_t HashOf(std::uint64_t number)
+{
+  const std::uint64_t bits = 0x9E3779B97F4A7C15ull * (number + 1);
+  return (bits ^ (bits >> 31)) * 0xD6E8FEB86659FD93ull;
 }
 
 // In the order of the points, or of those chosen.

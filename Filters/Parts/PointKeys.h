@@ -41,6 +41,9 @@ private:
   vtkDataArray* Ids; // nullptr: by x,y,z
 };
 
+/** Two rounds of mixing: bits with no rule that rows of a grid could keep step with. */
+std::uint64_t HashOf(std::uint64_t number);
+
 /** The keys of chosen points, or of all (nullptr). */
 std::vector<PointKey> KeysOf(vtkPolyData* data, bool byIds, const std::vector<Index>* chosen);
 

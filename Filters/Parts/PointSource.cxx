@@ -14,15 +14,13 @@
 #include "PointSource.h"
 
 #include "Adapt/Adapt.h"
+#include "PointKeys.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkIdTypeArray.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
-#include "vtkUnsignedCharArray.h"
-#include "vtkVariant.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -43,16 +41,6 @@ constexpr const char* IdsName = "GlobalPointIds";
 constexpr vtkIdType PointsInStretch = 1 << 20; // of slices, and in a file
 constexpr std::size_t MostSampled = 1 << 19;   // of slices
 constexpr vtkIdType SamplePerPart = 1000;      // of points that come at once
-
-/** Two rounds of mixing: bits with no rule that rows of a grid could keep step with. */
-std::uint64_t HashOf(vtkIdType number)
-{
-  // By Fibonacci hashing: the multiplier is 2^64 divided by the golden ratio. One round alone would
-  // keep a rule in the upper bits, as successive numbers go on by the same step there. Without the
-  // 1, the hash of 0 would be 0, and point 0 in every sample.
-  const std::uint64_t bits = 0x9E3779B97F4A7C15ull * static_cast<std::uint64_t>(number + 1);
-  return (bits ^ (bits >> 31)) * 0xD6E8FEB86659FD93ull;
-}
 
 /** A place of the stretch [0, size) by such a rule. */
 vtkIdType PlaceInStretch(vtkIdType stretch, vtkIdType size)
@@ -174,13 +162,19 @@ void PointSource::Add(vtkPointSet* points, const Progress& progress)
   std::string idsName;
   this->AreGiven = TakeIdKind(kinds, idsName);
   this->Rows = PointTable(kinds);
-  this->Read(points, idsName, this->OwnCount, progress.Between(0.0, 0.5));
-  const vtkIdType count = static_cast<vtkIdType>(this->Kept.size());
+  this->Read(points, idsName, this->OwnCount);
+  const vtkIdType count = static_cast<vtkIdType>(this->Rows.Count());
   for (vtkIdType first = 0; first < count; first += PointsInStretch)
   {
-    Report(progress, 0.5 + 0.5 * static_cast<double>(first) / static_cast<double>(count));
-    const std::vector<vtkIdType> places(
-      this->Kept.begin() + first, this->Kept.begin() + std::min(first + PointsInStretch, count));
+    Report(progress, static_cast<double>(first) / static_cast<double>(count));
+    std::vector<vtkIdType> places;
+    for (vtkIdType at = first; at < std::min(first + PointsInStretch, count); ++at)
+    {
+      if (!IsCopy(this->Rows.Marks(), at))
+      {
+        places.push_back(at);
+      }
+    }
     const Bytes packed = this->Rows.Pack(places);
     // Short slices share a file until it has as much as a stretch: not a file for each slice.
     if (this->InLastStretch + static_cast<vtkIdType>(places.size()) > PointsInStretch ||
@@ -195,14 +189,14 @@ void PointSource::Add(vtkPointSet* points, const Progress& progress)
     this->SampleStretch(places);
   }
   // Also points of other ranks, so that a place stays that in the input.
-  this->OwnCount += static_cast<vtkIdType>(this->Rows.Count());
+  this->OwnCount += count;
   this->Rows = PointTable();
-  this->Kept.clear();
 }
 
 /**
  * A hash of its place decides whether a point is in the sample; of one too large each other goes,
- * as the mask gets another bit: what remains is what the longer mask would have chosen from the X
+ * as the mask gets another bit: what remains is what the longer mask would have chosen from the
+ * start.
  */
 void PointSource::SampleStretch(const std::vector<vtkIdType>& places)
 {
@@ -235,7 +229,7 @@ void PointSource::KeepSample()
  * All ranks agree on the arrays, whether coordinates are float, and the number of each rank's first
  * point. Errors in the arrays name the rank.
  */
-void PointSource::NumberPoints(const Progress& progress, SurfacePart& common)
+void PointSource::NumberPoints(SurfacePart& common)
 {
   this->AllRanks.Agree([&]() {
     try
@@ -275,36 +269,23 @@ void PointSource::NumberPoints(const Progress& progress, SurfacePart& common)
   this->AllRanks.Agree([&]() {
     if (this->Input)
     {
-      this->Read(this->Input, common.IdsName, this->First, this->AllRanks.Watched(progress));
+      this->Read(this->Input, common.IdsName, this->First);
     }
   });
 }
 
-/** Rows of points: with the ids given, if any, and without those of other ranks. */
-void PointSource::Read(
-  vtkPointSet* points, const std::string& idsName, vtkIdType first, const Progress& progress)
+/**
+ * Rows of points, with the ids given, if any. Points of other ranks have rows, as places are those of
+ * the input, but go nowhere: their owner sends them.
+ */
+void PointSource::Read(vtkPointSet* points, const std::string& idsName, vtkIdType first)
 {
-  this->Rows.Read(points, first, progress);
-  vtkPointData* const data = points->GetPointData();
-  vtkDataArray* const ids = this->AreGiven ? data->GetArray(idsName.c_str()) : nullptr;
-  auto* const plainIds = vtkIdTypeArray::FastDownCast(ids);
-  auto* const ghosts =
-    vtkUnsignedCharArray::SafeDownCast(data->GetArray(vtkDataSetAttributes::GhostArrayName()));
-  // Ghost points have rows, as places are those of the input, but are not kept: their owner sends
-  // them.
-  this->Kept.reserve(this->Rows.Count());
-  for (vtkIdType at = 0; at < static_cast<vtkIdType>(this->Rows.Count()); ++at)
+  this->Rows.Read(points, first);
+  vtkDataArray* const ids =
+    this->AreGiven ? points->GetPointData()->GetArray(idsName.c_str()) : nullptr;
+  for (vtkIdType at = 0; ids && at < ids->GetNumberOfTuples(); ++at)
   {
-    if (ids)
-    {
-      this->Rows.Ids[at] = plainIds
-        ? plainIds->GetValue(at)
-        : static_cast<vtkIdType>(ids->GetVariantValue(at).ToTypeInt64());
-    }
-    if (!ghosts || !(ghosts->GetValue(at) & vtkDataSetAttributes::DUPLICATEPOINT))
-    {
-      this->Kept.push_back(at);
-    }
+    this->Rows.Ids[at] = IdAt(ids, at);
   }
 }
 
@@ -314,18 +295,18 @@ void PointSource::Read(
  */
 std::vector<double> PointSource::SampleAtOnce(vtkIdType parts) const
 {
-  std::vector<vtkIdType> all = { static_cast<vtkIdType>(this->Kept.size()) };
+  const vtkIdType count = static_cast<vtkIdType>(this->Rows.Count());
+  std::vector<vtkIdType> all = { count };
   // The same stretch on all ranks: each point of all has the same chance, whatever rank it is on.
   this->AllRanks.Sum(all);
   const vtkIdType stretch = std::max<vtkIdType>(1, all[0] / (SamplePerPart * parts));
   std::vector<double> coordinates;
   this->AllRanks.Agree([&]() {
-    const vtkIdType count = static_cast<vtkIdType>(this->Kept.size());
     for (vtkIdType i = 0; i * stretch < count; ++i)
     {
       const vtkIdType at = i * stretch + PlaceInStretch(i, std::min(stretch, count - i * stretch));
-      const double* const p = this->Rows.At(this->Kept[at]);
-      if (this->Rows.IsFinite(this->Kept[at]))
+      const double* const p = this->Rows.At(at);
+      if (this->Rows.IsFinite(at) && !IsCopy(this->Rows.Marks(), at))
       {
         coordinates.insert(coordinates.end(), p, p + 2);
       }
@@ -371,8 +352,8 @@ Cuts PointSource::CutPlane(int parts)
 }
 
 /**
- * Sends the points that are kept, in their order; then there are none. Memory is given back as rows
- * are packed, part by part.
+ * Sends own points, in their order; then there are none. Memory is given back as rows are packed,
+ * part by part.
  */
 void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Progress& progress,
   std::vector<vtkIdType>& counts)
@@ -380,19 +361,23 @@ void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Pr
   // First the parts alone, so that the places of each take no more memory than they need.
   const int firstOwn = engine.FirstOwn();
   const std::uint64_t ownCount = static_cast<std::uint64_t>(engine.EndOwn() - firstOwn);
-  std::vector<int> partOf(this->Kept.size());
+  std::vector<int> partOf(this->Rows.Count(), None);
   std::vector<std::size_t> sizes(counts.size(), 0);
-  for (std::size_t i = 0; i < this->Kept.size(); ++i)
+  vtkUnsignedCharArray* const marks = this->Rows.Marks();
+  for (std::size_t at = 0; at < partOf.size(); ++at)
   {
-    ReportStep(progress, i, this->Kept.size(), 1 << 16);
-    const vtkIdType at = this->Kept[i];
+    ReportStep(progress, at, partOf.size(), 1 << 16);
+    if (IsCopy(marks, static_cast<vtkIdType>(at)))
+    {
+      continue;
+    }
     const double* const p = this->Rows.At(at);
     // A rank with points holds at least one part (TriangulateParts.h), so it never divides by 0. By
     // the id, not by the place: where a point goes must not depend on how slices were cut.
-    partOf[i] = this->Rows.IsFinite(at)
+    partOf[at] = this->Rows.IsFinite(at)
       ? plane.OwnerOf({ p[0], p[1] })
       : firstOwn + static_cast<int>(static_cast<std::uint64_t>(this->Rows.Ids[at]) % ownCount);
-    ++sizes[partOf[i]];
+    ++sizes[partOf[at]];
   }
   std::vector<std::vector<vtkIdType>> places(counts.size());
   for (std::size_t part = 0; part < places.size(); ++part)
@@ -400,11 +385,13 @@ void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Pr
     places[part].reserve(sizes[part]);
     counts[part] += static_cast<vtkIdType>(sizes[part]);
   }
-  for (std::size_t i = 0; i < this->Kept.size(); ++i)
+  for (std::size_t at = 0; at < partOf.size(); ++at)
   {
-    places[partOf[i]].push_back(this->Kept[i]);
+    if (partOf[at] != None)
+    {
+      places[partOf[at]].push_back(static_cast<vtkIdType>(at));
+    }
   }
-  this->Kept = std::vector<vtkIdType>();
   for (std::size_t part = 0; part < places.size(); ++part)
   {
     Report(progress, 1.0);
@@ -424,18 +411,17 @@ void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Pr
 Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, SurfacePart& common,
   std::vector<vtkIdType>& counts)
 {
-  this->NumberPoints(progress.Between(0.0, 0.4), common);
+  this->NumberPoints(common);
   Cuts plane = this->CutPlane(engine.PartCount());
   counts.assign(engine.PartCount(), 0);
   double done = 0.0; // points
   auto next = this->Stretches.begin();
-  const Progress sending = progress.Between(0.4, 1.0);
   bool isMore = true;
   while (isMore)
   {
     // Packing may fail, so it stands in a step; then all deliver together.
     this->AllRanks.Agree([&]() {
-      Progress ofSlice = this->AllRanks.Watched(sending);
+      Progress ofSlice = this->AllRanks.Watched(progress);
       double begin = 0.0, end = 1.0;
       // A rank whose slices are all sent sends nothing, but delivers.
       if (next != this->Stretches.end())
@@ -445,8 +431,6 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
         const double all = static_cast<double>(this->OwnCount);
         begin = done / all;
         end = (done += static_cast<double>(this->Rows.Count())) / all;
-        this->Kept.resize(this->Rows.Count());
-        std::iota(this->Kept.begin(), this->Kept.end(), vtkIdType(0));
         // In files, ids that are not given are places among the points of this rank.
         for (vtkIdType& id : this->Rows.Ids)
         {

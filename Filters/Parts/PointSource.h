@@ -91,9 +91,8 @@ private:
   void SampleStretch(const std::vector<vtkIdType>& places);
   void KeepSample();
   /** Pass 2. */
-  void NumberPoints(const Progress& progress, SurfacePart& common);
-  void Read(
-    vtkPointSet* points, const std::string& idsName, vtkIdType first, const Progress& progress);
+  void NumberPoints(SurfacePart& common);
+  void Read(vtkPointSet* points, const std::string& idsName, vtkIdType first);
   /** Pass 3. */
   std::vector<double> SampleAtOnce(vtkIdType parts) const;
   Cuts CutPlane(int parts);
@@ -117,7 +116,6 @@ private:
   std::uint64_t SampleMask = 0;
   // What is written or sent next:
   PointTable Rows;
-  std::vector<vtkIdType> Kept; // places of those that count
 };
 
 } // namespace elevation

@@ -27,7 +27,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <new>
+#include <numeric>
 #include <tuple>
 
 namespace elevation
@@ -69,12 +69,7 @@ vtkSmartPointer<vtkAbstractArray> MakeArray(const ArrayKind& kind, vtkIdType cou
   {
     array->SetComponentName(static_cast<vtkIdType>(i), kind.ComponentNames[i].c_str());
   }
-  array->SetNumberOfTuples(count);
-  // VTK does not throw where memory ends; the array stays as it was.
-  if (array->GetNumberOfTuples() != count)
-  {
-    throw std::bad_alloc();
-  }
+  SetTuples(count, array);
   return array;
 }
 
@@ -211,27 +206,21 @@ bool PointTable::IsFinite(std::size_t place) const
     !(marks && (marks->GetValue(place) & vtkDataSetAttributes::HIDDENPOINT));
 }
 
-void PointTable::Read(vtkPointSet* points, vtkIdType first, const Progress& progress)
+void PointTable::Read(vtkPointSet* points, vtkIdType first)
 {
   // Hidden points keep their places.
   vtkNew<vtkPolyData> bare;
   bare->SetPoints(points->GetPoints());
-  const DataSetPoints all = ViewPoints(bare);
-  const PointView& view = all.View;
-  const std::size_t count = static_cast<std::size_t>(view.Count);
-  this->Coordinates.Resize(3 * count);
-  this->Ids.Resize(count);
-  for (std::size_t i = 0; i < count; ++i)
+  this->Owner = ViewPoints(bare).Owner;
+  if (!vtkDoubleArray::FastDownCast(this->Owner))
   {
-    ReportStep(progress, i, count, 1 << 16);
-    const Index at = static_cast<Index>(i);
-    const Point2 p = view.At(at);
-    double* const xyz = this->Coordinates.data() + 3 * i;
-    xyz[0] = p.X;
-    xyz[1] = p.Y;
-    xyz[2] = view.Elevation(at);
-    this->Ids[i] = first + at;
+    vtkNew<vtkDoubleArray> converted;
+    converted->DeepCopy(this->Owner);
+    this->Owner = converted;
   }
+  this->Given = vtkDoubleArray::FastDownCast(this->Owner)->GetPointer(0);
+  this->Ids.Resize(static_cast<std::size_t>(points->GetNumberOfPoints()));
+  std::iota(this->Ids.begin(), this->Ids.end(), first);
   this->View(points->GetPointData());
 }
 
@@ -389,11 +378,7 @@ void PointTable::Unpack(const Bytes* packed, std::size_t count)
   for (const auto& array : this->Arrays)
   {
     ReserveTuples(array, all); // keeps the values, unlike the next
-    array->SetNumberOfTuples(all);
-    if (array->GetNumberOfTuples() != all)
-    {
-      throw std::bad_alloc();
-    }
+    SetTuples(all, array);
   }
   for (const Bytes* bytes = packed; bytes != packed + count; ++bytes)
   {

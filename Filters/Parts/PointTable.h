@@ -68,15 +68,18 @@ public:
   explicit PointTable(const std::vector<ArrayKind>& kinds);
 
   std::size_t Count() const { return this->Ids.size(); }
-  const double* At(std::size_t place) const { return this->Coordinates.data() + 3 * place; }
+  const double* At(std::size_t place) const
+  {
+    return (this->Given ? this->Given : this->Coordinates.data()) + 3 * place;
+  }
 
   /** Whether it has a place, and is not hidden. Only such a point goes to the part of its cell. */
   bool IsFinite(std::size_t place) const;
   /** The flags of ghosts, or nullptr. */
   vtkUnsignedCharArray* Marks() const;
 
-  /** Takes points, numbered from @a first; their arrays are not copied. */
-  void Read(vtkPointSet* points, vtkIdType first, const Progress& progress);
+  /** Views points, numbered from @a first, and their arrays. The table is then for Pack() alone. */
+  void Read(vtkPointSet* points, vtkIdType first);
 
   /** The chosen points as bytes: 32 a point, and the values of the arrays. */
   Bytes Pack(const std::vector<vtkIdType>& places) const;
@@ -88,7 +91,7 @@ public:
   /** Keeps the chosen points, in the order given. */
   void Choose(const std::vector<vtkIdType>& places);
 
-  Buffer<double> Coordinates; ///< x, y, z of each point
+  Buffer<double> Coordinates; ///< x, y, z of each point; none after Read()
   Buffer<vtkIdType> Ids;
   std::vector<ArrayKind> Kinds;
   std::vector<vtkSmartPointer<vtkAbstractArray>> Arrays; ///< one of each kind
@@ -99,6 +102,8 @@ private:
    * another; converted ones else; zeros, for ghost flags that this rank has not.
    */
   void View(vtkPointData* data);
+  vtkSmartPointer<vtkDataArray> Owner; // of the positions after Read()
+  const double* Given = nullptr;       // these
   std::size_t MarksIndex = 0; // among the arrays; their number: there are none
 };
 

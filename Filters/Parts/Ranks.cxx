@@ -185,7 +185,7 @@ Bytes Ranks::CollectBytes(const Bytes& bytes) const
   {
     this->Controller->AllGatherV(bytes.data(), all.data(), length, lengths.data(), offsets.data());
   }
-  this->Sent.BytesSent += length * (this->Count() - 1);
+  this->OwnTraffic.BytesSent += length * (this->Count() - 1);
   return all;
 }
 
@@ -314,7 +314,7 @@ std::vector<std::vector<Bytes>> Ranks::ExchangeLists(std::vector<std::vector<Byt
     for (const Bytes& bytes : toEach[other])
     {
       own.push_back(bytes.size());
-      this->Sent.BytesSent += static_cast<vtkIdType>(sizeof(std::size_t) + bytes.size());
+      this->OwnTraffic.BytesSent += static_cast<vtkIdType>(sizeof(std::size_t) + bytes.size());
     }
     const std::size_t length = own.size();
     const auto send = [&]() {
@@ -329,7 +329,7 @@ std::vector<std::vector<Bytes>> Ranks::ExchangeLists(std::vector<std::vector<Byt
     };
     // Both sending first could wait for ever: MPI may hold back a send until the other receives.
     this->OwnRank() < other ? (send(), receive()) : (receive(), send());
-    this->Sent.BytesSent += static_cast<vtkIdType>(sizeof(length));
+    this->OwnTraffic.BytesSent += static_cast<vtkIdType>(sizeof(length));
   });
   // A rank that lacks the memory says so here, while none has begun to send.
   this->Agree([&]() {
@@ -359,7 +359,7 @@ std::vector<std::vector<Bytes>> Ranks::ExchangeLists(std::vector<std::vector<Byt
     };
     this->OwnRank() < other ? (send(), receive()) : (receive(), send());
   });
-  ++this->Sent.Rounds;
+  ++this->OwnTraffic.Rounds;
   return fromEach;
 }
 

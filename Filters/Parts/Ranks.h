@@ -69,7 +69,10 @@ public:
   void Sum(std::vector<vtkIdType>& values) const;
   void Maximum(std::vector<double>& values) const;
 
-  /** The values of all ranks, one after another, of any kind (AnyValue). The lengths may differ. */
+  /**
+   * The values of all ranks, one after another, of any kind (AnyValue). The lengths may differ. For
+   * short lists: a rank without the memory for them throws alone.
+   */
   template <typename Value>
   std::vector<Value> Collect(const std::vector<Value>& values) const
   {
@@ -123,7 +126,7 @@ public:
     vtkIdType BytesSent = 0;
     vtkIdType Rounds = 0;
   };
-  const Traffic& GetTraffic() const { return this->Sent; }
+  const Traffic& GetTraffic() const { return this->OwnTraffic; }
 
   /** Bytes from one rank to another; both know their number, and that the other is there. */
   void Send(const void* bytes, std::size_t size, int rank) const;
@@ -151,7 +154,7 @@ private:
   std::function<void(const Message&)> Waiting;
   std::unique_ptr<RankNotes> Notes;
   mutable bool IsStopped = false; // this step, as another rank has failed
-  mutable Traffic Sent;
+  mutable Traffic OwnTraffic;
 };
 
 /**

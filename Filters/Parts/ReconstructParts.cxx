@@ -228,8 +228,8 @@ void ReconstructParts::Begin(int count)
     vtkDataObject *constraints = nullptr, *boundary = nullptr;
     this->AllRanks->Agree([&]() {
       this->Prepare();
-      constraints = UpdatedLines(this->Set.HasConstraints);
-      boundary = UpdatedLines(this->Set.HasBoundary);
+      constraints = UpdatedLines(this->Set.ConstraintsFilter);
+      boundary = UpdatedLines(this->Set.BoundaryFilter);
     });
     // A different number on a rank would make it hold other parts than the others think.
     const std::vector<vtkIdType> counts = this->AllRanks->Collect(std::vector<vtkIdType>{ count });

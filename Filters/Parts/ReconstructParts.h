@@ -74,8 +74,8 @@ public:
     bool RemoveUnusedPoints = false; ///< the same
     bool IsPrecisionGiven = false;   ///< the same
     // Their input 1 has lines of this rank, or composites of them, or there is none.
-    vtkAlgorithm* HasConstraints = nullptr;
-    vtkAlgorithm* HasBoundary = nullptr;
+    vtkAlgorithm* ConstraintsFilter = nullptr;
+    vtkAlgorithm* BoundaryFilter = nullptr;
   };
 
   /** Of all parts, the same on all ranks after each step; what a step has not found yet is 0. */

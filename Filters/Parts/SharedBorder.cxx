@@ -14,12 +14,8 @@
 
 #include "Adapt/Adapt.h"
 
-#include "vtkDataSetAttributes.h"
-#include "vtkIdTypeArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkUnsignedCharArray.h"
-#include "vtkVariant.h"
 
 #include <algorithm>
 #include <cstring>
@@ -33,14 +29,11 @@ namespace elevation
 
 namespace
 {
-/**
- * The rank where all ranks' points or edges with some numbers meet. The upper bits of the product
- * depend on all lower ones; the remainder is taken of these.
- */
+/** The rank where all ranks' points or edges with some numbers meet. */
 int RankOf(std::uint64_t bits, const Ranks& ranks)
 {
-  bits = (bits ^ (bits >> 31)) * 0x9E3779B97F4A7C15ull;
-  return static_cast<int>((bits >> 33) % static_cast<std::uint64_t>(ranks.Count()));
+  // The upper bits of the hash depend on all lower ones.
+  return static_cast<int>((HashOf(bits) >> 33) % static_cast<std::uint64_t>(ranks.Count()));
 }
 
 // For an edge the two hashes are added, so that both directions of it meet.
@@ -49,7 +42,7 @@ std::uint64_t BitsOf(const PointKey& key)
   std::uint64_t bits = 0;
   for (const std::int64_t part : key)
   {
-    bits = (bits ^ (bits >> 29)) * 0xD6E8FEB86659FD93ull + static_cast<std::uint64_t>(part);
+    bits = HashOf(bits) + static_cast<std::uint64_t>(part);
   }
   return bits;
 }
@@ -66,13 +59,7 @@ template <typename Value>
 std::vector<Value> Unpacked(const std::vector<Bytes>& packed)
 {
   std::vector<Value> all;
-  for (const Bytes& bytes : packed)
-  {
-    const char* from = bytes.data();
-    std::vector<Value> some;
-    TakeFrom(from, bytes.size() / sizeof(Value), some);
-    all.insert(all.end(), some.begin(), some.end());
-  }
+  std::for_each(packed.begin(), packed.end(), [&all](const Bytes& bytes) { TakeAll(bytes, all); });
   return all;
 }
 
@@ -118,8 +105,7 @@ void SharedPoints::TakeMarks(vtkPolyData* data)
   this->AreCopies.clear();
   for (const Index place : this->Places)
   {
-    this->AreCopies.push_back(
-      marks && (marks->GetValue(place) & vtkDataSetAttributes::DUPLICATEPOINT) ? 1 : 0);
+    this->AreCopies.push_back(IsCopy(marks, place));
   }
 }
 
@@ -167,12 +153,14 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
     }
   });
   packed = ranks.Exchange(std::move(packed));
-  // Only copies are answered, so what has no answer counts.
-  points.AreCopies.assign(points.Places.size(), 0);
-  for (const vtkIdType place : Unpacked<vtkIdType>(packed))
-  {
-    points.AreCopies[place] = 1;
-  }
+  ranks.Agree([&]() {
+    // Only copies are answered, so what has no answer counts.
+    points.AreCopies.assign(points.Places.size(), 0);
+    for (const vtkIdType place : Unpacked<vtkIdType>(packed))
+    {
+      points.AreCopies[place] = 1;
+    }
+  });
 }
 
 void AppendBorder(const Mesh& mesh, const SharedPoints& points, const std::vector<Index>& regionOf,

@@ -10,7 +10,6 @@
 #include "SharedHoles.h"
 
 #include "Adapt/Adapt.h"
-#include "BoundaryZone.h"
 #include "Joining.h"
 #include "PackedData.h"
 

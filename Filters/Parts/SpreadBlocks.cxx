@@ -3,6 +3,7 @@
 #include "SpreadBlocks.h"
 
 #include "Adapt/Adapt.h"
+#include "Bytes.h"
 #include "Ranks.h"
 
 #include "vtkDataObject.h"
@@ -10,15 +11,31 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace elevation
 {
 
-vtkIdType IdOf(const std::string& path)
+namespace
 {
-  // Not negative as a signed number.
-  return static_cast<vtkIdType>(std::hash<std::string>()(path) >> 2);
-}
+/** How much of a block a rank has. */
+struct BlockShare
+{
+  std::string Path;
+  int Rank = 0;
+  vtkIdType Size = 0; // points and cells
+};
+} // namespace
+
+template <>
+struct FieldsOf<BlockShare>
+{
+  template <typename Share>
+  static auto In(Share& share)
+  {
+    return std::tie(share.Path, share.Rank, share.Size);
+  }
+};
 
 bool HasPoints(const Place& place)
 {
@@ -30,44 +47,39 @@ bool HasPoints(const Place& place)
  * One meeting: each rank says how much it has of which block. The size decides where a block is
  * gathered, so that least is sent.
  */
-std::map<vtkIdType, int> FindSpread(
-  const std::vector<Place>& places, const Ranks& ranks, std::vector<vtkIdType>& occupied)
+std::map<std::string, int> FindSpread(
+  const std::vector<Place>& places, const Ranks& ranks, std::set<std::string>& occupied)
 {
-  std::map<vtkIdType, vtkIdType> own; // points and cells of each block
+  std::map<std::string, vtkIdType> own; // sizes
   for (const Place& place : places)
   {
     // An empty place does not make a block spread.
     if (HasPoints(place))
     {
-      own[IdOf(place.Path)] += place.Input->GetNumberOfElements(vtkDataObject::POINT) +
+      own[place.Path] += place.Input->GetNumberOfElements(vtkDataObject::POINT) +
         place.Input->GetNumberOfElements(vtkDataObject::CELL);
     }
   }
-  std::vector<vtkIdType> rows; // block, rank, size
+  std::vector<BlockShare> shares;
   for (const auto& block : own)
   {
-    rows.insert(rows.end(), { block.first, ranks.OwnRank(), block.second });
+    shares.push_back({ block.first, ranks.OwnRank(), block.second });
   }
-  // All ranks go through the same list in the same order, and find the same.
-  rows = ranks.Collect(rows);
   occupied.clear();
-  std::map<vtkIdType, int> spread;
-  std::map<vtkIdType, std::size_t> largest; // row of each block
-  for (std::size_t i = 0; i < rows.size(); i += 3)
+  std::map<std::string, int> spread;
+  std::map<std::string, BlockShare> largest; // of each block
+  // All ranks go through the same list in the same order, and find the same.
+  for (const BlockShare& share : ranks.Collect(shares))
   {
-    // A first row of a block makes it occupied; a second, of another rank, makes it spread.
-    const auto found = largest.emplace(rows[i], i);
-    if (found.second)
+    BlockShare& most = largest.emplace(share.Path, share).first->second;
+    // A first share of a block makes it occupied; a second, of another rank, makes it spread.
+    if (!occupied.insert(share.Path).second)
     {
-      occupied.push_back(rows[i]);
-      continue;
+      // Of ranks with as much, the first.
+      most = share.Size > most.Size ? share : most;
+      spread[share.Path] = most.Rank;
     }
-    std::size_t& row = found.first->second;
-    // Of ranks with as much, the first.
-    row = rows[i + 2] > rows[row + 2] ? i : row;
-    spread[rows[i]] = static_cast<int>(rows[row + 1]);
   }
-  std::sort(occupied.begin(), occupied.end());
   return spread;
 }
 

@@ -14,6 +14,7 @@
 #include "Kernel/Messages/Messages.h"
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,21 +22,15 @@ namespace elevation
 {
 struct Place;
 
-/**
- * A block's path as a number that is the same on all ranks, since all run the same program. Numbers
- * are what meetings send.
- */
-vtkIdType IdOf(const std::string& path);
-
 bool HasPoints(const Place& place);
 
 /**
  * All ranks have to call it.
- * @param[out] occupied  the numbers of the blocks that have points, on any rank, in order
+ * @param[out] occupied  the paths of the blocks that have points, on any rank
  * @return the blocks that have points on several ranks, and the rank with most of each
  */
-std::map<vtkIdType, int> FindSpread(
-  const std::vector<Place>& places, const Ranks& ranks, std::vector<vtkIdType>& occupied);
+std::map<std::string, int> FindSpread(
+  const std::vector<Place>& places, const Ranks& ranks, std::set<std::string>& occupied);
 
 /** Of the places of a block on this rank: the parts with points. */
 std::vector<vtkPointSet*> PartsOf(const std::vector<Place*>& places);

@@ -169,11 +169,11 @@ void MergeAtOwners(Engine& engine, int box, const SurfacePart& part, std::vector
  * double: 63 sums of one number at most, where sorting would bring all values to one rank. The
  * result is one of the values, the same as of one sorted list.
  */
-double FindQuantile(const Ranks& ranks, const std::vector<double>& values, double part)
+double FindQuantile(const Ranks& ranks, const std::vector<double>& values, double share)
 {
   std::vector<vtkIdType> count = { static_cast<vtkIdType>(values.size()) };
   ranks.Sum(count);
-  const vtkIdType place = QuantilePlace(part, count[0]);
+  const vtkIdType place = QuantilePlace(share, count[0]);
   // As bits, doubles that are not negative have the same order.
   const double largest = std::numeric_limits<double>::max();
   std::uint64_t low = 0, high = 0;
@@ -220,6 +220,7 @@ void MeasureAll(
   effect.Median = FindQuantile(ranks, lengths.Edges, MedianShare);
   effect.ForMost = FindQuantile(ranks, lengths.Limits, MostShare);
 }
+
 /*
  * A limit of edges, and what lines have changed, may leave points of others without a triangle.
  * Three passes over the corners of others: which are used; their order; the new places.

@@ -187,9 +187,7 @@ std::vector<vtkIdType> TriangulateParts::RequestedPlaces(int part) const
   std::vector<vtkIdType> all;
   this->Crew->At(part, Requests).ForEach([&](const Bytes& bytes) {
     const char* from = bytes.data() + sizeof(vtkIdType); // beyond the part that asks
-    std::vector<vtkIdType> places;
-    TakeFrom(from, bytes.size() / sizeof(vtkIdType) - 1, places);
-    all.insert(all.end(), places.begin(), places.end());
+    TakeFrom(from, bytes.size() / sizeof(vtkIdType) - 1, all);
   });
   return all;
 }

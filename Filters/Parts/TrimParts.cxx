@@ -37,7 +37,7 @@ TrimParts::TrimParts(const SurfaceParts& surface, vtkIdType triangles, vtkPolyDa
   , BoundaryData(boundary)
   , Options(options)
   // Where pass 1 ends: in files it makes each part, too, and takes most of the time.
-  , Swept(this->Crew.IsInFiles() ? 0.8 : 0.4)
+  , SweepEnd(this->Crew.IsInFiles() ? 0.8 : 0.4)
   , NumberOfAll(triangles)
 {
 }
@@ -141,7 +141,7 @@ void TrimParts::Read()
     if (this->BoundaryData && part == this->Crew.FirstOwn())
     {
       CheckArrays(this->BoundaryData, "The boundary's");
-      this->Lines = ToLines(this->BoundaryData, progress);
+      this->Lines = ToBoundaryLines(this->BoundaryData, progress);
     }
     if (!isInFiles)
     {
@@ -173,7 +173,7 @@ void TrimParts::FindNear(int margin)
   this->NearParts.clear();
   std::vector<vtkIdType> near, sums(2, 0);
   Box extent;
-  this->Crew.ForEach(this->Fraction(0.02, this->Swept), [&](int part, const Progress& progress) {
+  this->Crew.ForEach(this->Fraction(0.02, this->SweepEnd), [&](int part, const Progress& progress) {
     // Until the part has been found to have points: SendBack() skips those without.
     near.push_back(-1);
     this->NearParts.emplace_back();
@@ -213,7 +213,7 @@ bool TrimParts::TrimNear()
   {
     this->Crew.Send(this->Home, NearTriangles, std::move(bytes));
   }
-  this->Crew.Deliver(this->Fraction(this->Swept, this->Swept));
+  this->Crew.Deliver(this->Fraction(this->SweepEnd, this->SweepEnd));
   bool isTrimmed = false;
   // Other ranks wait at the end of the step, or stop with it.
   all.Agree([&]() {
@@ -228,7 +228,7 @@ bool TrimParts::TrimNear()
       bytes = Bytes();
     }
     TrimOptions options = this->Options;
-    options.Monitor = all.Watched(this->Fraction(this->Swept, 0.95));
+    options.Monitor = all.Watched(this->Fraction(this->SweepEnd, 0.95));
     BoundaryZone zone(std::move(parts));
     isTrimmed = this->BoundaryData
       ? zone.Trim(this->Lines, options)
@@ -242,7 +242,6 @@ bool TrimParts::TrimNear()
   return IsOnAny(all, isTrimmed);
 }
 
-/** Pass 3, on the rank that has trimmed the near triangles. */
 // Pass 3, the half of the rank that has trimmed. The other half is Write(), at the part's own time.
 void TrimParts::SendBack(const BoundaryZone& zone)
 {
@@ -314,8 +313,7 @@ void TrimParts::Write(int part, const Progress& progress, vtkPolyData* kept, vtk
     if (this->Crew.IsInFiles())
     {
       this->Sweep(own, progress.Between(0.3, 0.5));
-      // Not for what it returns: it lists the points of the near part, by which Back counts.
-      own.NearPart();
+      own.ListNearPoints();
     }
     this->Crew.At(part, Back).ForEach([&](const Bytes& bytes) {
       own.Take(TrimmedZone(bytes), progress.Between(0.5, 0.6));

@@ -118,7 +118,7 @@ private:
   Engine Crew;
   vtkPolyData* const BoundaryData;
   const TrimOptions Options;
-  const double Swept; // of the progress
+  const double SweepEnd; // of the progress
   BoundaryLines Lines;
   elevation::Rings Joined; // of the lines, once a part is swept
   vtkIdType NumberOfAll; // triangles

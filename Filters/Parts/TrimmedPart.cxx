@@ -12,14 +12,11 @@
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkUnsignedCharArray.h"
-#include "vtkVariant.h"
 
 #include <algorithm>
 #include <map>
@@ -51,12 +48,9 @@ void TrimmedPart::LeaveOutCopies()
   this->List = this->Triangles.View;
   vtkUnsignedCharArray* const marks = GhostsOf(this->Input->GetCellData());
   const vtkIdType first = FirstPolygon(this->Input);
-  const auto isOwn = [&](Index t) {
-    return !(marks->GetValue(first + t) & vtkDataSetAttributes::DUPLICATECELL);
-  };
   for (Index t = 0; marks && t < this->List.Count; ++t)
   {
-    if (isOwn(t))
+    if (!IsCopy(marks, first + t))
     {
       this->Sources.push_back(t);
     }
@@ -116,8 +110,7 @@ bool TrimmedPart::SweepForOutline(int margin, const TrimOptions& options, const 
   return isProven;
 }
 
-/** Of the near triangles and the border; its points are those of Sent. */
-vtkSmartPointer<vtkPolyData> TrimmedPart::NearPart()
+IdSet TrimmedPart::ListNearPoints()
 {
   IdSet used(static_cast<Index>(this->Input->GetNumberOfPoints()));
   for (const Index t : this->Swept.Near)
@@ -129,22 +122,22 @@ vtkSmartPointer<vtkPolyData> TrimmedPart::NearPart()
     used.Add(edge.Origin);
     used.Add(edge.Destination);
   }
-  // The zone looks for the largest id among the points that it gets.
-  if (vtkDataArray* const ids = this->Input->GetPointData()->GetGlobalIds())
+  // The zone looks for the largest id, which those of inserted points follow, among what it gets.
+  const vtkIdType largest = PlaceOfLargest(this->Input->GetPointData()->GetGlobalIds());
+  if (largest >= 0)
   {
-    // Those of inserted points follow the largest of all.
-    Index largest = 0;
-    for (Index i = 1; i < static_cast<Index>(ids->GetNumberOfTuples()); ++i)
-    {
-      largest = ids->GetVariantValue(largest).ToTypeInt64() < ids->GetVariantValue(i).ToTypeInt64()
-        ? i
-        : largest;
-    }
-    used.Add(largest);
+    used.Add(static_cast<Index>(largest));
   }
   // Increasing, so duplicates keep their order.
-  this->Sent = used.ListAndRank();
-  const vtkSmartPointer<vtkPolyData> part = ChosenPoints(this->Input, this->Sent);
+  this->NearPoints = used.ListAndRank();
+  return used;
+}
+
+/** Of the near triangles and the border; its points are NearPoints. */
+vtkSmartPointer<vtkPolyData> TrimmedPart::NearPart()
+{
+  const IdSet used = this->ListNearPoints();
+  const vtkSmartPointer<vtkPolyData> part = ChosenPoints(this->Input, this->NearPoints);
   vtkNew<vtkCellArray> border, near;
   for (const BorderEdge& edge : this->Swept.Border)
   {
@@ -163,7 +156,7 @@ vtkSmartPointer<vtkPolyData> TrimmedPart::NearPart()
   if (!this->Outline.Spacings.empty())
   {
     std::vector<double> spacings;
-    for (const Index point : this->Sent)
+    for (const Index point : this->NearPoints)
     {
       spacings.push_back(this->Outline.Spacings[point]);
     }
@@ -194,9 +187,10 @@ void TrimmedPart::FindOwn(const Progress& progress)
   const std::size_t count = this->Back.IsInserted.size();
   for (const Index point : this->Back.OfOthers)
   {
-    this->Points.OfOthers.push_back(this->Sent[point]);
+    this->Points.OfOthers.push_back(this->NearPoints[point]);
   }
   this->Points.New = this->Back.NewPoints;
+  this->Points.AreNumbered = this->Back.AreNumbered;
   this->Places.assign(count, None);
   // All parts have ids or none has: their arrays are the same.
   const bool byIds = this->Input->GetPointData()->GetGlobalIds() != nullptr;
@@ -265,7 +259,7 @@ TrimmedSide TrimmedPart::SideOf(int side, const Progress& progress) const
   }
   // What has come back: pieces of near triangles, or, from an outline, these as they were.
   const std::vector<Index>& parents = this->Back.Parents[side];
-  const Index sent = static_cast<Index>(this->Sent.size());
+  const Index sent = static_cast<Index>(this->NearPoints.size());
   for (std::size_t i = 0; i < parents.size(); ++i)
   {
     const Index triangle = this->Swept.Near[parents[i]];
@@ -278,7 +272,7 @@ TrimmedSide TrimmedPart::SideOf(int side, const Progress& progress) const
     const Index* const corners = this->Back.Corners[side].data() + 3 * i;
     add(
       [&](int k) {
-        return corners[k] < sent ? this->Sent[corners[k]] : this->Places[corners[k] - sent];
+        return corners[k] < sent ? this->NearPoints[corners[k]] : this->Places[corners[k] - sent];
       },
       triangle);
   }
@@ -295,10 +289,10 @@ void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* b
     // The owner's points that only ghosts elsewhere have shown to be on the boundary, then all
     // others.
     std::vector<Index> onBoundary = this->FarOnBoundary;
-    const Index sent = static_cast<Index>(this->Sent.size());
+    const Index sent = static_cast<Index>(this->NearPoints.size());
     for (const Index point : this->Back.OnBoundary)
     {
-      onBoundary.push_back(point < sent ? this->Sent[point] : this->Places[point - sent]);
+      onBoundary.push_back(point < sent ? this->NearPoints[point] : this->Places[point - sent]);
     }
     PassBoundary(*boundary, onBoundary, options, kept);
   }

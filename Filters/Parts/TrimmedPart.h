@@ -7,14 +7,15 @@
  *
  *     Swept.IsOutward, one a triangle:   0 kept, 1 outward, 2 near (until it comes back)
  *     Back.Parents[side][i]:             place in Swept.Near
- *     Back.Corners[side]:                < Sent.size(): Sent[corner] is the point of the input
- *                                        else: Places[corner - Sent.size()], a point of the output
+ *     Back.Corners[side]:                below the number of NearPoints: one of these; else
+ *                                        Places[corner - that number], a point of the output
  */
 #ifndef TrimmedPart_h
 #define TrimmedPart_h
 
 #include "Adapt/Adapt.h"
 #include "BoundaryZone.h"
+#include "Kernel/Base/Base.h"
 #include "Kernel/Trim/Trim.h"
 
 #include "vtkSmartPointer.h"
@@ -54,6 +55,8 @@ public:
   vtkIdType SideCount(int side) const; ///< triangles that are not near: 0 kept, 1 outward
   Box Extent() const { return BoxOf(this->List); }
 
+  /** The points of NearPart(), by which what comes back counts. */
+  IdSet ListNearPoints();
   /** The near triangles and, as lines, the border of all: for BoundaryZone. */
   vtkSmartPointer<vtkPolyData> NearPart();
 
@@ -81,7 +84,7 @@ private:
   TriangleList List;
   SweptAlongRings Swept;
   OutlinePart Outline;     // without a boundary; its triangles and border are those of Swept
-  std::vector<Index> Sent; // points of the near part
+  std::vector<Index> NearPoints; // of the near part, by their places in the input
   TrimmedZone Back;
   std::vector<Index> Places;        // of the new points, among those of the output
   std::vector<Index> FarOnBoundary; // own points

@@ -46,8 +46,8 @@ vtkReconstructPieces::vtkReconstructPieces()
       made.IsPrecisionGiven |= precision != vtkAlgorithm::DEFAULT_PRECISION;
     }
     made.LongestEdge = this->Fill->GetOpenEdgeLength();
-    made.HasConstraints = this->Delaunay;
-    made.HasBoundary = this->Trim;
+    made.ConstraintsFilter = this->Delaunay;
+    made.BoundaryFilter = this->Trim;
     return made;
   };
   this->Parts = std::make_unique<elevation::ReconstructParts>(this, settings, this->Messages);

@@ -31,7 +31,7 @@ std::vector<Corners> AllAtOnce(
   points.Count = static_cast<Index>(cloud.size());
   const DataSetPoints own = source ? ViewPoints(source) : DataSetPoints();
   const ConstrainedTriangulation all = TriangulateConstrained(
-    points, source ? ToLines(source, own, Progress()) : ConstraintLines(), options);
+    points, source ? ToConstraintLines(source, own, Progress()) : ConstraintLines(), options);
   return ByPlaces(all.Result.Triangles, [&](Index i) {
     return i < points.Count ? points.At(i) : all.Added[i - points.Count].Position;
   });

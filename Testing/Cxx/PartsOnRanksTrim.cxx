@@ -69,7 +69,7 @@ std::vector<Corners> TrimmedAtOnce(const std::vector<Place>& cloud, vtkPolyData*
   points.Double = cloud.front().data();
   points.Count = static_cast<Index>(cloud.size());
   const Triangulation whole = Triangulate(points, DelaunayOptions());
-  const BoundaryLines lines = boundary ? ToLines(boundary, Progress()) : BoundaryLines();
+  const BoundaryLines lines = boundary ? ToBoundaryLines(boundary, Progress()) : BoundaryLines();
   TriangleList list;
   list.Points = points;
   list.Corners = whole.Triangles.data();

@@ -8,11 +8,12 @@ all ranks have made: points and arrays, triangles, holes and reports, messages.
 
 import numpy
 from on_ranks import (
-    COUNT, RANK, check, check_refused, check_stops, end, fewer, gather, options_of, owners_in_places, updated)
+    COUNT, RANK, check, check_equal, check_refused, check_stops, end, fewer, gather, options_of, owners_in_places,
+    updated)
 from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray, vtk_to_numpy
 
 import outcomes
-from meshes import GHOSTS, cloud, mesh, triangles_of
+from meshes import DUPLICATE, GHOSTS, array_of, cloud, ghosts_of, mesh, points_of, triangles_of
 from vtkelevationsurface import vtkFillElevationHoles, vtkGridDelaunay2D
 
 
@@ -180,6 +181,40 @@ def check_errors(random):
         check_refused(vtkFillElevationHoles(), data, "", claim)
 
 
+def check_bytes_as_ids():
+    """Where new points need larger numbers than the type of global ids has, no part has global ids any more."""
+    i, j = (steps.ravel() for steps in numpy.meshgrid(numpy.arange(16), numpy.arange(16), indexing="ij"))
+    lattice = numpy.column_stack((i, j, 0.1 * i)).astype(float)
+    coordinates = lattice[(numpy.abs(i - 4.5) > 3) | (numpy.abs(j - 7.5) > 3)]  # 36 of 256 are missing
+    triangles = triangulated(coordinates)
+    middles = coordinates[triangles, :2].mean(axis=1)
+    triangles = triangles[(numpy.abs(middles - (4.5, 7.5)) > 3.5).any(axis=1)]
+    owners = (coordinates[triangles, 0].mean(axis=1) * COUNT / 15).astype(int)
+    data = rank_part(RANK, coordinates, triangles, owners, None, (), False)
+    place = {tuple(xyz): i for i, xyz in enumerate(coordinates.tolist())}
+    data.GetPointData().SetGlobalIds(
+        array_of(numpy.array([place[tuple(xyz)] for xyz in points_of(data).tolist()], "u1"), "id"))
+    points = fill(data, False)[0].GetOutput().GetPointData()
+    new = vtk_to_numpy(points.GetArray("id"))[vtk_to_numpy(points.GetArray("FilledPoint")) == 1]
+    check(sum(gather(len(new))) == 36, "the hole of a lattice gets its nodes back")
+    check(points.GetGlobalIds() is None and (new == 255).all(), "bytes that are no global ids any more")
+
+
+def check_unused():
+    """Of points at one place, without ids, one stays for the triangle of another rank."""
+    corners = numpy.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    other = corners + 5.0
+    if RANK == 0:
+        data = surface(numpy.vstack((corners, other[:1], other[:1])), numpy.array([[0, 1, 2]]),
+                       arrays=[(GHOSTS, numpy.zeros(5, "u1"))])
+    else:
+        marks = numpy.array([DUPLICATE, 0, 0] if RANK == 1 else [DUPLICATE] * 3, "u1")
+        data = surface(other, numpy.arange(3)[None, :][:RANK == 1], arrays=[(GHOSTS, marks)])
+    output = fill(data, False, RemoveUnusedPoints=True)[0].GetOutput()
+    own = numpy.count_nonzero(~ghosts_of(output))
+    check_equal(sum(gather(own)), 6 if COUNT > 1 else 3, "points that triangles have, each on one rank")
+
+
 def check_aborts(random, count):
     """An abort on one rank, at any moment, ends all of them."""
     coordinates = clouds(random, 2500)
@@ -197,6 +232,8 @@ def check_aborts(random, count):
 def main(options):
     random = numpy.random.default_rng(options.seed)
     check_errors(random)
+    check_bytes_as_ids()
+    check_unused()
     surfaces = options.clouds or fewer(8)
     for i in range(surfaces):
         compare_random(random, "surface %d of seed %d" % (i, options.seed))

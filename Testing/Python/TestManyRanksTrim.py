@@ -261,6 +261,19 @@ def check_corners():
     check(any(gather(is_without)) or COUNT == 1, "corners of the boundary are on a rank without a triangle")
 
 
+def check_bytes_as_ids():
+    """Where inserted points need larger numbers than the type of global ids has, no part has global ids any more."""
+    points, triangles = grid(15)
+    owners = (points[triangles, 0].mean(axis=1) * COUNT / 14).astype(int)
+    case = Case("bytes", points, triangles, owners, [star(numpy.random.default_rng(1), (3.0, 7.0), 3.5, 40)])
+    part = part_of(case, RANK, True, False)
+    ids = (vtk_to_numpy(part.GetPointData().GetGlobalIds()) - 2**33) // 3
+    part.GetPointData().SetGlobalIds(array_of(ids.astype("u1"), "id"))
+    trimming, _ = trim(part, meshes.rings(case.rings), False)
+    check(trimming.GetNumberOfInsertedPoints() > 30, "many points are inserted")
+    check(trimming.GetOutput().GetPointData().GetGlobalIds() is None, "bytes that are no global ids any more")
+
+
 def grid(side):
     """The points and triangles of a square grid, quickly."""
     i, j = numpy.meshgrid(numpy.arange(side), numpy.arange(side))
@@ -324,6 +337,7 @@ def main(options):
     random = numpy.random.default_rng(options.seed)
     check_errors(random)
     check_corners()
+    check_bytes_as_ids()
     clouds = options.clouds or fewer(8)
     for i in range(clouds):
         compare_random(random, "cloud %d of seed %d" % (i, options.seed))
