@@ -91,7 +91,9 @@ set(es_kernel_Fill
   Refinement
   Patch
   Neighbours
+  Tracks
   Heights
+  BetweenLines
   Fill)
 
 # Headers without a source file.

@@ -45,6 +45,7 @@ FillOptions OptionsOf(vtkFillElevationHoles* filter)
   options.MaximumHoleEdges = toIndex(filter->GetMaximumHoleEdges(), VTK_INT_MAX);
   options.Spacing = filter->GetSpacing();
   options.FillCutOuts = filter->GetFillCutOuts();
+  options.ConfidenceLevel = filter->GetConfidenceLevel();
   // The assertions below hold the numbers of both together.
   options.Method = static_cast<Interpolation>(filter->GetInterpolation());
   const vtkIdType most = filter->GetMaximumNumberOfInsertedPoints();
@@ -232,6 +233,7 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumNumberOfExpectedPoints: " << this->MaximumNumberOfExpectedPoints << "\n";
   os << indent << "Spacing: " << this->Spacing << "\n";
   os << indent << "Interpolation: " << this->GetInterpolationAsString() << "\n";
+  os << indent << "ConfidenceLevel: " << this->ConfidenceLevel << "\n";
   os << indent << "InterpolatePointData: " << (this->InterpolatePointData ? "On" : "Off") << "\n";
   os << indent << "RemoveUnusedPoints: " << (this->RemoveUnusedPoints ? "On" : "Off") << "\n";
   os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";

@@ -16,9 +16,10 @@
  * @par Outputs:
  * - 0, the surface: the points and cells of the input, with their ids, then the new points and
  *   triangles, counter-clockwise seen from +z. It has the point arrays FilledPoint
- *   (vtkUnsignedCharArray, 1 for new points) and FilledError (vtkDoubleArray, the standard error of
- *   z: 0 for points of the input, NaN if unknown), and the cell array HoleId (vtkIdTypeArray, -1
- *   for cells of the input). Other point arrays: see InterpolatePointData. If the input has been
+ *   (vtkUnsignedCharArray, 1 for new points), FilledError (vtkDoubleArray, the standard error of
+ *   z: 0 for points of the input, NaN if unknown), FilledLow and FilledHigh (vtkDoubleArray, between
+ *   which the true z lies with the probability ConfidenceLevel: z for points of the input, NaN if
+ *   unknown), and the cell array HoleId (vtkIdTypeArray, -1 for cells of the input). Other point arrays: see InterpolatePointData. If the input has been
  *   filled before, its values in these arrays stay, and new holes are numbered after its largest
  *   HoleId.
  * - 1, the report: the rim of each hole, filled or not, as a closed counter-clockwise line. Cell
@@ -119,7 +120,10 @@ public:
    *   surface around it best. The hole's boundary is moved to up to 32 places beside the hole,
    *   where the surface is known, and each method predicts what is inside. Methods that predict it
    *   about equally well are mixed; the fewer places there are, the more THIN_PLATE is preferred.
-   *   Output 1 has the one with the largest share.
+   *   Output 1 has the one with the largest share. Between survey lines (see OpenEdgeLength), lines
+   *   are left out instead, and predicted from the others: z is that of the plane triangles between
+   *   lines, plus as large a part of what a thin plate bends from them as predicts the lines best.
+   *   It leaves the range of z of the lines by at most 5 % of it. Output 1 has THIN_PLATE.
    *
    * The splines may leave the range of z of the hole's boundary, as a lost summit did, by at most
    * the distance from the nearest boundary point times the median slope around the hole: upwards
@@ -251,6 +255,17 @@ public:
 
   ///@{
   /**
+   * The probability with which the true z of a new point lies between the arrays FilledLow and
+   * FilledHigh; at least 0.5 and below 1. Default: 0.9. Both arrays are found by the ranks of the
+   * errors in trials, so that large errors, which are more frequent than in a normal distribution,
+   * count as often as they are.
+   */
+  vtkSetMacro(ConfidenceLevel, double);
+  vtkGetMacro(ConfidenceLevel, double);
+  ///@}
+
+  ///@{
+  /**
    * Values of the point arrays at new points. On (default): floating-point arrays are interpolated
    * as z is, by the method that was chosen for z (where values around the hole are not finite, by
    * NEIGHBOR_MEAN, which leaves NaN out; normals are brought to unit length); integers, strings and
@@ -330,7 +345,7 @@ public:
    * which are "Words": NothingToFill, HoleNotFilled and RegionNotFilled (with a reason:
    * BordersTouch, SizeOutOfRange, MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall,
    * PointsCoincide), MoreHolesNotFilled, BordersMeet, TooManyPointsToFill, TooManyPointsByDefault,
-   * InvalidOpenEdgeLength, InvalidHoleSize, InvalidHoleEdges, InvalidSpacing,
+   * InvalidOpenEdgeLength, InvalidHoleSize, InvalidHoleEdges, InvalidSpacing, InvalidConfidence,
    * InvalidInsertedPoints, InvalidExpectedPoints, InvalidThreads, InvalidPrecision, FoldsInSingle,
    * OriginalIdsReplaced, EdgeLengthRenamed, ArraysLeftOut, OnOneRank (with a reason:
    * PartsDoNotFit), RankWaits, NotEnoughMemory, Stopped.
@@ -353,6 +368,7 @@ protected:
   vtkIdType MaximumNumberOfExpectedPoints = 0;
   double Spacing = 0.0;
   int Interpolation = ADAPTIVE;
+  double ConfidenceLevel = 0.9;
   bool InterpolatePointData = true;
   bool RemoveUnusedPoints = false;
   int OutputPointsPrecision = DEFAULT_PRECISION;

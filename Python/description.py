@@ -96,6 +96,7 @@ KINDS = {
     "height": Kind("HEIGHT", "double", unit="units of z"),
     "spacings": Kind("SPACINGS", "double", unit="point spacings"),
     "factor": Kind("FACTOR", "double"),
+    "probability": Kind("PROBABILITY", "double", least=0.5, most=0.999),
     "steps": Kind("STEPS", "double", most=0.25, unit="steps of the grid"),
     "numbers": Kind("NUMBERS", "double", "numbers"),
     "count": Kind("COUNT", "int"),

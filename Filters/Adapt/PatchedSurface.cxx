@@ -68,6 +68,10 @@ void CheckOptions(const FillOptions& options, double openEdgeLength)
   {
     throw MakeError<sentences::InvalidInsertedPoints>(options.MaximumInsertedPoints);
   }
+  if (!(options.ConfidenceLevel >= 0.5 && options.ConfidenceLevel < 1.0))
+  {
+    throw MakeError<sentences::InvalidConfidence>(options.ConfidenceLevel);
+  }
   if (options.MaximumExpectedPoints < 0)
   {
     throw MakeError<sentences::InvalidExpectedPoints>(options.MaximumExpectedPoints);
@@ -220,6 +224,43 @@ void PassEarlier(vtkDataSetAttributes* input, vtkIdType count, const Value& valu
 }
 } // namespace
 
+namespace
+{
+/** The arrays of standard errors, and of the ends of intervals: z where a point is known. */
+void AddErrors(vtkPolyData* input, const FillResult& patches, vtkPolyData* output)
+{
+  const vtkIdType before = input->GetNumberOfPoints();
+  const auto add = [&](const char* name, auto&& ofInput, auto&& ofNew) {
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(name);
+    array->SetNumberOfTuples(output->GetNumberOfPoints());
+    auto* const earlier =
+      vtkDoubleArray::SafeDownCast(input->GetPointData()->GetAbstractArray(name));
+    const bool isThere = earlier && earlier->GetNumberOfComponents() == 1;
+    for (vtkIdType i = 0; i < before; ++i)
+    {
+      array->SetValue(i, isThere ? earlier->GetValue(i) : ofInput(i));
+    }
+    for (vtkIdType i = 0; i < patches.NumberOfPoints(); ++i)
+    {
+      array->SetValue(before + i, ofNew(i));
+    }
+    output->GetPointData()->RemoveArray(name);
+    output->GetPointData()->AddArray(array);
+  };
+  const auto heightOf = [output](vtkIdType i) { return output->GetPoint(i)[2]; };
+  const auto end = [&](double sign) {
+    return [&, sign](
+             vtkIdType i) { return patches.Points[3 * i + 2] + sign * patches.HalfIntervals[i]; };
+  };
+  add(
+    "FilledError", [](vtkIdType) { return 0.0; },
+    [&](vtkIdType i) { return patches.StandardErrors[i]; });
+  add("FilledLow", heightOf, end(-1.0));
+  add("FilledHigh", heightOf, end(1.0));
+}
+} // namespace
+
 void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches, bool interpolate,
   const Progress& progress, vtkPolyData* output)
 {
@@ -239,14 +280,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   output->GetPointData()->RemoveArray(isNew->GetName());
   output->GetPointData()->AddArray(isNew);
   Report(progress, isExtended ? 0.62 : 0.3);
-  vtkNew<vtkDoubleArray> errors;
-  errors->SetName("FilledError");
-  SetTuples(output->GetNumberOfPoints(), errors);
-  PassEarlier(input->GetPointData(), before, 0.0, asInInput, errors.Get());
-  std::copy(patches.StandardErrors.begin(), patches.StandardErrors.end(),
-    errors->GetPointer(0) + before);
-  output->GetPointData()->RemoveArray(errors->GetName());
-  output->GetPointData()->AddArray(errors);
+  AddErrors(input, patches, output);
 
   Report(progress, isExtended ? 0.64 : 0.5);
   const std::vector<Index> kept = ListKept(mesh, patches);

@@ -207,6 +207,7 @@ FillResult FilledPart::PlacedPatches(const SharedHoles& all, vtkPolyData* input)
   FillResult to;
   to.Points = from.Points;
   to.StandardErrors = from.StandardErrors;
+  to.HalfIntervals = from.HalfIntervals;
   const Index first = static_cast<Index>(this->PlaceOf.size());
   const Index firstNew = static_cast<Index>(input->GetNumberOfPoints());
   const auto placed = [&](Index id) {

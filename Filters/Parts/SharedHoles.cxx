@@ -34,7 +34,7 @@ struct FieldsOf<SurroundedHoles>
     auto& patches = holes.Patches;
     return std::tie(holes.Numbers, holes.Keys, patches.Points, patches.Triangles,
       patches.PointOffsets, patches.TriangleOffsets, patches.NearestBoundaryPoints,
-      patches.StandardErrors, patches.Attributes);
+      patches.StandardErrors, patches.HalfIntervals, patches.Attributes);
   }
 };
 
@@ -321,6 +321,7 @@ void AppendLists(const FillResult& from, FillResult& to)
   append(from.TriangleOffsets, to.TriangleOffsets);
   append(from.NearestBoundaryPoints, to.NearestBoundaryPoints);
   append(from.StandardErrors, to.StandardErrors);
+  append(from.HalfIntervals, to.HalfIntervals);
   for (std::size_t i = 0; i < from.Attributes.size(); ++i)
   {
     append(from.Attributes[i], to.Attributes[i]);

@@ -499,9 +499,10 @@ void TestPrint()
   fill->SetInterpolationToAdaptive();
   std::ostringstream text;
   fill->Print(text);
-  for (const char* name : { "MaximumHoleSize", "MaximumHoleEdges",
-         "MaximumNumberOfInsertedPoints: 100000000", "Spacing: 0", "Interpolation: Adaptive",
-         "InterpolatePointData: On", "NumberOfHoles", "NumberOfFilledHoles" })
+  for (const char* name :
+    { "MaximumHoleSize", "MaximumHoleEdges", "MaximumNumberOfInsertedPoints: 100000000",
+      "Spacing: 0", "Interpolation: Adaptive", "ConfidenceLevel: 0.9", "InterpolatePointData: On",
+      "NumberOfHoles", "NumberOfFilledHoles" })
   {
     Check(text.str().find(name) != std::string::npos, std::string("Print shows ") + name);
   }

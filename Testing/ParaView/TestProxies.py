@@ -46,6 +46,7 @@ OTHER_VALUES = {
         "MaximumNumberOfExpectedPoints": 4000,
         "Spacing": 0.25,
         "Interpolation": "Thin Plate",
+        "ConfidenceLevel": 0.8,
         "InterpolatePointData": 0,
         "RemoveUnusedPoints": 1,
         "OutputPointsPrecision": "Single",

@@ -40,7 +40,7 @@ fill = simple.FillElevationHoles(Input=trim, OpenEdgeLength=2.5, MaximumHoleSize
                                  Interpolation="Membrane")
 surface, filled = fetch(whole), fetch(fill)
 check(same(surface, filled), "the surface is that of the three filters, cell by cell")
-for name in ("FilledPoint", "FilledError"):
+for name in ("FilledPoint", "FilledError", "FilledLow", "FilledHigh"):
     check(numpy.array_equal(array(surface.GetPointData(), name), array(filled.GetPointData(), name),
                             equal_nan=True), "the point array %s is that of the filters" % name)
 check(numpy.array_equal(array(surface.GetCellData(), "HoleId"), array(filled.GetCellData(), "HoleId")),

@@ -82,6 +82,7 @@ class TestFillElevationHoles(unittest.TestCase):
         self.assertEqual(fill.GetSpacing(), 0.0)
         self.assertEqual(fill.GetInterpolation(), fill.ADAPTIVE)
         self.assertEqual(fill.GetInterpolationAsString(), "Adaptive")
+        self.assertEqual(fill.GetConfidenceLevel(), 0.9)
         self.assertTrue(fill.GetInterpolatePointData())
         self.assertEqual(fill.GetNumberOfThreads(), 0)
         self.assertEqual(
@@ -90,7 +91,8 @@ class TestFillElevationHoles(unittest.TestCase):
     def test_every_property_is_printed(self):
         text = str(vtkFillElevationHoles())
         for name in ("MaximumHoleSize", "MaximumHoleEdges", "MaximumNumberOfInsertedPoints",
-                     "MaximumNumberOfExpectedPoints", "Spacing", "Interpolation", "InterpolatePointData",
+                     "MaximumNumberOfExpectedPoints", "Spacing", "Interpolation", "ConfidenceLevel",
+                     "InterpolatePointData",
                      "NumberOfThreads", "Controller", "NumberOfHoles", "NumberOfFilledHoles", "OpenEdgeLength"):
             self.assertIn(name + ":", text)
 

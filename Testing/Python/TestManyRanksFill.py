@@ -159,7 +159,7 @@ def check_filled_before(random, claim):
         before = fill(surface(coordinates, triangles), True)[0].GetOutput()
         filled = vtk_to_numpy(before.GetCellData().GetArray("HoleId"))
     arrays = [(name, vtk_to_numpy(before.GetPointData().GetArray(name)))
-              for name in ("FilledPoint", "FilledError")]
+              for name in ("FilledPoint", "FilledError", "FilledLow", "FilledHigh")]
     coordinates, triangles = vtk_to_numpy(before.GetPoints().GetData()), triangles_of(before)
     holes = {tuple(corners): hole for corners, hole in zip(triangles.tolist(), filled.tolist())}
     triangles = with_holes(random, coordinates, triangles, 4)

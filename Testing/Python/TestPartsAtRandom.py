@@ -45,7 +45,7 @@ NUMBERS = {
     "Delaunay.SearchStrategy": (0, 1), "Delaunay.LatticeMode": (0, 1), "Delaunay.DuplicatePolicy": (0, 1, 2, 3),
     "Trim.RecoverBoundary": (False, True), "Trim.BoundaryEdges": (0, 1, 2),
     "Fill.Interpolation": (0, 1, 2, 3, 4), "Fill.FillCutOuts": (False, True), "Fill.MaximumHoleEdges": (5, 40),
-    "Fill.InterpolatePointData": (False, True), "Fill.MaximumNumberOfExpectedPoints": (50, 2000),
+    "Fill.ConfidenceLevel": (0.5, 0.95), "Fill.InterpolatePointData": (False, True), "Fill.MaximumNumberOfExpectedPoints": (50, 2000),
     "Delaunay.Lattice": LATTICES,
 }
 LENGTHS = {

@@ -23,7 +23,7 @@ from vtkelevationsurface.vtkElevationSurfacePieces import vtkReconstructPieces
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 
-ARRAYS = ("Velocity", "Depth", "RGB", "FilledPoint", "FilledError")  # of a surface that is filled
+ARRAYS = ("Velocity", "Depth", "RGB", "FilledPoint", "FilledError", "FilledLow", "FilledHigh")  # of a surface that is filled
 
 
 class Constrained(WithFilter):
@@ -368,6 +368,7 @@ class Filled(WithFilter):
             ("MaximumHoleEdges", 30, 3),
             ("Spacing", 40.0, 5),
             ("Interpolation", 1, 5),
+            ("ConfidenceLevel", 0.7, 5),
             ("InterpolatePointData", False, 5),
             ("MaximumNumberOfInsertedPoints", 150, 3),
             ("FillCutOuts", False, 0),

@@ -198,6 +198,7 @@ class Properties(unittest.TestCase):
             "maximum_expected_points": (900, "fill", "GetMaximumNumberOfExpectedPoints", 900),
             "spacing": (0.5, "fill", "GetSpacing", 0.5),
             "interpolation": ("thin plate", "fill", "GetInterpolation", 2),
+            "confidence_level": (0.8, "fill", "GetConfidenceLevel", 0.8),
             "interpolate_point_data": (False, "fill", "GetInterpolatePointData", 0),
             "threads": (1, "fill", "GetNumberOfThreads", 1),
         }

@@ -111,6 +111,7 @@ cut-outs of the boundary, filled  | FillCutOuts=True           | coast and lakes
 most points inserted              | MaximumNumberOfInsertedPoints=50, Trim.BoundaryEdges=1 | coast and lakes              | s  s  s  s  s  s  s
 most points expected              | MaximumNumberOfExpectedPoints=20 | coast and lakes              | s  s  s  s  s  s  s
 spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  s
+a narrower interval               | ConfidenceLevel=0.7        | coast and lakes              | s  s  s  s  s  s  s
 point data not interpolated       | InterpolatePointData=False | coast and lakes              | s  s  s  s  s  s  s
 holes that an edge limit makes    | Delaunay.MaximumEdgeLength=2.2 | points                       | s  s  s  s  s  s  s
 points in single precision        | OutputPointsPrecision=0    | coast and lakes              | s  s  s  s  r  r  r

@@ -11,6 +11,7 @@
 //    (Append). So the result depends neither on the number of threads nor on which is faster.
 #include "Fill.h"
 
+#include "BetweenLines.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Messages/Messages.h"
 #include "Neighbours.h"
@@ -112,14 +113,62 @@ void CheckNumbers(bool isTouched, HoleReport& report)
   }
 }
 
-/** Finds elevations and attributes; of each attribute one vector, in the order of vertices. */
-void Elevate(const Mesh& mesh, const VertexStars* stars, const PointView& points,
-  const FillOptions& options, const Progress& progress, Patch& patch, HoleReport& report,
-  std::vector<std::vector<double>>& attributes, std::vector<double>& errors)
+/** A patch and its attributes, before they are appended. */
+struct FilledHole
 {
+  Patch Triangles;
+  std::vector<std::vector<double>> Attributes;
+  std::vector<double> Errors;
+  std::vector<double> HalfIntervals;
+};
+
+void SetElevations(const std::vector<double>& values, Patch& patch)
+{
+  double* z = patch.Points.data() + 3 * patch.BoundaryIds.size() + 2;
+  for (const double value : values)
+  {
+    *z = value;
+    z += 3;
+  }
+}
+
+/**
+ * Finds elevations and attributes between survey lines; of each attribute one vector, in the order
+ * of vertices. @return false if there are no lines, or too few
+ */
+bool ElevateBetweenLines(const Mesh& mesh, const VertexStars* stars, double longest,
+  const Values& elevation, const FillOptions& options, const Progress& progress, FilledHole& filled,
+  HoleReport& report)
+{
+  Patch& patch = filled.Triangles;
+  const BetweenLines lines(patch, longest, elevation, progress.Between(0.0, 0.6));
+  if (!lines.AreFound())
+  {
+    return false;
+  }
+  SetElevations(lines.Apply(elevation, progress.Between(0.6, 0.8)), patch);
+  for (const Values& values : options.Attributes)
+  {
+    filled.Attributes.push_back(lines.Apply(values, progress.Between(0.8, 0.8)));
+    if (filled.Attributes.back().empty())
+    {
+      filled.Attributes.back() =
+        Heights(mesh, stars, patch, Interpolation::NeighborMean, values).Apply(values);
+    }
+  }
+  report.Method = Interpolation::ThinPlate;
+  filled.Errors = lines.StandardErrors();
+  filled.HalfIntervals = lines.HalfIntervals(options.ConfidenceLevel);
+  return true;
+}
+
+/** Finds elevations and attributes; of each attribute one vector, in the order of vertices. */
+void Elevate(const Mesh& mesh, const VertexStars* stars, const Values& elevation,
+  const FillOptions& options, const Progress& progress, FilledHole& filled, HoleReport& report)
+{
+  Patch& patch = filled.Triangles;
   // The first values are the elevations, by which Adaptive chooses; attributes follow the same
   // choice.
-  const Values elevation = [&points](Index id) { return points.Elevation(id); };
   const Heights heights(mesh, stars, patch, options.Method, elevation, progress.Between(0.0, 0.5));
   const std::size_t count = options.Attributes.size() + 1;
   const Progress applying = progress.Between(0.5, 1.0);
@@ -129,27 +178,15 @@ void Elevate(const Mesh& mesh, const VertexStars* stars, const PointView& points
     std::vector<double> values = heights.Apply(i == 0 ? elevation : options.Attributes[i - 1], one);
     if (i > 0)
     {
-      attributes.push_back(std::move(values));
+      filled.Attributes.push_back(std::move(values));
       continue;
     }
-    double* z = patch.Points.data() + 3 * patch.BoundaryIds.size() + 2;
-    for (const double value : values)
-    {
-      *z = value;
-      z += 3;
-    }
+    SetElevations(values, patch);
   }
   report.Method = heights.Used();
-  errors = heights.StandardErrors();
+  filled.Errors = heights.StandardErrors();
+  filled.HalfIntervals = heights.HalfIntervals(options.ConfidenceLevel);
 }
-
-/** A patch and its attributes, before they are appended. */
-struct FilledHole
-{
-  Patch Triangles;
-  std::vector<std::vector<double>> Attributes;
-  std::vector<double> Errors;
-};
 
 void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
 {
@@ -169,6 +206,7 @@ void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
   room(result.Triangles, patch.Triangles.size());
   room(result.NearestBoundaryPoints, points);
   room(result.StandardErrors, points);
+  room(result.HalfIntervals, points);
   for (std::vector<double>& values : result.Attributes)
   {
     room(values, points);
@@ -187,6 +225,7 @@ void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
     const auto point = patch.Points.begin() + 3 * std::ptrdiff_t(patch.Order[k]);
     result.Points.insert(result.Points.end(), point, point + 3);
     result.StandardErrors.push_back(filled.Errors[patch.Order[k] - first]);
+    result.HalfIntervals.push_back(filled.HalfIntervals[patch.Order[k] - first]);
     result.NearestBoundaryPoints.push_back(ids[patch.Nearest[patch.Order[k] - first]]);
     for (std::size_t i = 0; i < attributes.size(); ++i)
     {
@@ -475,8 +514,16 @@ private:
       }
       FindNeighbors(patch, progress.Between(0.4, 0.45));
       FindNearest(patch, progress.Between(0.45, 0.5));
-      Elevate(this->Surface, this->Stars.get(), this->Points, this->Options,
-        progress.Between(0.5, 1.0), patch, report, filled.Attributes, filled.Errors);
+      const Values elevation = [this](Index id) { return this->Points.Elevation(id); };
+      const bool mayHaveLines =
+        this->Options.Method == Interpolation::Adaptive && this->GivenHoles.IsRegion(hole);
+      if (!mayHaveLines ||
+        !ElevateBetweenLines(this->Surface, this->Stars.get(), this->GivenHoles.LongestEdge,
+          elevation, this->Options, progress.Between(0.5, 0.9), filled, report))
+      {
+        Elevate(this->Surface, this->Stars.get(), elevation, this->Options,
+          progress.Between(mayHaveLines ? 0.9 : 0.5, 1.0), filled, report);
+      }
     }
     catch (const Error& error)
     {

@@ -71,6 +71,8 @@ struct FillOptions
   bool SinglePrecision = false;
   /** For elevations and attributes. */
   Interpolation Method = Interpolation::Adaptive;
+  /** The probability with which an interval holds the elevation; at least 0.5, below 1. */
+  double ConfidenceLevel = 0.9;
   /** Further values of the surface's points, interpolated in the same way as elevations. */
   std::vector<Values> Attributes;
   /**
@@ -132,6 +134,8 @@ struct FillResult
   std::vector<Index> NearestBoundaryPoints;
   /** One per new point: the standard error of its elevation; NaN where it is unknown. */
   std::vector<double> StandardErrors;
+  /** One per new point: half the interval that holds its elevation; NaN where it is unknown. */
+  std::vector<double> HalfIntervals;
   std::vector<std::vector<double>> Attributes; ///< as in the options, one value per new point
   std::vector<HoleReport> Reports;
   Index FirstNumber = 0; ///< of a hole; for those who name them: earlier ones have been filled before

@@ -140,6 +140,20 @@ int Spread(int k, int count)
 }
 } // namespace
 
+double QuantileByRank(std::vector<double> values, double share)
+{
+  if (values.empty())
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const double rank = std::ceil(share * static_cast<double>(values.size() + 1));
+  const std::size_t place =
+    static_cast<std::size_t>(std::max(1.0, std::min(rank, static_cast<double>(values.size()))));
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(place - 1);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh& patch,
   Interpolation wanted, const Values& values, const Progress& progress)
   : Surface(surface)
@@ -469,6 +483,19 @@ void Heights::Choose(const VertexStars& stars, const Values& values, const Progr
   }
   this->Method = Methods[best];
   this->ErrorCurve = trials.ErrorsByDistance(this->Shares);
+  this->TrialErrors = trials.ErrorsInCurve(this->Shares);
+}
+
+double Heights::ErrorAt(double distance) const
+{
+  const auto after = std::upper_bound(this->ErrorCurve.begin(), this->ErrorCurve.end(), distance,
+    [](double d, const std::pair<double, double>& entry) { return d < entry.first; });
+  if (after == this->ErrorCurve.begin() || after == this->ErrorCurve.end())
+  {
+    return (after == this->ErrorCurve.begin() ? *after : after[-1]).second;
+  }
+  const double share = (distance - after[-1].first) / (after->first - after[-1].first);
+  return after[-1].second + share * (after->second - after[-1].second);
 }
 
 std::vector<double> Heights::StandardErrors() const
@@ -480,17 +507,21 @@ std::vector<double> Heights::StandardErrors() const
   {
     const Point2 p = this->Patch.At(boundary + static_cast<Index>(i));
     const Point2 q = this->Patch.At(this->Patch.Nearest[i]);
-    const double distance = std::hypot(p.X - q.X, p.Y - q.Y);
-    const auto after = std::upper_bound(this->ErrorCurve.begin(), this->ErrorCurve.end(), distance,
-      [](double d, const std::pair<double, double>& entry) { return d < entry.first; });
-    // Nearer than the nearest class, or farther than the farthest: that one's error.
-    if (after == this->ErrorCurve.begin() || after == this->ErrorCurve.end())
+    result[i] = this->ErrorAt(std::hypot(p.X - q.X, p.Y - q.Y));
+  }
+  return result;
+}
+
+std::vector<double> Heights::HalfIntervals(double probability) const
+{
+  std::vector<double> result = this->StandardErrors();
+  if (!this->TrialErrors.empty())
+  {
+    const double factor = QuantileByRank(this->TrialErrors, probability);
+    for (double& half : result)
     {
-      result[i] = (after == this->ErrorCurve.begin() ? *after : after[-1]).second;
-      continue;
+      half *= factor;
     }
-    const double share = (distance - after[-1].first) / (after->first - after[-1].first);
-    result[i] = after[-1].second + share * (after->second - after[-1].second);
   }
   return result;
 }

@@ -106,6 +106,12 @@ enum class Interpolation : unsigned char
   Cubic = 4
 };
 
+/**
+ * The value that a share of all values does not exceed: by its rank among them and one more, so that
+ * a next one exceeds it no more often. NaN of none.
+ */
+double QuantileByRank(std::vector<double> values, double share);
+
 class Heights
 {
 public:
@@ -134,6 +140,12 @@ public:
    */
   std::vector<double> StandardErrors() const;
 
+  /**
+   * Half the width of intervals that hold the new vertices' values with a probability, by the ranks
+   * of the trials' errors; NaN where the standard error is.
+   */
+  std::vector<double> HalfIntervals(double probability) const;
+
 private:
   /** Coordinates for splines: around 0, of size about 1. */
   Point2 Normalized(const Point2& p) const
@@ -152,6 +164,8 @@ private:
     stars.Visit(this->Surface, vertex, visit);
   }
 
+  /** The standard error at a distance from the boundary. */
+  double ErrorAt(double distance) const;
   void CollectRing(const VertexStars& stars);
   void CollectSlopes(const VertexStars& stars);
   std::vector<char> FindStrays(const VertexStars& stars, const Values& values) const;
@@ -197,6 +211,7 @@ private:
   bool IsByTrials = false;                           ///< chosen by Adaptive
   bool IsCandidate[3] = { false, false, false };     ///< membrane and splines
   std::vector<std::pair<double, double>> ErrorCurve; ///< standard errors by distance
+  std::vector<double> TrialErrors; ///< sizes of errors of the trials, in standard errors
   std::unique_ptr<Membrane> Harmonic;
   std::unique_ptr<Spline> Splines[2];   ///< thin plate and cubic; those with a share
   double Shares[3] = { 0.0, 0.0, 0.0 }; ///< of the membrane and the splines; their sum is 1

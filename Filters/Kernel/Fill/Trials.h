@@ -214,6 +214,32 @@ public:
     return result;
   }
 
+  /** The sizes of the errors of a mixture at all places that count, in standard errors. */
+  std::vector<double> ErrorsInCurve(const double* shares) const
+  {
+    std::vector<double> result;
+    if (this->Hole.ErrorCurve.empty())
+    {
+      return result;
+    }
+    const std::size_t probes = this->Probes.size();
+    const std::vector<double> misses = this->MissesOf(shares);
+    const double growth = this->GrowthOf(misses);
+    const PatchMesh& patch = this->Hole.Patch;
+    for (std::size_t i = 0; i < misses.size(); ++i)
+    {
+      const Place& place = this->Places[i / probes];
+      const Point2& p = this->Points[this->FirstProbe + i % probes];
+      const Point2 q = patch.At(patch.Nearest[this->Probes[i % probes]]);
+      const double error = this->Hole.ErrorAt(std::hypot(p.X - q.X, p.Y - q.Y));
+      if (place.IsCounted && error > 0.0)
+      {
+        result.push_back(std::pow(growth, place.Halvings) * std::fabs(misses[i]) / error);
+      }
+    }
+    return result;
+  }
+
 private:
   struct Place
   {

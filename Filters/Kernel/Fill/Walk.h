@@ -111,6 +111,11 @@ public:
     return value;
   }
 
+  /** A corner of the triangle of the last To(), and its weight: k is 0, 1 or 2. */
+  Index CornerOf(int k) const { return this->Surface.Origin(HalfEdge(this->First, k)); }
+  double ShareOf(int k) const { return this->Shares[k]; }
+  Index CurrentTriangle() const { return this->Triangle; }
+
   /** By how much the interpolation reduces the variance of uncorrelated noise; 0 at a corner. */
   double Smoothing() const
   {
@@ -150,8 +155,6 @@ private:
     }
     return lowest;
   }
-
-  Index CornerOf(int k) const { return this->Surface.Origin(HalfEdge(this->First, k)); }
 
   const Mesh& Surface;
   const Box& KnownArea;

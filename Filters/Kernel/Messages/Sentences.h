@@ -181,6 +181,8 @@ ELEVATION_SENTENCE(InvalidExpectedPoints,
   "{property:MaximumNumberOfExpectedPoints} is {value}; it must be 0 (by the number of points of "
   "the "
   "input) or a number of points.");
+ELEVATION_SENTENCE(InvalidConfidence,
+  "{property:ConfidenceLevel} is {value}; it must be a probability, at least 0.5 and less than 1.");
 ELEVATION_SENTENCE(EdgeLengthRenamed,
   "MaximumEdgeLength of vtkFillElevationHoles is called OpenEdgeLength now: it opens triangles "
   "with "

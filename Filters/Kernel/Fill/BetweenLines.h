@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Values between survey lines, and how wrong they may be.
+ *
+ * In: a patch over a region of long triangles with points inside, the length above which edges are
+ * long, the elevations of the points. Out: one value for each new point, for elevations and all
+ * other attributes; the standard errors of elevations, and intervals.
+ *
+ * Values. The known points alone, triangulated, give linear values T: never far off, but with
+ * creases, and flat where a summit lies between lines. A thin plate S (Spline.h) through up to 1000
+ * of the points bends as the surface does. The value is T + w (S - T[S]), where T[S] is what the
+ * triangles make of the spline's own values at the points: what a part w of the spline's bending
+ * adds. So known points keep their values, however few are centres. w, between 0 and 1, is the one
+ * that predicts best when lines are left out. Values leave the range of the known ones by at most
+ * 5 % of it.
+ *
+ * Trials. Lines (Tracks.h) are coloured so that neighbours differ. Those of one colour are left
+ * out, one colour after the other, and predicted from the rest: between parallel lines the gap is
+ * then twice as wide. From what is left lines are left out once more. Lines that cross the others
+ * have a colour of their own; they show the error in the gaps as they are.
+ *
+ * Scale. The errors are measured in a scale which says where they are large. For a place at
+ * distance d from the nearest known point, in a gap of width g, it is
+ *
+ *   (u (2 - u))^p (g / G)^h R,   u = 2 d / g, at most 1,
+ *
+ * with G the median gap. The roughness R is the mean of five features at the corners of the place's
+ * triangle, with fixed shares: by how much a point on a line differs from the line between points
+ * half of G before and behind it, near the place and in a wide neighbourhood; the errors of lines
+ * that were left out, near and wide, brought to the same mean; and the first of all points. It
+ * counts with the power 0.7, in parts of the mean. p is how the first grows with the distance from the ends of a stretch, h how it grows with its length.
+ * Weights that are fitted to the trials predict worse than fixed ones: lines are few.
+ *
+ * Carrying. The gaps of trials are twice as wide as those to be filled. Both are measured in their
+ * own scale: with G as it is, and twice as wide. As the roughness of lines is known at both
+ * lengths, the errors of the trials, in their scale, are those between the lines in theirs. Where
+ * crossing lines give errors in the gaps as they are, the mean of both counts, of logarithms.
+ *
+ * The standard error is what 68 % of these errors do not exceed, times the scale; half an interval
+ * is what the asked share does not exceed, by rank, among the errors and one more (as in conformal
+ * prediction): no normal distribution is assumed.
+ *
+ * Guarantees: planes are continued, up to rounding. The result depends on the positions of the
+ * known points, their values and the patch, not on the order of points or triangles.
+ *
+ * Cost, for n new points, k known ones, c centres: n log n; about three more triangulations of the
+ * known points; c^3 + c (n + k).
+ *
+ * [Vovk, Gammerman, Shafer] Algorithmic Learning in a Random World, 2005.
+ */
+#ifndef elevation_Fill_BetweenLines_h
+#define elevation_Fill_BetweenLines_h
+
+#include "Kernel/Base/Base.h"
+#include "Patch.h"
+#include "Walk.h"
+
+#include <memory>
+#include <vector>
+
+namespace elevation
+{
+
+class BetweenLines
+{
+public:
+  /**
+   * Looks for lines, and tries. Keeps a reference to the patch.
+   * @param[in] longest  the length of the longest edge that is not long
+   * @param[in] values   the elevations, by ids
+   * @throws Aborted, std::bad_alloc
+   */
+  BetweenLines(const PatchMesh& patch, double longest, const Values& values,
+    const Progress& progress = Progress());
+  ~BetweenLines();
+
+  /** Whether there are lines, enough of them for trials. Else there is nothing more to ask for. */
+  bool AreFound() const;
+
+  /** The part of the spline's bending that is added; 0 to 1. */
+  double Share() const;
+
+  /** One value for each new vertex; none if values at known points are not finite. */
+  std::vector<double> Apply(const Values& values, const Progress& progress = Progress()) const;
+
+  /** The standard error of the elevation at each new vertex. */
+  std::vector<double> StandardErrors() const;
+
+  /** Half the width of intervals that hold the elevation with a probability. */
+  std::vector<double> HalfIntervals(double probability) const;
+
+private:
+  class Trials;
+  std::unique_ptr<Trials> Tried;
+};
+
+} // namespace elevation
+
+#endif

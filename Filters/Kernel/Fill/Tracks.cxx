@@ -1,0 +1,364 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Tracks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+/** An edge whose ends so many edges join already adds nothing. */
+constexpr int MostSteps = 5;
+
+/** Dead ends of fewer vertices are pruned. */
+constexpr std::size_t LeastArm = 3;
+
+/** The direction of an arm is that to the vertex so many steps away. */
+constexpr int StepsOfDirection = 5;
+
+/** The cosine of the angle between two arms that continue each other: 135 degrees at least. */
+constexpr double MostCosine = -0.7;
+
+constexpr Index LeastVertices = 8;
+
+/** Tracks whose vertices are joined by fewer edges, of the shorter one's, are not side by side. */
+constexpr double LeastContact = 0.1;
+
+/** More colours are not needed. */
+constexpr int MostColors = 4;
+
+/** Joins, prunes and traces. */
+class TrackFinding
+{
+public:
+  TrackFinding(const Mesh& mesh, double longest)
+    : Surface(mesh)
+    , Arms(mesh.NumberOfPoints())
+    , Steps(mesh.NumberOfPoints(), 0)
+    , Longest(longest)
+  {
+  }
+
+  Tracks Run(const Progress& progress)
+  {
+    this->Join(progress);
+    this->Prune();
+    this->PairArms();
+    this->Trace();
+    return std::move(this->Result);
+  }
+
+private:
+  void Join(const Progress& progress)
+  {
+    const Mesh& mesh = this->Surface;
+    std::vector<std::tuple<double, Index, Index>> edges;
+    for (const Index h : Counted(mesh.NumberOfHalfEdges()))
+    {
+      const Index a = mesh.Origin(h);
+      const Index b = mesh.Destination(h);
+      const double square = mesh.SquaredLengthOf(h);
+      if ((a < b || mesh.IsBorder(h)) && square <= this->Longest * this->Longest)
+      {
+        edges.emplace_back(square, std::min(a, b), std::max(a, b));
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    std::size_t done = 0;
+    for (const auto& edge : edges)
+    {
+      ReportStep(progress, done++, edges.size());
+      const Index a = std::get<1>(edge);
+      const Index b = std::get<2>(edge);
+      if (!this->AreNear(a, b))
+      {
+        this->Arms[a].push_back(b);
+        this->Arms[b].push_back(a);
+      }
+    }
+    for (std::vector<Index>& arms : this->Arms)
+    {
+      std::sort(arms.begin(), arms.end());
+    }
+  }
+
+  /** Whether at most MostSteps edges join two vertices. */
+  bool AreNear(Index a, Index b)
+  {
+    std::vector<Index>& reached = this->Reached;
+    reached.assign(1, a);
+    this->Steps[a] = 1;
+    bool isNear = false;
+    for (std::size_t k = 0; k < reached.size() && !isNear; ++k)
+    {
+      const Index v = reached[k];
+      for (std::size_t i = 0; i < this->Arms[v].size() && this->Steps[v] <= MostSteps; ++i)
+      {
+        const Index w = this->Arms[v][i];
+        isNear = isNear || w == b;
+        if (this->Steps[w] == 0)
+        {
+          this->Steps[w] = this->Steps[v] + 1;
+          reached.push_back(w);
+        }
+      }
+    }
+    CountWork(reached.size());
+    for (const Index v : reached)
+    {
+      this->Steps[v] = 0;
+    }
+    return isNear;
+  }
+
+  /** Vertices from the end of an arm on, up to a number, an end or a meeting of arms. */
+  std::vector<Index> Follow(Index from, Index to, std::size_t most) const
+  {
+    std::vector<Index> path{ to };
+    while (path.size() < most && this->Arms[to].size() == 2)
+    {
+      const Index next = this->Arms[to][this->Arms[to][0] == from ? 1 : 0];
+      from = to;
+      to = next;
+      path.push_back(to);
+    }
+    return path;
+  }
+
+  void Cut(Index a, Index b)
+  {
+    for (const auto& [from, to] : { std::make_pair(a, b), std::make_pair(b, a) })
+    {
+      std::vector<Index>& arms = this->Arms[from];
+      arms.erase(std::find(arms.begin(), arms.end(), to));
+    }
+  }
+
+  void Prune()
+  {
+    for (Index v = 0; v < this->Surface.NumberOfPoints(); ++v)
+    {
+      if (this->Arms[v].size() != 1)
+      {
+        continue;
+      }
+      const std::vector<Index> path = this->Follow(v, this->Arms[v][0], LeastArm);
+      if (this->Arms[path.back()].size() > 2)
+      {
+        Index from = v;
+        for (const Index to : path)
+        {
+          this->Cut(from, to);
+          from = to;
+        }
+      }
+    }
+  }
+
+  void PairArms()
+  {
+    const Mesh& mesh = this->Surface;
+    this->Partners.resize(this->Arms.size());
+    for (Index v = 0; v < mesh.NumberOfPoints(); ++v)
+    {
+      const std::vector<Index>& arms = this->Arms[v];
+      std::vector<int>& partners = this->Partners[v];
+      partners.assign(arms.size(), -1);
+      std::vector<Point2> directions;
+      for (const Index to : arms)
+      {
+        const Point2& p = mesh.PointOf(v);
+        const Point2& q = mesh.PointOf(this->Follow(v, to, StepsOfDirection).back());
+        const double length = std::hypot(q.X - p.X, q.Y - p.Y);
+        // A loop that comes back has none.
+        directions.push_back(
+          { length > 0.0 ? (q.X - p.X) / length : 0.0, length > 0.0 ? (q.Y - p.Y) / length : 0.0 });
+      }
+      std::vector<std::tuple<double, int, int>> pairs;
+      for (int i = 0; i < static_cast<int>(arms.size()); ++i)
+      {
+        for (int k = i + 1; k < static_cast<int>(arms.size()); ++k)
+        {
+          const double cosine =
+            directions[i].X * directions[k].X + directions[i].Y * directions[k].Y;
+          if (arms.size() == 2 || cosine < MostCosine)
+          {
+            pairs.emplace_back(cosine, i, k);
+          }
+        }
+      }
+      std::sort(pairs.begin(), pairs.end());
+      for (const auto& [cosine, i, k] : pairs)
+      {
+        if (partners[i] < 0 && partners[k] < 0)
+        {
+          partners[i] = k;
+          partners[k] = i;
+        }
+      }
+    }
+  }
+
+  int ArmTo(Index from, Index to) const
+  {
+    const std::vector<Index>& arms = this->Arms[from];
+    return static_cast<int>(std::lower_bound(arms.begin(), arms.end(), to) - arms.begin());
+  }
+
+  /** Tracks with two ends, then those that come back to where they began. */
+  void Trace()
+  {
+    std::vector<std::vector<char>> isTraced(this->Arms.size());
+    for (std::size_t v = 0; v < this->Arms.size(); ++v)
+    {
+      isTraced[v].assign(this->Arms[v].size(), 0);
+    }
+    for (const bool haveEnds : { true, false })
+    {
+      for (Index v = 0; v < static_cast<Index>(this->Arms.size()); ++v)
+      {
+        for (int arm = 0; arm < static_cast<int>(this->Arms[v].size()); ++arm)
+        {
+          if (!isTraced[v][arm] && (!haveEnds || this->Partners[v][arm] < 0))
+          {
+            this->TraceOne(v, arm, isTraced);
+          }
+        }
+      }
+    }
+  }
+
+  void TraceOne(Index v, int arm, std::vector<std::vector<char>>& isTraced)
+  {
+    std::vector<Index>& vertices = this->Result.Vertices;
+    const std::size_t first = vertices.size();
+    vertices.push_back(v);
+    while (arm >= 0 && !isTraced[v][arm])
+    {
+      isTraced[v][arm] = 1;
+      const Index next = this->Arms[v][arm];
+      const int back = this->ArmTo(next, v);
+      isTraced[next][back] = 1;
+      vertices.push_back(next);
+      arm = this->Partners[next][back];
+      v = next;
+    }
+    if (vertices.back() == vertices[first])
+    {
+      vertices.pop_back();
+    }
+    if (static_cast<Index>(vertices.size() - first) < LeastVertices)
+    {
+      vertices.resize(first);
+      return;
+    }
+    this->Result.Offsets.push_back(static_cast<Index>(vertices.size()));
+  }
+
+  const Mesh& Surface;
+  std::vector<std::vector<Index>> Arms;   ///< of each vertex those that an edge joins it to
+  std::vector<std::vector<int>> Partners; ///< for each arm the number of the one that continues it
+  std::vector<int> Steps;                 ///< of AreNear(); 0 between calls
+  std::vector<Index> Reached;
+  const double Longest;
+  Tracks Result;
+};
+} // namespace
+
+Tracks FindTracks(const Mesh& mesh, double longest, const Progress& progress)
+{
+  return TrackFinding(mesh, longest).Run(progress);
+}
+
+std::vector<int> ColorTracks(
+  const Tracks& tracks, const Mesh& mesh, const std::vector<Index>& vertexOf)
+{
+  std::vector<Index> trackOf(mesh.NumberOfPoints(), None);
+  std::vector<int> colors(tracks.Count(), None);
+  for (Index t = 0; t < tracks.Count(); ++t)
+  {
+    for (const Index* v = tracks.Begin(t); v != tracks.End(t); ++v)
+    {
+      const Index vertex = vertexOf.empty() ? *v : vertexOf[*v];
+      if (vertex != None)
+      {
+        trackOf[vertex] = t;
+      }
+    }
+  }
+  std::map<std::pair<Index, Index>, int> contacts;
+  std::vector<char> isThere(tracks.Count(), 0);
+  for (const Index h : Counted(mesh.NumberOfHalfEdges()))
+  {
+    const Index a = trackOf[mesh.Origin(h)];
+    const Index b = trackOf[mesh.Destination(h)];
+    if (a != None)
+    {
+      isThere[a] = 1;
+    }
+    if (a != None && b != None && a != b && (a < b || mesh.IsBorder(h)))
+    {
+      ++contacts[{ std::min(a, b), std::max(a, b) }];
+    }
+  }
+  std::vector<std::vector<std::pair<Index, int>>> beside(tracks.Count());
+  for (const auto& [pair, count] : contacts)
+  {
+    const Index shorter = std::min(tracks.Size(pair.first), tracks.Size(pair.second));
+    if (count >= LeastContact * shorter)
+    {
+      beside[pair.first].emplace_back(pair.second, count);
+      beside[pair.second].emplace_back(pair.first, count);
+    }
+  }
+  // From the longest track to those beside it, so that of parallel ones none is between two
+  // that have begun differently.
+  std::vector<Index> order(tracks.Count());
+  for (Index t = 0; t < tracks.Count(); ++t)
+  {
+    order[t] = t;
+  }
+  std::stable_sort(
+    order.begin(), order.end(), [&](Index a, Index b) { return tracks.Size(a) > tracks.Size(b); });
+  std::vector<char> isQueued(tracks.Count(), 0);
+  for (const Index first : order)
+  {
+    std::queue<Index> queue;
+    if (isThere[first] && !isQueued[first])
+    {
+      isQueued[first] = 1;
+      queue.push(first);
+    }
+    for (; !queue.empty(); queue.pop())
+    {
+      const Index t = queue.front();
+      std::vector<std::pair<Index, int>>& others = beside[t];
+      std::stable_sort(others.begin(), others.end(),
+        [](const auto& a, const auto& b) { return a.second > b.second; });
+      int conflicts[MostColors] = {};
+      for (const auto& [other, count] : others)
+      {
+        if (colors[other] != None)
+        {
+          conflicts[colors[other]] += count;
+        }
+        if (!isQueued[other])
+        {
+          isQueued[other] = 1;
+          queue.push(other);
+        }
+      }
+      colors[t] = static_cast<int>(std::min_element(conflicts, conflicts + MostColors) - conflicts);
+    }
+  }
+  return colors;
+}
+
+} // namespace elevation
