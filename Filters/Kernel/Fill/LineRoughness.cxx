@@ -1,0 +1,321 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LineRoughness.h"
+
+#include "Heights.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace elevation
+{
+
+namespace
+{
+constexpr double NotANumber = std::numeric_limits<double>::quiet_NaN();
+
+/** A stretch of a line is straight if its ends are so far apart, in its length. */
+constexpr double LeastStraightness = 0.88;
+
+/** The shares of roughness near and in the neighbourhood; half of each by lines left out. */
+constexpr double ShareOfNear = 0.35;
+constexpr double ShareOfWide = 0.35;
+constexpr double ShareOfAll = 0.3;
+
+/** The power of roughness, in parts of the mean; with 1, intervals are too wide where it is large. */
+constexpr double RoughnessPower = 0.7;
+
+/** How far the neighbourhoods reach, in gaps: along a line, and the size of cells, of which nine. */
+constexpr double NearInGaps = 0.5;
+constexpr double WideInGaps = 3.0;
+
+/** Widths of gaps count within this multiple of the median one. */
+constexpr double WidestGap = 4.0;
+
+/** Stretches are longer where points are sparse; how their roughness depends on the length. */
+constexpr double LengthPower = 0.5;
+
+constexpr double ShapeQuantile = 0.9;
+constexpr double LargestShapePower = 1.2;
+constexpr double LargestGapPower = 1.0;
+} // namespace
+
+/**
+ * By how much the height at a place of a line differs from what the line between two others
+ * gives: the first ones at least so far before and behind it.
+ * @return NaN where there is none, or the line is not straight there
+ */
+LineRoughness::Stretch LineRoughness::StretchAt(
+  Index track, Index place, double before, double behind) const
+{
+  const Index* const vertices = this->Lines.Begin(track);
+  const Index size = this->Lines.Size(track);
+  const Point2 p = this->Patch.At(vertices[place]);
+  const auto distanceTo = [&](Index i) {
+    const Point2 q = this->Patch.At(vertices[i]);
+    return std::hypot(q.X - p.X, q.Y - p.Y);
+  };
+  const auto find = [&](Index step, double least) {
+    Index i = place + step;
+    std::size_t work = 1;
+    while (i >= 0 && i < size && distanceTo(i) < least * (1.0 - 1e-9))
+    {
+      i += step;
+      ++work;
+    }
+    CountWork(work);
+    return i;
+  };
+  const Index a = find(-1, before);
+  const Index b = find(1, behind);
+  Stretch stretch;
+  if (a < 0 || b >= size)
+  {
+    return stretch;
+  }
+  stretch.Before = distanceTo(a);
+  stretch.Behind = distanceTo(b);
+  const double length = stretch.Before + stretch.Behind;
+  const Point2 from = this->Patch.At(vertices[a]);
+  const Point2 to = this->Patch.At(vertices[b]);
+  if (std::hypot(to.X - from.X, to.Y - from.Y) < LeastStraightness * length ||
+    length > 2.0 * (before + behind))
+  {
+    return stretch;
+  }
+  stretch.Miss = std::fabs(this->Elevations[vertices[place]] -
+    (stretch.Behind * this->Elevations[vertices[a]] +
+      stretch.Before * this->Elevations[vertices[b]]) /
+      length);
+  return stretch;
+}
+
+bool LineRoughness::IsThere(const Known& known, Index track) const
+{
+  // All vertices but those where it crosses others are there, or none.
+  const Index* const begin = this->Lines.Begin(track);
+  return std::all_of(
+    begin, this->Lines.End(track), [&](Index v) { return known.VertexOf[v] != None; });
+}
+
+/** Of each known point the roughness along its line, over stretches of a length; or NaN. */
+std::vector<double> LineRoughness::Along(const Known& known, double length) const
+{
+  std::vector<double> roughness(this->Count, NotANumber);
+  for (Index t = 0; t < this->Lines.Count(); ++t)
+  {
+    for (Index i = 0; this->IsThere(known, t) && i < this->Lines.Size(t); ++i)
+    {
+      const Stretch stretch = this->StretchAt(t, i, 0.5 * length, 0.5 * length);
+      roughness[this->Lines.Begin(t)[i]] = stretch.Miss *
+        std::pow(length / std::max(length, stretch.Before + stretch.Behind), LengthPower);
+    }
+  }
+  return roughness;
+}
+
+/** The square of the mean root, which single large values do not determine. */
+double LineRoughness::MeanOf(const std::vector<double>& values)
+{
+  double sum = 0.0, count = 0.0;
+  for (const double value : values)
+  {
+    sum += std::isnan(value) ? 0.0 : std::sqrt(value);
+    count += std::isnan(value) ? 0.0 : 1.0;
+  }
+  return count > 0.0 ? (sum / count) * (sum / count) : NotANumber;
+}
+
+LineRoughness::Means LineRoughness::MeansOf(
+  const Known& known, const std::vector<double>& values, double gap) const
+{
+  Means means{ this->MeansInCells(known, values, WideInGaps * gap), {} };
+  means.Wide = means.Near;
+  for (Index t = 0; t < this->Lines.Count(); ++t)
+  {
+    if (!this->IsThere(known, t))
+    {
+      continue;
+    }
+    const Index* const vertices = this->Lines.Begin(t);
+    const std::size_t size = static_cast<std::size_t>(this->Lines.Size(t));
+    std::vector<double> along(size, 0.0), sums(size + 1, 0.0), counts(size + 1, 0.0);
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      const Point2 p = this->Patch.At(vertices[i]);
+      const Point2 q = this->Patch.At(vertices[i > 0 ? i - 1 : 0]);
+      along[i] = (i > 0 ? along[i - 1] : 0.0) + std::hypot(p.X - q.X, p.Y - q.Y);
+      const double value = values[vertices[i]];
+      sums[i + 1] = sums[i] + (std::isnan(value) ? 0.0 : std::sqrt(value));
+      counts[i + 1] = counts[i] + (std::isnan(value) ? 0.0 : 1.0);
+    }
+    std::size_t begin = 0, end = 0;
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      while (along[i] - along[begin] > NearInGaps * gap)
+      {
+        ++begin;
+      }
+      while (end < size && along[end] - along[i] <= NearInGaps * gap)
+      {
+        ++end;
+      }
+      if (counts[end] - counts[begin] > 0.0)
+      {
+        means.Near[vertices[i]] =
+          std::max(0.0, sums[end] - sums[begin]) / (counts[end] - counts[begin]);
+      }
+    }
+  }
+  return means;
+}
+
+/** Over the cell of each point and the eight around it, and one value of the mean of all. */
+std::vector<double> LineRoughness::MeansInCells(
+  const Known& known, const std::vector<double>& values, double side) const
+{
+  const Box box = this->Patch.BoundaryBox();
+  const double most = std::sqrt(static_cast<double>(this->Count)) + 1.0;
+  const auto cells = [&](double width) {
+    return static_cast<Index>(std::min(most, std::floor(width / side))) + 1;
+  };
+  const Index columns = cells(box.Width());
+  const Index rows = cells(box.Height());
+  const auto cellOf = [&](Index number, Index& column, Index& row) {
+    const Point2 p = this->Patch.At(number);
+    column = static_cast<Index>((p.X - box.Low.X) / box.Width() * columns);
+    row = static_cast<Index>((p.Y - box.Low.Y) / box.Height() * rows);
+    column = std::min(column, columns - 1);
+    row = std::min(row, rows - 1);
+  };
+  std::vector<double> sums(std::size_t(columns) * rows, 0.0), counts(sums.size(), 0.0);
+  double all = 0.0, count = 0.0;
+  Index column, row;
+  for (const Index number : Counted(known.Numbers))
+  {
+    if (!std::isnan(values[number]))
+    {
+      const double root = std::sqrt(values[number]);
+      cellOf(number, column, row);
+      sums[std::size_t(row) * columns + column] += root;
+      counts[std::size_t(row) * columns + column] += 1.0;
+      all += root;
+      count += 1.0;
+    }
+  }
+  std::vector<double> means(this->Count, NotANumber);
+  for (const Index number : Counted(known.Numbers))
+  {
+    double sum = all / count, weight = 1.0;
+    cellOf(number, column, row);
+    for (Index y = std::max(0, row - 1); y <= std::min(rows - 1, row + 1); ++y)
+    {
+      for (Index x = std::max(0, column - 1); x <= std::min(columns - 1, column + 1); ++x)
+      {
+        sum += sums[std::size_t(y) * columns + x];
+        weight += counts[std::size_t(y) * columns + x];
+      }
+    }
+    means[number] = sum / weight;
+  }
+  return means;
+}
+
+/**
+ * How errors grow with the distance from the nearest end of a stretch of a length: the power of
+ * u (2 - u).
+ */
+double LineRoughness::ShapePower(const Known& known, double length) const
+{
+  double products = 0.0, squares = 0.0, ofMiddle = 0.0;
+  for (const double part : { 0.5, 0.25, 0.125 })
+  {
+    std::vector<double> misses;
+    double sum = 0.0;
+    for (Index t = 0; t < this->Lines.Count(); ++t)
+    {
+      for (Index i = 0; this->IsThere(known, t) && i < this->Lines.Size(t); ++i)
+      {
+        for (const double before : { part, 1.0 - part })
+        {
+          const Stretch stretch = this->StretchAt(t, i, before * length, (1.0 - before) * length);
+          if (!std::isnan(stretch.Miss))
+          {
+            misses.push_back(stretch.Miss);
+            sum += std::min(stretch.Before, stretch.Behind) / (stretch.Before + stretch.Behind);
+          }
+        }
+      }
+    }
+    if (misses.empty())
+    {
+      return 1.0;
+    }
+    const double u = 2.0 * sum / static_cast<double>(misses.size());
+    const double error = QuantileByRank(std::move(misses), ShapeQuantile);
+    if (part == 0.5)
+    {
+      ofMiddle = error;
+    }
+    else if (error > 0.0 && ofMiddle > 0.0)
+    {
+      const double x = std::log(u * (2.0 - u));
+      products += x * std::log(error / ofMiddle);
+      squares += x * x;
+    }
+  }
+  return squares > 0.0 ? std::max(0.0, std::min(LargestShapePower, products / squares)) : 1.0;
+}
+
+/** The scales of spots, for a median gap. See above. */
+std::vector<double> LineRoughness::ScalesAt(const std::vector<Spot>& spots, const Known& known,
+  double gap, const std::vector<double>& missed) const
+{
+  const std::vector<double> rough = this->Along(known, gap);
+  const double all = MeanOf(rough);
+  const Means along = this->MeansOf(known, rough, gap);
+  Means across = along;
+  if (std::any_of(known.Numbers.begin(), known.Numbers.end(),
+        [&](Index number) { return !std::isnan(missed[number]); }))
+  {
+    across = this->MeansOf(known, missed, gap);
+    double sums[2] = { 0.0, 0.0 };
+    for (const Index number : known.Numbers)
+    {
+      sums[0] += along.Wide[number];
+      sums[1] += across.Wide[number];
+    }
+    const double factor = sums[1] > 0.0 ? sums[0] / sums[1] : 0.0;
+    for (std::vector<double>* values : { &across.Near, &across.Wide })
+    {
+      std::transform(values->begin(), values->end(), values->begin(),
+        [factor](double value) { return factor * value; });
+    }
+  }
+  const double power = this->ShapePower(known, gap);
+  const double half = MeanOf(this->Along(known, 0.5 * gap));
+  const double growth =
+    half > 0.0 && all > 0.0 ? std::max(0.0, std::min(LargestGapPower, std::log2(all / half))) : 0.0;
+  std::vector<double> scales(spots.size(), NotANumber);
+  for (std::size_t i = 0; i < spots.size(); ++i)
+  {
+    const Spot& spot = spots[i];
+    if (!spot.IsInside)
+    {
+      continue;
+    }
+    const auto square = [&](const std::vector<double>& roots) {
+      const double root = Linear(spot, roots);
+      return root * root;
+    };
+    const double roughness = 0.5 * ShareOfNear * (square(along.Near) + square(across.Near)) +
+      0.5 * ShareOfWide * (square(along.Wide) + square(across.Wide)) + ShareOfAll * all;
+    const double even = all > 0.0 ? all * std::pow(roughness / all, RoughnessPower) : 0.0;
+    const double width = std::max(gap / WidestGap, std::min(gap * WidestGap, spot.Gap));
+    const double u = std::min(1.0, 2.0 * spot.Distance / spot.Gap);
+    scales[i] = std::pow(u * (2.0 - u), power) * std::pow(width / gap, growth) * even;
+  }
+  return scales;
+}
+
+} // namespace elevation

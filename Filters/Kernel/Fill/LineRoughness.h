@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * How rough survey lines are, and how large errors between them are expected to be for that.
+ *
+ * In: the points of lines with their heights, and the triangles of some of these points. Out: at
+ * places between lines the scale of errors: what one error is to another, up to a factor that
+ * trials find (BetweenLines.h).
+ *
+ * Cost: linear in the points for each length of stretches.
+ */
+#ifndef elevation_Fill_LineRoughness_h
+#define elevation_Fill_LineRoughness_h
+
+#include "Kernel/Base/Base.h"
+#include "Kernel/Mesh/Mesh.h"
+#include "Patch.h"
+#include "Spline.h"
+#include "Tracks.h"
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace elevation
+{
+
+/** A place among triangles. */
+struct Spot
+{
+  bool IsInside = false;
+  Index Corners[3] = { 0, 0, 0 }; ///< numbers of known points
+  double Shares[3] = { 0.0, 0.0, 0.0 };
+  double Distance = 0.0; ///< from the nearest corner
+  double Gap = 0.0;      ///< width of the gap: the height of the triangle over its shortest edge
+};
+
+/** What linear interpolation makes of values at known points. */
+inline double Linear(const Spot& spot, const std::vector<double>& values)
+{
+  double sum = 0.0;
+  for (int k = 0; k < 3; ++k)
+  {
+    sum += spot.Shares[k] * values[spot.Corners[k]];
+  }
+  return sum;
+}
+
+/** Some of the known points, with their triangles and a spline. */
+struct Known
+{
+  std::vector<Index> Numbers; ///< increasing
+  Mesh Triangles;
+  std::vector<Index> VertexOf;   ///< of all known points the vertex here, or None
+  std::vector<Index> Centers;    ///< numbers
+  std::unique_ptr<Spline> Plate; ///< null where the points determine none
+};
+
+class LineRoughness
+{
+public:
+  /** References to what lives longer. @param[in] elevations  of known points */
+  LineRoughness(const PatchMesh& patch, const Tracks& lines, const std::vector<double>& elevations)
+    : Patch(patch)
+    , Lines(lines)
+    , Elevations(elevations)
+    , Count(elevations.size())
+  {
+  }
+
+  /** Of each known point the roughness along its line, over stretches of a length; or NaN. */
+  std::vector<double> Along(const Known& known, double length) const;
+
+  /**
+   * The scales of spots, for a median gap.
+   * @param[in] missed  errors at known points where lines were left out, or NaN
+   */
+  std::vector<double> ScalesAt(const std::vector<Spot>& spots, const Known& known, double gap,
+    const std::vector<double>& missed) const;
+
+private:
+  /** How a height at a place of a line differs from what the line between two others gives. */
+  struct Stretch
+  {
+    double Miss = std::numeric_limits<double>::quiet_NaN();
+    double Before = 0.0; ///< distances
+    double Behind = 0.0;
+  };
+  /** Means of the roots of values near each known point on its line, and in a neighbourhood. */
+  struct Means
+  {
+    std::vector<double> Near;
+    std::vector<double> Wide;
+  };
+  Stretch StretchAt(Index track, Index place, double before, double behind) const;
+  bool IsThere(const Known& known, Index track) const;
+  static double MeanOf(const std::vector<double>& values);
+  Means MeansOf(const Known& known, const std::vector<double>& values, double gap) const;
+  std::vector<double> MeansInCells(
+    const Known& known, const std::vector<double>& values, double side) const;
+  double ShapePower(const Known& known, double length) const;
+
+  const PatchMesh& Patch;
+  const Tracks& Lines;
+  const std::vector<double>& Elevations;
+  const std::size_t Count;
+};
+
+} // namespace elevation
+
+#endif
