@@ -93,6 +93,7 @@ set(es_kernel_Fill
   Neighbours
   Tracks
   Heights
+  LineRoughness
   BetweenLines
   Fill)
 
@@ -118,7 +119,7 @@ set(es_kernel_headers_Cells
   Cells)
 set(es_kernel_headers_Trim)
 set(es_kernel_headers_Fill
-  Trials Walk)
+  Quantiles Trials Walk)
 
 # The rooms around the kernel.
 set(es_outer_rooms Adapt Parts)

@@ -6,6 +6,7 @@
 #include "Kernel/Base/Base.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "LineRoughness.h"
+#include "Quantiles.h"
 #include "Spline.h"
 #include "Tracks.h"
 
@@ -46,11 +47,6 @@ constexpr double LeastWidening = 1.4;
 
 constexpr double StandardQuantile = 0.683;
 
-/** NaN of none. */
-double Median(const std::vector<double>& values)
-{
-  return QuantileByRank(values, 0.5);
-}
 } // namespace
 
 class BetweenLines::Trials
@@ -333,7 +329,7 @@ private:
         gaps.push_back(spot.Gap);
       }
     }
-    return Median(gaps);
+    return QuantileByRank(gaps, 0.5);
   }
 
   /** What the spline bends from the triangles, at spots whose triangles are those of known. */

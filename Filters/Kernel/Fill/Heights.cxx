@@ -12,9 +12,10 @@
 // The first three are done once for a hole, Apply() for its elevations and for each attribute.
 #include "Heights.h"
 
+#include "Kernel/Base/Base.h"
+#include "Quantiles.h"
 #include "Spline.h"
 #include "Trials.h"
-#include "Kernel/Base/Base.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,18 +83,6 @@ constexpr Spline::Kernel Kernels[2] = { Spline::Kernel::ThinPlate, Spline::Kerne
 constexpr Interpolation Methods[3] = { Interpolation::Membrane, Interpolation::ThinPlate,
   Interpolation::Cubic };
 
-/** The mean of the two in the middle, so that opposite values have opposite medians; 0 of none. */
-double Median(std::vector<double> values)
-{
-  if (values.empty())
-  {
-    return 0.0;
-  }
-  const auto upper = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), upper, values.end());
-  return values.size() % 2 ? *upper : 0.5 * (*std::max_element(values.begin(), upper) + *upper);
-}
-
 /** Between two of some numbered points. */
 struct SlopingEdge
 {
@@ -139,20 +128,6 @@ int Spread(int k, int count)
   return result;
 }
 } // namespace
-
-double QuantileByRank(std::vector<double> values, double share)
-{
-  if (values.empty())
-  {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  const double rank = std::ceil(share * static_cast<double>(values.size() + 1));
-  const std::size_t place =
-    static_cast<std::size_t>(std::max(1.0, std::min(rank, static_cast<double>(values.size()))));
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(place - 1);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh& patch,
   Interpolation wanted, const Values& values, const Progress& progress)

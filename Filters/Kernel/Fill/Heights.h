@@ -106,12 +106,6 @@ enum class Interpolation : unsigned char
   Cubic = 4
 };
 
-/**
- * The value that a share of all values does not exceed: by its rank among them and one more, so that
- * a next one exceeds it no more often. NaN of none.
- */
-double QuantileByRank(std::vector<double> values, double share);
-
 class Heights
 {
 public:
@@ -177,8 +171,8 @@ private:
     return !this->AllBoundaryIsCenter || this->Shares[0] > 0.0 || !this->HasSpline();
   }
   class Trials;
-  void MakeCandidates(Interpolation wanted, const VertexStars& stars, const Values& values,
-    const Progress& progress);
+  void MakeCandidates(
+    Interpolation wanted, const VertexStars& stars, const Values& values, const Progress& progress);
   void TryBeside(Trials& trials, const Progress& progress) const;
   void Choose(const VertexStars& stars, const Values& values, const Progress& progress);
   std::vector<double> SplineSum(const std::vector<double>& known, const Progress& progress) const;

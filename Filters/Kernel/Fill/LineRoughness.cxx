@@ -3,6 +3,7 @@
 #include "LineRoughness.h"
 
 #include "Heights.h"
+#include "Quantiles.h"
 
 #include <algorithm>
 #include <cmath>
