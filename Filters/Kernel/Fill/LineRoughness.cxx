@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LineRoughness.h"
 
-#include "Heights.h"
 #include "Quantiles.h"
 
 #include <algorithm>
