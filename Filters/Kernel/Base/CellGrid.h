@@ -15,7 +15,8 @@
  *   +-----+-----+-----+-----+
  *
  * Begins says where the items of each cell begin in Items, as in a sparse matrix stored by rows.
- * Cost: linear in the items and the cells that they touch, at most about 30 an item on average.
+ * Cost: linear in the items and the cells that they touch: on average at most about 30 a segment,
+ * and twice as many a triangle if triangles do not overlap.
  */
 #ifndef elevation_Base_CellGrid_h
 #define elevation_Base_CellGrid_h
@@ -109,6 +110,59 @@ public:
     this->Visit(square, visit);
   }
 
+  /** Calls visit(cell) for every cell that an item touches, row by row. */
+  template <std::size_t Count, typename Visitor>
+  void ForEachCell(const std::array<Point2, Count>& corners, Visitor&& visit) const
+  {
+    // The grid may be asked for items far outside: these touch nothing. Of others, only what is
+    // inside the grid is walked.
+    const Box box = BoxOf(corners);
+    if (!this->Bounds.Intersects(box))
+    {
+      return;
+    }
+    // The same place may be rounded into two cells, once as part of an item and once as a point
+    // that is looked up. The margin enters items on both sides of a border between cells.
+    constexpr double margin = 1e-6; // of a cell
+    constexpr double far = 1e8;     // in cells; within it rounding errors are far below the margin
+    const Point2 low = this->InCells(box.Low), high = this->InCells(box.High);
+    const int firstRow = CellOf(low.Y - margin, this->Rows);
+    const int lastRow = CellOf(high.Y + margin, this->Rows);
+    const int firstColumn = CellOf(low.X - margin, this->Columns);
+    const int lastColumn = CellOf(high.X + margin, this->Columns);
+    // An item in one row or one column has nothing to clip. One with a corner very far away is
+    // entered in all cells of its box, because the rounding error of its slope would exceed the
+    // margin.
+    const bool isClippedToRows = firstRow < lastRow && firstColumn < lastColumn &&
+      std::max({ -low.X, -low.Y, high.X, high.Y }) < far;
+    std::array<Point2, Count> at = corners;
+    for (std::size_t i = 0; i < Count && isClippedToRows; ++i)
+    {
+      at[i] = this->InCells(corners[i]);
+    }
+    for (int row = firstRow; row <= lastRow; ++row)
+    {
+      int begin = firstColumn, end = lastColumn;
+      if (isClippedToRows)
+      {
+        // The wrong way around, so the first side replaces both.
+        double left = high.X, right = low.X;
+        // A segment is one side, not also its way back; a triangle has three, a square four; a
+        // point is a side to itself.
+        for (std::size_t i = 0; i + (Count == 2) < Count; ++i)
+        {
+          Widen(at[i], at[(i + 1) % Count], row - margin, row + 1.0 + margin, left, right);
+        }
+        begin = CellOf(left - margin, this->Columns);
+        end = CellOf(right + margin, this->Columns);
+      }
+      for (int column = begin; column <= end; ++column)
+      {
+        visit(static_cast<std::size_t>(row) * this->Columns + column);
+      }
+    }
+  }
+
 private:
   template <typename Visitor>
   void VisitItems(std::size_t cell, Visitor&& visit) const
@@ -182,59 +236,6 @@ private:
   static int CellOf(double position, int count)
   {
     return position > 0.0 ? (position < count ? static_cast<int>(position) : count - 1) : 0;
-  }
-
-  /** Calls visit(cell) for every cell that an item touches, row by row. */
-  template <std::size_t Count, typename Visitor>
-  void ForEachCell(const std::array<Point2, Count>& corners, Visitor&& visit) const
-  {
-    // The grid may be asked for items far outside: these touch nothing. Of others, only what is
-    // inside the grid is walked.
-    const Box box = BoxOf(corners);
-    if (!this->Bounds.Intersects(box))
-    {
-      return;
-    }
-    // The same place may be rounded into two cells, once as part of an item and once as a point
-    // that is looked up. The margin enters items on both sides of a border between cells.
-    constexpr double margin = 1e-6; // of a cell
-    constexpr double far = 1e8;     // in cells; within it rounding errors are far below the margin
-    const Point2 low = this->InCells(box.Low), high = this->InCells(box.High);
-    const int firstRow = CellOf(low.Y - margin, this->Rows);
-    const int lastRow = CellOf(high.Y + margin, this->Rows);
-    const int firstColumn = CellOf(low.X - margin, this->Columns);
-    const int lastColumn = CellOf(high.X + margin, this->Columns);
-    // An item in one row or one column has nothing to clip. One with a corner very far away is
-    // entered in all cells of its box, because the rounding error of its slope would exceed the
-    // margin.
-    const bool isClippedToRows = firstRow < lastRow && firstColumn < lastColumn &&
-      std::max({ -low.X, -low.Y, high.X, high.Y }) < far;
-    std::array<Point2, Count> at = corners;
-    for (std::size_t i = 0; i < Count && isClippedToRows; ++i)
-    {
-      at[i] = this->InCells(corners[i]);
-    }
-    for (int row = firstRow; row <= lastRow; ++row)
-    {
-      int begin = firstColumn, end = lastColumn;
-      if (isClippedToRows)
-      {
-        // The wrong way around, so the first side replaces both.
-        double left = high.X, right = low.X;
-        // A segment is one side, not also its way back; a triangle has three, a square four; a
-        // point is a side to itself.
-        for (std::size_t i = 0; i + (Count == 2) < Count; ++i)
-        {
-          Widen(at[i], at[(i + 1) % Count], row - margin, row + 1.0 + margin, left, right);
-        }
-        begin = CellOf(left - margin, this->Columns);
-        end = CellOf(right + margin, this->Columns);
-      }
-      for (int column = begin; column <= end; ++column)
-      {
-        visit(static_cast<std::size_t>(row) * this->Columns + column);
-      }
-    }
   }
 
   /** Extends a range of x to the part of a segment between bottom and top. */

@@ -7,8 +7,10 @@
 #ifndef elevation_Base_EdgeLimit_h
 #define elevation_Base_EdgeLimit_h
 
+#include "Memory.h"
 #include "Points.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace elevation
@@ -50,6 +52,25 @@ private:
   const double Length;
   const bool IsPlain; ///< squares neither over- nor underflow
 };
+
+/** Leaves out the triangles of a list, by ids of points, that have an edge over a length. */
+inline void LeaveOutLong(
+  const PointView& points, double length, Buffer<Index>& triangles, const Progress& progress)
+{
+  const EdgeLimit limit(length);
+  std::size_t kept = 0;
+  for (const std::size_t t : Counted(limit.IsSet() ? triangles.size() / 3 : 0))
+  {
+    ReportStep(progress, t, triangles.size() / 3);
+    const Index* const corners = triangles.data() + 3 * t;
+    if (limit.Admits([&](Index id) { return points.At(id); }, corners[0], corners[1], corners[2]))
+    {
+      std::copy(corners, corners + 3, triangles.data() + kept);
+      kept += 3;
+    }
+  }
+  triangles.Resize(limit.IsSet() ? kept : triangles.size());
+}
 
 } // namespace elevation
 

@@ -112,6 +112,11 @@ struct PointView
     const std::size_t k = 3 * static_cast<std::size_t>(i) + 2;
     return this->Double ? this->Double[k] : static_cast<double>(this->Float[k]);
   }
+  bool IsFinite(Index i) const
+  {
+    const Point2 p = this->At(i);
+    return std::isfinite(p.X) && std::isfinite(p.Y) && std::isfinite(this->Elevation(i));
+  }
 };
 
 } // namespace elevation

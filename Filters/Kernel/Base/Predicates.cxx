@@ -250,8 +250,8 @@ public:
     this->Limbs.assign(shift / 32, 0);
     const int rest = shift % 32;
     this->Limbs.push_back(static_cast<std::uint32_t>(bits << rest));
-    // Shifts in two steps, and none by 64, which would be undefined.
-    this->Limbs.push_back(static_cast<std::uint32_t>((bits >> 1) >> (31 - rest)));
+    // No shift by 64, which would be undefined.
+    this->Limbs.push_back(static_cast<std::uint32_t>(bits >> (32 - rest)));
     this->Limbs.push_back(rest ? static_cast<std::uint32_t>(bits >> (64 - rest)) : 0);
     this->Trim();
   }

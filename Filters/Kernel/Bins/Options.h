@@ -74,6 +74,7 @@ struct DelaunayOptions
   /** How far a point may lie from its node along each step, in steps; at most 0.25. */
   // A larger tolerance counts as 0.25: from half a step on, a point would have two nodes.
   double LatticeTolerance = 0.01;
+  double ToleranceInSteps() const { return std::min(std::max(this->LatticeTolerance, 0.0), 0.25); }
   /** Threads to use; 0: all there are. The result is the same, byte for byte. */
   int NumberOfThreads = 1;
   /** For tests: points per strip (Growth.h); 0: automatic. */

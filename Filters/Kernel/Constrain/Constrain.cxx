@@ -104,20 +104,6 @@ void SortInChanged(const Mesh& mesh, Buffer<Index>& triangles, const Progress& p
   });
 }
 
-// After recovery, which needs the triangles with long edges, too.
-void LeaveOutLong(const std::vector<Point2>& points, const EdgeLimit& limit,
-  Buffer<Index>& triangles, const Progress& progress)
-{
-  Corners* const all = reinterpret_cast<Corners*>(triangles.data());
-  WorkReporter work(progress);
-  const auto isLong = [&](const Corners& corners) {
-    work.Tick();
-    const auto pointOf = [&](Index v) { return points[v]; };
-    return !limit.Admits(pointOf, corners[0], corners[1], corners[2]);
-  };
-  triangles.Resize(3 * (std::remove_if(all, all + triangles.size() / 3, isLong) - all));
-}
-
 } // namespace
 
 ConstrainedTriangulation TriangulateConstrained(
@@ -179,11 +165,7 @@ ConstrainedTriangulation TriangulateConstrained(
   {
     SortInChanged(mesh, result.Triangles, progress.Between(0.95, 0.99));
   }
-  const EdgeLimit limit(asked.MaximumEdgeLength);
-  if (limit.IsSet())
-  {
-    LeaveOutLong(mesh.Points, limit, result.Triangles, progress.Between(0.99, 1.0));
-  }
+  LeaveOutLong(all, asked.MaximumEdgeLength, result.Triangles, progress.Between(0.99, 1.0));
   Report(progress, 1.0);
   return constrained;
 }

@@ -55,11 +55,11 @@ std::vector<Index> ListNearLines(
   for (const Index id : Counted(points.Count))
   {
     ReportStep(looking, id, points.Count);
-    const Point2 p = points.At(id);
-    if (!std::isfinite(p.X) || !std::isfinite(p.Y) || !std::isfinite(points.Elevation(id)))
+    if (!points.IsFinite(id))
     {
       continue;
     }
+    const Point2 p = points.At(id);
     const double size = reach * std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
     bool isNear = false;
     grid.VisitAround(p, size, [&](Index i) { isNear = isNear || IsWithin(segments[i], p, size); });

@@ -3,6 +3,7 @@
 #include "SegmentCrossings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <unordered_map>
@@ -152,34 +153,25 @@ private:
         shortest = distance;
       }
     };
-    // The reach is far below the size of a cell, so the square around the crossing lies in the
-    // cells of its corners.
-    std::size_t last = static_cast<std::size_t>(-1);
-    for (const double y : { -reachY, reachY })
-    {
-      for (const double x : { -reachX, reachX })
+    // All around the crossing.
+    const Point2 low{ p.X - reachX, p.Y - reachY }, high{ p.X + reachX, p.Y + reachY };
+    const std::array<Point2, 4> around{ { low, { high.X, low.Y }, high, { low.X, high.Y } } };
+    const CellGrid& grid = this->Network.Grid;
+    grid.ForEachCell(around, [&](std::size_t cell) {
+      for (const Index* i = grid.Begin(cell); i < grid.End(cell); ++i)
       {
-        std::size_t cell;
-        if (!this->Network.Grid.FindCell(Point2{ p.X + x, p.Y + y }, cell) || cell == last)
-        {
-          continue;
-        }
-        last = cell;
-        for (const Index* i = this->Network.Grid.Begin(cell); i < this->Network.Grid.End(cell); ++i)
-        {
-          look(this->Network.Pieces[*i].A);
-          look(this->Network.Pieces[*i].B);
-        }
-        // New vertices of this round are in no piece yet. They come by increasing y, so the last
-        // ones are the near ones.
-        const auto found = this->NewVertices.find(cell);
-        for (std::size_t k = found == this->NewVertices.end() ? 0 : found->second.size();
-             k > 0 && this->Network.At(found->second[k - 1]).Y >= p.Y - reachY; --k)
-        {
-          look(found->second[k - 1]);
-        }
+        look(this->Network.Pieces[*i].A);
+        look(this->Network.Pieces[*i].B);
       }
-    }
+      // New vertices of this round are in no piece yet. They come by increasing y, so the last
+      // ones are the near ones.
+      const auto found = this->NewVertices.find(cell);
+      for (std::size_t k = found == this->NewVertices.end() ? 0 : found->second.size();
+           k > 0 && this->Network.At(found->second[k - 1]).Y >= p.Y - reachY; --k)
+      {
+        look(found->second[k - 1]);
+      }
+    });
     return nearest;
   }
 

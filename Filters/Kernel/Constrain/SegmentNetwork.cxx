@@ -68,8 +68,7 @@ Index LinePoint(const ConstraintLines& lines, Index line, Index k)
   const PointView& points = lines.Points;
   const Index id = lines.Vertices[k];
   const bool exists = id >= 0 && id < points.Count;
-  if (!exists || !std::isfinite(points.At(id).X) || !std::isfinite(points.At(id).Y) ||
-    !std::isfinite(points.Elevation(id)))
+  if (!exists || !points.IsFinite(id))
   {
     // Messages name the line by the cell of the input, not by its place in the list.
     const Index cell = lines.Cells[line];

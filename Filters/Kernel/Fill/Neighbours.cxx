@@ -185,7 +185,7 @@ public:
   {
     this->P = p;
     this->Best = guess;
-    this->BestSquare = Square(p, this->Vertices.At(guess));
+    this->BestSquare = SquaredLength(p, this->Vertices.At(guess));
     this->Look(0, this->Tree.size(), true);
     return this->Best;
   }
@@ -196,11 +196,6 @@ private:
     Point2 At;
     Index Vertex;
   };
-
-  static double Square(const Point2& p, const Point2& q)
-  {
-    return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
-  }
 
   // Turn by turn along x and along y. No memory but the array itself.
   void Build(std::size_t begin, std::size_t end, bool byX)
@@ -225,7 +220,7 @@ private:
     }
     const std::size_t middle = begin + (end - begin) / 2;
     const Node& node = this->Tree[middle];
-    const double square = Square(this->P, node.At);
+    const double square = SquaredLength(this->P, node.At);
     // The lower number of equally near ones: vertices are sorted by position, so this is the
     // lowest.
     if (square < this->BestSquare || (square == this->BestSquare && node.Vertex < this->Best))

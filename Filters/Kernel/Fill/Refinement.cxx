@@ -372,18 +372,9 @@ private:
       mesh.Triangles[slot] = polygon[i];
       mesh.Triangles[slot + 1] = polygon[next];
       mesh.Triangles[slot + 2] = vertex;
-      this->Join(slot, outer[i]);
-      this->Join(slot + 1, 3 * slots[next] + 2);
+      this->Surface.Join(slot, outer[i]);
+      this->Surface.Join(slot + 1, 3 * slots[next] + 2);
       this->Stack.push_back(slot);
-    }
-  }
-
-  void Join(Index h, Index twin)
-  {
-    this->Surface.Twins[h] = twin;
-    if (twin != Mesh::Border)
-    {
-      this->Surface.Twins[twin] = h;
     }
   }
 
@@ -420,10 +411,10 @@ private:
     mesh.Triangles[other] = corner;
     mesh.Triangles[other + 1] = to;
     mesh.Triangles[other + 2] = vertex;
-    this->Join(h, before);
-    this->Join(other, after);
-    this->Join(other + 1, next);
-    this->Join(h + 1, other + 2);
+    mesh.Join(h, before);
+    mesh.Join(other, after);
+    mesh.Join(other + 1, next);
+    mesh.Join(h + 1, other + 2);
     this->Stack.push_back(h);
     this->Stack.push_back(other);
   }

@@ -142,17 +142,7 @@ Buffer<Point2> Growth::Places(const Progress&)
   places.Reserve(nodes.NumberOfPoints());
   for (Index row = 0; row < nodes.Rows; ++row)
   {
-    // The words of the row itself: the last of WordsPerRow is the word of zeros before the next
-    // row.
-    const Index begin = this->FirstWordOf(row);
-    for (Index w = begin; w < begin + nodes.WordsPerRow - 1; ++w)
-    {
-      // Each turn takes the lowest bit off.
-      for (std::uint64_t bits = nodes.Word(w); bits; bits &= bits - 1)
-      {
-        places.Append({ 64.0 * (w - begin) + LowestBit(bits), 1.0 * row });
-      }
-    }
+    nodes.VisitRow(row, [&](Index column) { places.Append({ 1.0 * column, 1.0 * row }); });
   }
   return places;
 }
@@ -498,7 +488,7 @@ bool GrowOnLattice(const PointView& points, LatticeNodes& nodes, const LatticeMe
 bool TriangulateLattice(
   const PointView& points, const DelaunayOptions& options, Triangulation& result, Extent& extent)
 {
-  const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
+  const double tolerance = options.ToleranceInSteps();
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
   LatticeSearch search =
     FindLattice(points, tolerance, threads, options.Monitor.Between(0.0, 0.15));
@@ -514,7 +504,7 @@ bool TriangulateLattice(
 bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
   const DelaunayOptions& options, Triangulation& result)
 {
-  const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
+  const double tolerance = options.ToleranceInSteps();
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
   // The cheapest answers "no lattice" come first. Few points fit some lattice within the tolerance
   // by chance.

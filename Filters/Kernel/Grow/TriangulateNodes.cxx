@@ -31,13 +31,12 @@ std::vector<PlacedNode> FindNodes(const PointView& points, const SharedLattice& 
   for (const Index id : Counted(points.Count))
   {
     ReportStep(progress, id, points.Count);
-    const Point2 p = points.At(id);
-    if (!std::isfinite(p.X) || !std::isfinite(p.Y) || !std::isfinite(points.Elevation(id)))
+    if (!points.IsFinite(id))
     {
       notFinite.push_back(id);
       continue;
     }
-    placed.push_back({ lattice.NodeOf(p), id });
+    placed.push_back({ lattice.NodeOf(points.At(id)), id });
   }
   return placed;
 }
@@ -138,23 +137,6 @@ void CheckTriangles(const PointView& points, const Buffer<Index>& triangles)
     }
   }
 }
-
-/** By the limit on edges. Growth has applied it already; divide and conquer does not know it. */
-void LeaveOutLong(const PointView& points, double length, Buffer<Index>& triangles)
-{
-  const EdgeLimit limit(length);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < triangles.size(); i += 3)
-  {
-    const Index* const corners = triangles.data() + i;
-    if (limit.Admits([&](Index id) { return points.At(id); }, corners[0], corners[1], corners[2]))
-    {
-      std::copy(corners, corners + 3, triangles.data() + kept);
-      kept += 3;
-    }
-  }
-  triangles.Resize(kept);
-}
 } // namespace
 
 Triangulation TriangulateNodes(const PointView& points, const SharedLattice& lattice,
@@ -183,7 +165,7 @@ Triangulation TriangulateNodes(const PointView& points, const SharedLattice& lat
 
 Triangulation TriangulateOnGivenLattice(const PointView& points, const DelaunayOptions& options)
 {
-  const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
+  const double tolerance = options.ToleranceInSteps();
   const LatticeSearch search = GivenLattice(points, options.GivenLattice, tolerance,
     ThreadsAtOnce(options.NumberOfThreads), options.Monitor.Between(0.0, 0.15));
   // The nodes' range is needed first: a lattice with more columns and rows than 32 bits is refused.
@@ -202,10 +184,16 @@ Triangulation TriangulateOnGivenLattice(const PointView& points, const DelaunayO
   }
   try
   {
-    Triangulation result = TriangulateNodes(points, lattice, options, true);
+    Triangulation result;
+    if (!TriangulateOnLattice(points, search, options, result))
+    {
+      result = TriangulateSparse(points, lattice, options);
+    }
     result.LatticeFound = hasPoints; // a part without points says nothing of those of others
     CheckTriangles(points, result.Triangles);
-    LeaveOutLong(points, options.MaximumEdgeLength, result.Triangles);
+    // Growth has done it already; divide and conquer does not know the limit.
+    LeaveOutLong(
+      points, options.MaximumEdgeLength, result.Triangles, options.Monitor.Between(1.0, 1.0));
     Report(options.Monitor, 1.0);
     return result;
   }

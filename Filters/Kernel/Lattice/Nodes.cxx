@@ -519,15 +519,17 @@ void LatticeNodes::Placement::PlaceIds(Index begin, Index end)
     const Index* const here = nodes + begin;
     for (Index i = 0; i < size; ++i)
     {
-      Prefetch(this->Nodes.Words + (here[i] >> 6));
-      Prefetch(this->Nodes.Before.data() + (here[i] >> 6));
+      // A None asks for the first word.
+      const Index word = std::max(here[i], 0) >> 6;
+      Prefetch(this->Nodes.Words + word);
+      Prefetch(this->Nodes.Before.data() + word);
     }
     for (Index i = 0; i < size; ++i)
     {
       // Points in the order of nodes: the next rank, without counting bits.
       const bool isNext = i > 0 && ranks[i - 1] != None && here[i] == here[i - 1] + 1;
       ranks[i] = isNext ? ranks[i - 1] + 1 : here[i] != None ? this->Nodes.RankOf(here[i]) : None;
-      Prefetch(ids + ranks[i]);
+      Prefetch(ids + std::max(ranks[i], 0));
     }
     for (Index i = 0; i < size; ++i)
     {

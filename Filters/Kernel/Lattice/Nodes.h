@@ -77,6 +77,20 @@ public:
     }
     return 64 * word + HighestBit(bits);
   }
+  /** Calls visit(column) for the occupied nodes of a row, by increasing column. */
+  template <typename Visit>
+  void VisitRow(Index row, Visit&& visit) const
+  {
+    const Index first = this->NodeAt(row, 0) / 64, words = (this->Columns + 63) / 64;
+    for (const Index word : Counted(words))
+    {
+      // Each turn takes the lowest bit off.
+      for (std::uint64_t bits = this->Word(first + word); bits; bits &= bits - 1)
+      {
+        visit(64 * word + LowestBit(bits));
+      }
+    }
+  }
   /** How many occupied nodes come before this one. */
   Index RankOf(Index node) const
   {

@@ -51,9 +51,7 @@ bool IsLatticeByChance(double count, double tolerance)
 bool SharedLattice::Set(
   const Lattice& steps, const Box& cloud, const NodeBox& nodes, double tolerance)
 {
-  static_cast<Box&>(this->Search) = cloud;
-  this->Search.Found = true;
-  this->Search.Steps = steps;
+  this->NodeSteps = steps;
   this->ToleranceInSteps = tolerance;
   this->ToNode = NodeFinder(steps);
   const Point2 &u = steps.StepU, &v = steps.StepV;
@@ -106,7 +104,7 @@ Box SharedLattice::CircleBox(const LatticeNode& a, const LatticeNode& b, const L
   const Bounded squared = Sum(1.0, Product(wi, mi), 1.0, Product(wj, mj));
   const double radius = std::sqrt(std::max(squared.Value + squared.Error, 0.0)) * (1.0 + Unit);
 
-  const Lattice& steps = this->Search.Steps;
+  const Lattice& steps = this->NodeSteps;
   const Point2 at = steps.Node(static_cast<double>(a.I), static_cast<double>(a.J));
   // Along x and along y: the centre, and the ellipse's reach, and how far points are off their
   // nodes.

@@ -50,7 +50,7 @@ public:
    */
   bool Set(const Lattice& steps, const Box& cloud, const NodeBox& nodes, double tolerance);
 
-  const Lattice& Steps() const { return this->Search.Steps; }
+  const Lattice& Steps() const { return this->NodeSteps; }
   const LatticeMetric& Metric() const { return this->StepMetric; }
   double Tolerance() const { return this->ToleranceInSteps; }
 
@@ -64,7 +64,7 @@ public:
   Box CircleBox(const LatticeNode& a, const LatticeNode& b, const LatticeNode& c) const;
 
 private:
-  LatticeSearch Search;
+  Lattice NodeSteps;
   LatticeMetric StepMetric;
   NodeFinder ToNode{ Lattice{ { 0.0, 0.0 }, { 1.0, 0.0 }, { 0.0, 1.0 } } };
   double ToleranceInSteps = 0.0;

@@ -93,6 +93,15 @@ public:
   Index Twin(Index h) const { return this->Twins[h]; }
   bool IsBorder(Index h) const { return this->Twins[h] == Border; }
   const Point2& PointOf(Index vertex) const { return this->Points[vertex]; }
+  /** Makes two half-edges twins; with Border, a half-edge of the border. */
+  void Join(Index h, Index twin)
+  {
+    this->Twins[h] = twin;
+    if (twin != Border)
+    {
+      this->Twins[twin] = h;
+    }
+  }
   double SquaredLengthOf(Index h) const
   {
     return SquaredLength(this->PointOf(this->Origin(h)), this->PointOf(this->Destination(h)));
@@ -126,6 +135,29 @@ struct IsLowerPoint
     return IsLower(p, q) || (a < b && p == q);
   }
 };
+
+/** Whether edge ab is lower than edge cd: by origin, then, at pinched vertices, by destination. */
+inline bool IsLowerEdge(const Mesh& mesh, Index a, Index b, Index c, Index d)
+{
+  const IsLowerPoint isLower{ mesh };
+  return a == c ? isLower(b, d) : isLower(a, c);
+}
+
+/**
+ * Turns a closed walk so that its lowest edge is first, whatever the order of triangles.
+ * @param[in] originOf  the vertex where the edge of an entry begins
+ */
+template <typename Place, typename OriginOf>
+void StartAtLowest(const Mesh& mesh, Place begin, Place end, const OriginOf& originOf)
+{
+  const auto next = [&](Place i) { return originOf(i + 1 == end ? *begin : i[1]); };
+  Place lowest = begin;
+  for (Place i = begin; i != end; ++i)
+  {
+    lowest = IsLowerEdge(mesh, originOf(*i), next(i), originOf(*lowest), next(lowest)) ? i : lowest;
+  }
+  std::rotate(begin, lowest, end);
+}
 
 /** How many half-edges ahead loops over all of them prefetch the data of origins. */
 constexpr std::size_t HalfEdgesAhead = 64;

@@ -17,34 +17,19 @@ namespace
 // The passes of Holes.h: TraceBorder(), StartAtLowest(), then BorderSweep, which classifies walks
 // (FindRims), sweeps (ProcessEvents at each point) and lists the walks of each hole (MakeHoles).
 
-/** Orders half-edges by origin, then, at pinched vertices, by destination. */
-struct IsLowerEdge
-{
-  const Mesh& Surface;
-
-  bool operator()(Index g, Index h) const
-  {
-    const IsLowerPoint isLower{ this->Surface };
-    const Index a = this->Surface.Origin(g);
-    const Index b = this->Surface.Origin(h);
-    return a == b ? isLower(this->Surface.Destination(g), this->Surface.Destination(h))
-                  : isLower(a, b);
-  }
-};
-
-/** Starts each walk at its lowest edge, so that the start does not depend on the order of cells. */
+/** Starts each walk at its lowest edge. */
 void StartAtLowest(const Mesh& mesh, Rings& walks)
 {
   for (Index walk = 0; walk < walks.Count(); ++walk)
   {
-    const auto begin = walks.Vertices.begin() + walks.Offsets[walk];
-    const auto end = walks.Vertices.begin() + walks.Offsets[walk + 1];
-    std::rotate(begin, std::min_element(begin, end, IsLowerEdge{ mesh }), end);
+    StartAtLowest(mesh, walks.Vertices.begin() + walks.Offsets[walk],
+      walks.Vertices.begin() + walks.Offsets[walk + 1],
+      [&mesh](Index h) { return mesh.Origin(h); });
   }
 }
 
 /** A border edge from its lower to its higher end. */
-struct Segment
+struct BorderSegment
 {
   Point2 Low;
   Point2 High;
@@ -54,13 +39,13 @@ struct Segment
 };
 
 /** The side of a segment, looking upwards along it, on which a point lies: Positive is left. */
-Sign SideOf(const Segment& segment, const Point2& p)
+Sign SideOf(const BorderSegment& segment, const Point2& p)
 {
   return Orientation(segment.Low, segment.High, p);
 }
 
 // Ends on the other segment do not count: a contact is no overlap, see Holes.h.
-bool CrossInside(const Segment& s, const Segment& t)
+bool CrossInside(const BorderSegment& s, const BorderSegment& t)
 {
   return SideOf(s, t.Low) * SideOf(s, t.High) < 0 && SideOf(t, s.Low) * SideOf(t, s.High) < 0;
 }
@@ -73,7 +58,7 @@ bool CrossInside(const Segment& s, const Segment& t)
 struct IsLeftOf
 {
   using is_transparent = void;
-  const std::vector<Segment>* Segments;
+  const std::vector<BorderSegment>* Segments;
 
   bool operator()(Index i, Index j) const
   {
@@ -81,12 +66,12 @@ struct IsLeftOf
     {
       return false;
     }
-    const Segment& s = (*this->Segments)[i];
-    const Segment& t = (*this->Segments)[j];
+    const BorderSegment& s = (*this->Segments)[i];
+    const BorderSegment& t = (*this->Segments)[j];
     // The side of the other on which the later one begins; if on it, the side where it ends.
     const bool tIsLater = !IsLower(t.Low, s.Low);
-    const Segment& line = tIsLater ? s : t;
-    const Segment& later = tIsLater ? t : s;
+    const BorderSegment& line = tIsLater ? s : t;
+    const BorderSegment& later = tIsLater ? t : s;
     Sign side = SideOf(line, later.Low);
     if (side == Zero)
     {
@@ -217,16 +202,7 @@ private:
       ReportStep(progress, walk, walks.Count());
       const Index size = walks.Size(walk);
       const Index* h = walks.Begin(walk);
-      Point2 lowest = this->Surface.PointOf(this->Surface.Origin(h[0]));
-      for (Index i = 1; i < size; ++i)
-      {
-        const Point2& p = this->Surface.PointOf(this->Surface.Origin(h[i]));
-        if (IsLower(p, lowest))
-        {
-          lowest = p;
-        }
-      }
-
+      const Point2 lowest = this->Surface.PointOf(this->Surface.Origin(h[0])); // StartAtLowest()
       // Every edge goes up from here; the wedge that opens downwards is the one with a left turn.
       // The outside of a component is below its lowest vertex; of a hole, the surface is there.
       bool isOutside = false;
@@ -338,8 +314,8 @@ private:
         // And the last one must lead out.
         return this->Segments[*place].IsUp || this->RefuseOverlap(*place, p);
       }
-      const Segment& s = this->Segments[*place];
-      const Segment& t = this->Segments[*next];
+      const BorderSegment& s = this->Segments[*place];
+      const BorderSegment& t = this->Segments[*next];
       // Crossing is tested first, as its message names both cells.
       if (CrossInside(s, t))
       {
@@ -355,19 +331,19 @@ private:
   }
 
   /** The cell of a segment, as messages number it. */
-  std::string CellOf(const Segment& segment) const
+  std::string CellOf(const BorderSegment& segment) const
   {
     return std::to_string(
       static_cast<std::int64_t>(this->FirstCell) + Mesh::Triangle(segment.HalfEdge));
   }
-  std::string EdgeOf(const Segment& segment) const
+  std::string EdgeOf(const BorderSegment& segment) const
   {
     return std::to_string(this->Surface.Origin(segment.HalfEdge)) + "-" +
       std::to_string(this->Surface.Destination(segment.HalfEdge));
   }
 
   // Both make the message, and return false for the caller to return.
-  bool RefuseCrossing(const Segment& s, const Segment& t)
+  bool RefuseCrossing(const BorderSegment& s, const BorderSegment& t)
   {
     this->Message = "Cell " + this->CellOf(s) + " overlaps cell " + this->CellOf(t) +
       " in x,y: the border edges of points " + this->EdgeOf(s) + " and " + this->EdgeOf(t) +
@@ -389,7 +365,7 @@ private:
   void MarkContacts(const Point2& p, std::size_t last)
   {
     // One vertex seen from different empty regions is not a contact.
-    const auto vertexAt = [&](const Segment& segment) {
+    const auto vertexAt = [&](const BorderSegment& segment) {
       const Index origin = this->Surface.Origin(segment.HalfEdge);
       return this->Surface.PointOf(origin) == p ? origin
                                                 : this->Surface.Destination(segment.HalfEdge);
@@ -486,12 +462,13 @@ private:
       }
     }
     // Islands from the lowest on, so that nothing depends on the order of triangles.
-    const IsLowerEdge isLower{ this->Surface };
     for (Index hole = 0; hole < count; ++hole)
     {
       std::sort(this->Result.Loops.begin() + offsets[hole] + 1,
         this->Result.Loops.begin() + offsets[hole + 1], [&](Index a, Index b) {
-          return isLower(*this->Result.Walks.Begin(a), *this->Result.Walks.Begin(b));
+          const Index g = *this->Result.Walks.Begin(a), h = *this->Result.Walks.Begin(b);
+          return IsLowerEdge(this->Surface, this->Surface.Origin(g), this->Surface.Destination(g),
+            this->Surface.Origin(h), this->Surface.Destination(h));
         });
     }
   }
@@ -499,7 +476,7 @@ private:
   const Mesh& Surface;
   const Index FirstCell;
   Holes& Result; ///< its Walks consist of half-edges
-  std::vector<Segment> Segments;
+  std::vector<BorderSegment> Segments;
   std::vector<Event> Events;
   std::set<Index, IsLeftOf> Status;
   std::vector<Place> Places;  ///< of each segment in Status

@@ -161,33 +161,11 @@ private:
   /** Of the last walk, which begins at a place in Vertices. @param[in] region  from FirstRegion */
   void EndWalk(std::size_t first, Index region)
   {
-    this->StartAtLowest(first);
-    this->Result.Walks.Offsets.push_back(static_cast<Index>(this->Result.Walks.Vertices.size()));
+    std::vector<Index>& vertices = this->Result.Walks.Vertices;
+    StartAtLowest(this->Surface, vertices.begin() + static_cast<std::ptrdiff_t>(first),
+      vertices.end(), [](Index vertex) { return vertex; });
+    this->Result.Walks.Offsets.push_back(static_cast<Index>(vertices.size()));
     this->WalkRegions.push_back(region);
-  }
-
-  /**
-   * Whether edge ab is lower than edge cd: by origin, then, at pinched vertices, by destination.
-   */
-  bool IsLowerEdge(Index a, Index b, Index c, Index d) const
-  {
-    const IsLowerPoint isLower{ this->Surface };
-    return a == c ? isLower(b, d) : isLower(a, c);
-  }
-
-  /** Turns the last walk, which begins at a place in Vertices, so that its lowest edge is first. */
-  void StartAtLowest(std::size_t first)
-  {
-    std::vector<Index>& v = this->Result.Walks.Vertices;
-    // The vertex after a place, around the walk.
-    const auto next = [&](std::size_t i) { return v[i + 1 == v.size() ? first : i + 1]; };
-    std::size_t lowest = first;
-    for (std::size_t i = first + 1; i < v.size(); ++i)
-    {
-      lowest = this->IsLowerEdge(v[i], next(i), v[lowest], next(lowest)) ? i : lowest;
-    }
-    std::rotate(v.begin() + static_cast<std::ptrdiff_t>(first),
-      v.begin() + static_cast<std::ptrdiff_t>(lowest), v.end());
   }
 
   /**
@@ -204,7 +182,7 @@ private:
       const Index* v = holes.Walks.Begin(this->FirstWalk + b);
       return this->WalkRegions[a] != this->WalkRegions[b]
         ? this->WalkRegions[a] < this->WalkRegions[b]
-        : this->IsLowerEdge(u[0], u[1], v[0], v[1]);
+        : IsLowerEdge(this->Surface, u[0], u[1], v[0], v[1]);
     });
     // Sorted by region, so that one pass over the walks serves all regions.
     std::size_t i = 0;
@@ -262,7 +240,7 @@ private:
       edges.begin(), edges.end(),
       [&](const InnerEdge& s, const InnerEdge& t) {
         return s.Region != t.Region ? s.Region < t.Region
-                                    : this->IsLowerEdge(s.Low, s.High, t.Low, t.High);
+                                    : IsLowerEdge(this->Surface, s.Low, s.High, t.Low, t.High);
       },
       progress.Between(0.5, 1.0));
     std::size_t i = 0;

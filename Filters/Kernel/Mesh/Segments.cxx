@@ -57,7 +57,7 @@ public:
     std::set<Index, decltype(isBefore)> across(isBefore);
     std::vector<decltype(across.begin())> places(all.size());
     const auto isCrossed = [&](decltype(across.begin()) s, decltype(across.begin()) t) {
-      return s != across.end() && t != across.end() && Cross(all[*s], all[*t]);
+      return s != across.end() && t != across.end() && AreCrossing(all[*s], all[*t]);
     };
     const auto before = [&](decltype(across.begin()) s) {
       return s == across.begin() ? across.end() : std::prev(s);
@@ -221,7 +221,7 @@ CellGrid GridOf(const std::vector<Ends>& segments, const Progress& progress)
   return CellGrid(segments.size(), [&](std::size_t i) { return segments[i]; }, progress);
 }
 
-bool Cross(const Ends& s, const Ends& t)
+bool AreCrossing(const Ends& s, const Ends& t)
 {
   const auto areApart = [](double a, double b, double c, double d) {
     return std::max(a, b) < std::min(c, d) || std::max(c, d) < std::min(a, b);
@@ -259,7 +259,7 @@ void VisitCrossings(const std::vector<Ends>& segments, const CellGrid& grid,
     grid.Visit(segments[i], [&](Index other) {
       work.Tick();
       const std::size_t j = static_cast<std::size_t>(other);
-      if (j > i && Cross(segments[i], segments[j]))
+      if (j > i && AreCrossing(segments[i], segments[j]))
       {
         visit(i, j);
       }

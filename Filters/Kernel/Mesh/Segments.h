@@ -35,7 +35,7 @@ CellGrid GridOf(const std::vector<Ends>& segments, const Progress& progress = Pr
  * Whether two segments cross: each has the ends of the other on opposite sides. Touching is not
  * crossing: an end on the other segment is found as a vertex on it (IsInside).
  */
-bool Cross(const Ends& s, const Ends& t);
+bool AreCrossing(const Ends& s, const Ends& t);
 
 /** Whether a point lies on the segment and is not one of its ends. */
 inline bool IsInside(const Ends& s, const Point2& p)

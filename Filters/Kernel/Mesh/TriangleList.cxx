@@ -53,8 +53,7 @@ void Turn(const TriangleList& list, Index t, bool areFinite, Mesh& mesh)
   Index* const ids = &mesh.Triangles[3 * static_cast<std::size_t>(t)];
   for (int i = 0; i < 3 && !areFinite; ++i)
   {
-    const Point2& p = mesh.PointOf(ids[i]);
-    if (!std::isfinite(p.X) || !std::isfinite(p.Y) || !std::isfinite(list.Points.Elevation(ids[i])))
+    if (!list.Points.IsFinite(ids[i]))
     {
       throw Error("Point " + std::to_string(ids[i]) + " of cell " + name() +
         " has a coordinate that is not finite.");

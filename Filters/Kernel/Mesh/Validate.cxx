@@ -333,8 +333,7 @@ std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points,
   for (Index point = 0; point < points.Count && findings.size() < maximumFindings; ++point)
   {
     const Point2 p = points.At(point);
-    if (!std::isfinite(p.X) || !std::isfinite(p.Y) || !std::isfinite(points.Elevation(point)) ||
-      std::binary_search(exempt.begin(), exempt.end(), point))
+    if (!points.IsFinite(point) || std::binary_search(exempt.begin(), exempt.end(), point))
     {
       continue;
     }

@@ -56,7 +56,7 @@ GreedyInsertion::GreedyInsertion(const Buffer<ElevatedPlace>& places, const Buff
  * walking from that of the point before, which is near; then one after another the lists, whose
  * order must not depend on threads.
  */
-void GreedyInsertion::AddSample(std::uint32_t mask, int threads, const Progress& progress)
+void GreedyInsertion::AddSample(std::uint32_t every, int threads, const Progress& progress)
 {
   constexpr Index pointsAtOnce = 1 << 14;
   const Index count = static_cast<Index>(this->Inserted.Places.size());
@@ -66,7 +66,7 @@ void GreedyInsertion::AddSample(std::uint32_t mask, int threads, const Progress&
   faces.Resize(this->Inserted.Places.size());
   // Samples are nested: a place of the last one is in a list already, or a vertex.
   const auto isNew = [&](Index place) {
-    return this->Inserted.Links[place] == InsertionMesh::Unassigned && IsInSample(place, mask);
+    return this->Inserted.Links[place] == InsertionMesh::Unassigned && IsInSample(place, every - 1);
   };
   ForEachPiece((count + pointsAtOnce - 1) / pointsAtOnce, threads, progress, [&](Index piece) {
     Index face = this->Ordered.front(), known = None;
@@ -186,7 +186,7 @@ void GreedyInsertion::Run(double error, int threads, const Progress& progress)
   for (double begin = 0.0; every > 0; every /= SampleFactor)
   {
     const double end = every == 1 ? 1.0 : begin + 0.1;
-    this->AddSample(every - 1, threads, progress.Between(begin, begin + 0.3 * (end - begin)));
+    this->AddSample(every, threads, progress.Between(begin, begin + 0.3 * (end - begin)));
     // The last run has all points, and no limit to its vertices.
     const double density = every == 1 ? count : 1.0 / (PointsPerVertex * every);
     // Vertices are about half as many as triangles, and as many along a side as the root of that.

@@ -87,7 +87,7 @@ public:
   bool IsVertex(Index place) const { return this->Inserted.Links[place] == InsertionMesh::Vertex; }
 
 private:
-  void AddSample(std::uint32_t mask, int threads, const Progress& progress);
+  void AddSample(std::uint32_t every, int threads, const Progress& progress);
   std::vector<InsertionStrip> MakeStrips(Index count, bool areShifted);
   void Refine(double error, double density, std::vector<InsertionStrip>&& strips, int threads,
     const Progress& progress);

@@ -148,7 +148,7 @@ std::vector<Segment> Renumbered(
 bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int threads,
   const Progress& progress, PlacedPoints& placed)
 {
-  const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
+  const double tolerance = options.ToleranceInSteps();
   LatticeSearch search = options.GivenLattice.IsSet()
     ? GivenLattice(points, options.GivenLattice, tolerance, threads, progress.Between(0.0, 0.4))
     : FindLattice(points, tolerance, threads, progress.Between(0.0, 0.4));
@@ -168,18 +168,12 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
   placed.Places.Resize(static_cast<std::size_t>(nodes.NumberOfPoints()));
   ForEachPiece(nodes.Rows, threads, progress.Between(0.8, 1.0), [&](Index row) {
     Index place = placesBefore(row);
-    const Index first = nodes.NodeAt(row, 0) / 64;
     // Rows are converted in parallel, each from its first place on.
-    const Index words = (nodes.Columns + 63) / 64;
-    for (const Index word : Counted(words))
-    {
-      for (std::uint64_t bits = nodes.Word(first + word); bits != 0; bits &= bits - 1)
-      {
-        placed.Places[place] = { static_cast<double>(64 * word + LowestBit(bits)),
-          static_cast<double>(row), points.Elevation(nodes.Ids[place]) };
-        ++place;
-      }
-    }
+    nodes.VisitRow(row, [&](Index column) {
+      placed.Places[place] = { static_cast<double>(column), static_cast<double>(row),
+        points.Elevation(nodes.Ids[place]) };
+      ++place;
+    });
   });
   // The ends of rows: nodes between them are no strict corners.
   Buffer<Index> candidates;

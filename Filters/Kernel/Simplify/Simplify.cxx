@@ -64,7 +64,7 @@ public:
   Measurement(const PointView& points, const PlacedPoints& placed, const GreedyInsertion& mesh)
     : Points(points)
     , Placed(placed)
-    , Mesh(mesh)
+    , Chosen(mesh)
   {
   }
 
@@ -77,14 +77,14 @@ public:
   double Run(double most, int threads, const Progress& progress, std::vector<Index>& beyond) const
   {
     constexpr Index facesAtOnce = 4096;
-    const Index count = static_cast<Index>(this->Mesh.Order().size());
+    const Index count = static_cast<Index>(this->Chosen.Order().size());
     const Index pieces = (count + facesAtOnce - 1) / facesAtOnce;
     std::vector<double> largest(static_cast<std::size_t>(pieces), 0.0);
     std::vector<std::vector<Index>> found(largest.size());
     ForEachPiece(pieces, threads, progress, [&](Index piece) {
       for (const Index i : Counted(piece * facesAtOnce, std::min(count, (piece + 1) * facesAtOnce)))
       {
-        this->MeasureFace(this->Mesh.Order()[i], most, largest[piece], found[piece]);
+        this->MeasureFace(this->Chosen.Order()[i], most, largest[piece], found[piece]);
       }
     });
     for (const std::vector<Index>& some : found)
@@ -116,7 +116,7 @@ private:
    */
   void MeasureFace(Index number, double most, double& largest, std::vector<Index>& beyond) const
   {
-    const Face& face = this->Mesh.At(number);
+    const Face& face = this->Chosen.At(number);
     const Point2 a = this->At(face.Corners[0]), b = this->At(face.Corners[1]),
                  c = this->At(face.Corners[2]);
     if (Orientation(a, b, c) != Positive)
@@ -130,7 +130,7 @@ private:
     const FacePlane plane = this->PlaneOf(face);
     // A point is in its face but for rounding; where exact sides say otherwise, it is looked for
     // nearby.
-    for (Index place = face.First; place != None; place = this->Mesh.Next(place))
+    for (Index place = face.First; place != None; place = this->Chosen.Next(place))
     {
       const Point2 p = this->At(place);
       const bool isInside = Orientation(a, b, p) != Negative && Orientation(b, c, p) != Negative &&
@@ -155,7 +155,7 @@ private:
     // A walk that does not end soon is given up: the point then counts as too far, and is inserted.
     for (int step = 0; step < 16; ++step)
     {
-      const Face& at = this->Mesh.At(face);
+      const Face& at = this->Chosen.At(face);
       int k = 0;
       while (k < 3 &&
         (at.Neighbors[k] == None ||
@@ -174,7 +174,7 @@ private:
 
   const PointView& Points;
   const PlacedPoints& Placed;
-  const GreedyInsertion& Mesh;
+  const GreedyInsertion& Chosen;
 };
 
 /** The rank of each vertex, from the lowest up, by places; what others have is not set. */

@@ -216,16 +216,11 @@ private:
       strands.push_back({ *node, Before, 0, 0 });
       strands.push_back({ *node, After, 0, 0 });
     }
-    // By angle: the upper half plane first, as in Rings.cxx, and exact; equal edges by number.
+    // Equal edges by number.
     const auto to = [&](const Strand& s) { return this->At(this->Step(s.Node, s.Way)); };
     std::sort(strands.begin(), strands.end(), [&](const Strand& s, const Strand& t) {
       work.Tick();
-      const bool isUp = IsLower(at, to(s));
-      if (isUp != IsLower(at, to(t)))
-      {
-        return isUp;
-      }
-      const Sign turn = to(s) == to(t) ? Zero : Orientation(at, to(s), to(t));
+      const Sign turn = to(s) == to(t) ? Zero : OrderAround(at, to(s), to(t));
       return turn != Zero ? turn == Positive : s.Node < t.Node;
     });
     for (std::size_t i = 1; i < strands.size(); ++i)

@@ -52,10 +52,10 @@ Point2 CrossingOf(const Ends& edge, const Ends& line)
     : RoundedCrossing(edge[0], edge[1], line[0], line[1]);
 }
 
-class Following
+class Follower
 {
 public:
-  Following(Mesh& mesh, MeshCutter& cutter, const Progress& progress)
+  Follower(Mesh& mesh, MeshCutter& cutter, const Progress& progress)
     : Surface(mesh)
     , Cutter(cutter)
     , Stars(mesh, progress.Between(0.0, 0.3))
@@ -178,7 +178,7 @@ private:
         this->OriginalOf(Mesh::Triangle(crossed)) != this->OriginalOf(Mesh::Triangle(beyond)))
       {
         // By the whole segment, so that rounding does not add up, unless it passes the edge.
-        const Ends& line = Cross(this->Line, edge) ? this->Line : rest;
+        const Ends& line = AreCrossing(this->Line, edge) ? this->Line : rest;
         Point2 place = CrossingOf(edge, line);
         const Index cut =
           this->CutNear(crossed, place, [&](const Point2& p) { return this->IsAhead(from, p); });
@@ -410,18 +410,18 @@ private:
 void FollowSurface(
   Mesh& mesh, MeshCutter& cutter, std::vector<FollowedSegment>& segments, const Progress& progress)
 {
-  Following following(mesh, cutter, progress);
+  Follower follower(mesh, cutter, progress);
   const Progress walking = progress.Between(0.3, 1.0);
   WorkReporter work(walking);
   for (std::size_t i = 0; i < segments.size(); ++i)
   {
     work.Step(i, segments.size());
-    following.Follow(segments[i], work);
+    follower.Follow(segments[i], work);
   }
   // Only now: segments that came later have cut the chains of earlier ones.
   for (FollowedSegment& segment : segments)
   {
-    following.AddLaterCuts(segment);
+    follower.AddLaterCuts(segment);
   }
 }
 

@@ -79,7 +79,7 @@ public:
     }
     if (this->Follow != Following::None)
     {
-      this->FollowSurface(progress.Between(0.9, 1.0));
+      this->FollowPieces(progress.Between(0.9, 1.0));
     }
     // Points outside come last: no vertex may be added after them, or the numbers of vertices would
     // not be those of Result.Inserted.
@@ -193,7 +193,7 @@ private:
         lastSeen[k] = i;
         const Ends& segment = border.Segments[k];
         const Index h = border.HalfEdges[k];
-        if (Cross(edge, segment))
+        if (AreCrossing(edge, segment))
         {
           // Through an end of the border edge instead, if one is in reach.
           const bool isInReach =
@@ -478,7 +478,7 @@ private:
   }
 
   /** Splits the pieces within the mesh where they cross its edges. */
-  void FollowSurface(const Progress& progress)
+  void FollowPieces(const Progress& progress)
   {
     const Mesh& mesh = this->Surface;
     const auto segmentOf = [&](Index i) {
@@ -512,7 +512,7 @@ private:
                        return s.Ends.A == t.Ends.A && s.Ends.B == t.Ends.B;
                      }),
       segments.end());
-    elevation::FollowSurface(this->Surface, this->Cutter, segments, progress.Between(0.1, 0.95));
+    FollowSurface(this->Surface, this->Cutter, segments, progress.Between(0.1, 0.95));
     std::vector<Piece> followed;
     std::vector<Index> offsets{ 0 };
     for (Index i = 0; i < count; ++i)

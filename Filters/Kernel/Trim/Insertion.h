@@ -63,7 +63,7 @@ struct InsertedRings
  *                      mesh, which no triangle uses. A triangle that is cut becomes one of its
  *                      parts; the other parts are appended.
  * @param[in]     points  finite
- * @param[in]     rings   ids of the points, at least three per ring
+ * @param[in]     rings   ids of the points, at least three per ring; with Following::Lines, two
  * @param[in]     insert  off: the mesh stays as it is; an Error if something would be inserted
  * @param[in]     follow  only with insert; see FollowSurface.h
  * @throws Error naming the points: rings, or parts of one, that cross; a ring's point where two

@@ -67,11 +67,8 @@ bool MeshCutter::CanCut(Index h, const Point2& place) const
 bool MeshCutter::MoveToCut(
   Index h, Point2& place, const std::function<bool(const Point2&)>& isUsable) const
 {
-  // The place itself is tried first, then places near it.
-  const auto isPlace = [&](const Point2& p) {
-    return (!isUsable || isUsable(p)) && this->CanCut(h, p);
-  };
-  return isPlace(place) || this->MoveNear(h, place, true, std::ref(isPlace));
+  return this->MoveNear(h, place, true,
+    [&](const Point2& p) { return (!isUsable || isUsable(p)) && this->CanCut(h, p); });
 }
 
 bool MeshCutter::MoveInside(
@@ -105,8 +102,8 @@ bool MeshCutter::MoveNear(
     place = { first.X + dx, first.Y + dy };
     return std::isfinite(place.X) && std::isfinite(place.Y) && isPlace(place);
   };
-  // First the nearest places, in squares around it, by half units, as the smaller coordinate has
-  // finer ones; then places further away, up to 64 units across the edge.
+  // First the place itself, then the nearest ones, in squares around it, by half units, as the
+  // smaller coordinate has finer ones; then places further away, up to 64 units across the edge.
   for (int ring = 0; ring <= 3; ++ring)
   {
     for (int i = -ring; i <= ring; ++i)
@@ -232,19 +229,24 @@ Index MeshCutter::AddPart(Index t)
 void MeshCutter::SetEdge(Index h, Index origin, Index twin)
 {
   this->Surface.Triangles[h] = origin;
-  this->Surface.Twins[h] = twin;
-  if (twin != Mesh::Border)
+  this->Surface.Join(h, twin);
+}
+
+void MeshCutter::MoveEdge(Index from, Index to, Index origin)
+{
+  if (this->Surface.IsBorder(from))
   {
-    this->Surface.Twins[twin] = h;
+    this->Moved[from] = to;
   }
+  this->SetEdge(to, origin, this->Surface.Twin(from));
 }
 
 //             c
 //            /|\            t      becomes a b v
 //           / | \           first  is      b c v
 //          /  v  \          second is      c a v
-//         / /   \ \
-//        //   t   \\        ab, bc and ca keep their twins; SetEdge() sets both directions.
+//         / /   \ \         ab, bc and ca
+//        //   t   \\        keep their twins.
 //       a-----------b
 void MeshCutter::CutTriangle(Index t, Index v)
 {
@@ -254,8 +256,8 @@ void MeshCutter::CutTriangle(Index t, Index v)
   const Index a = mesh.Origin(3 * t);
   const Index first = this->AddPart(t);
   const Index second = this->AddPart(t);
-  this->SetEdge(first, b, mesh.Twin(3 * t + 1));
-  this->SetEdge(second, c, mesh.Twin(3 * t + 2));
+  this->MoveEdge(3 * t + 1, first, b);
+  this->MoveEdge(3 * t + 2, second, c);
   this->SetEdge(3 * t + 1, b, first + 2);
   this->SetEdge(3 * t + 2, v, second + 1);
   this->SetEdge(first + 1, c, second + 2);
@@ -290,13 +292,8 @@ Index MeshCutter::Halve(Index h, Index v)
   const Index b = mesh.Origin(next);
   const Index c = mesh.Apex(h);
   const Index part = this->AddPart(Mesh::Triangle(h));
-  // The number of bc now belongs to an inner edge.
-  if (mesh.IsBorder(next))
-  {
-    this->Moved[next] = part + 1;
-  }
   this->SetEdge(part, v, Mesh::Border);
-  this->SetEdge(part + 1, b, mesh.Twin(next));
+  this->MoveEdge(next, part + 1, b); // its old number becomes that of an inner edge
   this->SetEdge(part + 2, c, next);
   this->Surface.Triangles[next] = v;
   return part;

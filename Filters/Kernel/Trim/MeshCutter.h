@@ -30,7 +30,7 @@ struct InsertedVertex
 };
 
 /**
- * ab - cd, with an error of few units in the last place also where most digits cancel [Kahan]. The
+ * ab - cd, with an error of few units in the last place also where most digits cancel (Kahan). The
  * second fused multiplication gives the rounding error of cd, which is part of the first one.
  */
 inline double DifferenceOfProducts(double a, double b, double c, double d)
@@ -133,6 +133,9 @@ private:
   Index AddPart(Index t);
 
   void SetEdge(Index h, Index origin, Index twin);
+
+  /** A half-edge gets another number. */
+  void MoveEdge(Index from, Index to, Index origin);
 
   /** Triangle abc, with h = ab, becomes avc; vbc is new. The caller sets the twins along ab. */
   Index Halve(Index h, Index v);

@@ -214,14 +214,9 @@ public:
     }
     const std::vector<Index> doubtful = this->FindDoubtful(progress.Between(0.25, 0.4));
     // A tolerance that the user gives has no scale, so lonely vertices do not matter.
-    const IdSet lonely = this->IsAutomatic
+    IdSet near = this->IsAutomatic
       ? LonelyVertices(neighbors, this->CornersNear(doubtful), list.Points.Count)
-      : IdSet(0);
-    IdSet near(list.Points.Count);
-    for (const Index v : lonely.List())
-    {
-      near.Add(v);
-    }
+      : IdSet(list.Points.Count);
     // A spacing for which a vertex at the border had to be expanded stays unknown, too.
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     std::fill(this->Spacings.begin(), this->Spacings.end(), unknown);

@@ -252,12 +252,8 @@ private:
    */
   void Pair(const Point2& place, std::vector<std::size_t>& ends)
   {
-    // By angle around the place, counter-clockwise from the direction of x: first the upper half
-    // plane (what is not lower than the place), then the lower one; exact within each.
     const auto comesBefore = [&](std::size_t e, std::size_t f) {
-      const Point2 p = this->PlaceAt(e, 1), q = this->PlaceAt(f, 1);
-      return IsLower(place, p) != IsLower(place, q) ? IsLower(place, p)
-                                                    : Orientation(place, p, q) == Positive;
+      return OrderAround(place, this->PlaceAt(e, 1), this->PlaceAt(f, 1)) == Positive;
     };
     // Stable, so that ends in the same direction are paired in the order of the lines.
     std::stable_sort(ends.begin(), ends.end(), comesBefore);

@@ -32,6 +32,17 @@ namespace elevation
 std::vector<Ends> EdgesOf(const std::vector<Point2>& points, const Rings& rings);
 
 /**
+ * The order of points by angle around a place, counter-clockwise from the direction of x: Positive
+ * if p comes before q; Zero in the same direction. First the upper half plane, which is what is not
+ * lower than the place, then the lower one; exact within each.
+ */
+inline Sign OrderAround(const Point2& place, const Point2& p, const Point2& q)
+{
+  const bool isUp = IsLower(place, p);
+  return isUp != IsLower(place, q) ? (isUp ? Positive : Negative) : Orientation(place, p, q);
+}
+
+/**
  * Decides which triangles lie inside rings, by the even-odd rule. A query casts a ray along x. So
  * the grid has one column, and a query tests all edges in its row. Linear set-up.
  */

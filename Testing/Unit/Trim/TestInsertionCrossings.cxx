@@ -345,7 +345,7 @@ TEST(VisitCrossings, FindsTheSamePairsWhereVeryManyAreNearEachOther)
     };
     const auto crosses = [&](const Ends& s) {
       return std::any_of(
-        segments.begin(), segments.end(), [&](const Ends& t) { return Cross(s, t); });
+        segments.begin(), segments.end(), [&](const Ends& t) { return AreCrossing(s, t); });
     };
     for (int i = 0; i < 40; ++i)
     {
@@ -364,7 +364,7 @@ TEST(VisitCrossings, FindsTheSamePairsWhereVeryManyAreNearEachOther)
     {
       for (std::size_t i = 0; i < j; ++i)
       {
-        if (Cross(segments[i], segments[j]))
+        if (AreCrossing(segments[i], segments[j]))
         {
           expected.insert({ i, j });
         }

@@ -297,7 +297,7 @@ TEST(SplitAlong, MakesLinesThatCrossChainsOfEdges)
             std::hypot(b.X - a.X, b.Y - a.Y);
         };
         const bool areAway = std::fabs(distance(p)) > 1e-14 && std::fabs(distance(q)) > 1e-14;
-        ASSERT_FALSE(i % 3 < 2 && areAway && Cross({ { a, b } }, { { p, q } })) << round;
+        ASSERT_FALSE(i % 3 < 2 && areAway && AreCrossing({ { a, b } }, { { p, q } })) << round;
       }
     }
   }
