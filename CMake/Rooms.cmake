@@ -13,7 +13,7 @@ set(es_kernel_Mesh
   HalfEdgeMesh
   VertexStars
   Segments
-  Recovery
+  RecoverSegments
   Holes
   LongTriangles
   TriangleList
@@ -64,11 +64,11 @@ set(es_kernel_Cells
 set(es_kernel_Trim
   Rings
   NearTriangles
-  Crossings
+  RingCrossings
   MeshCutter
-  FollowSurface
+  CutAlongRings
   RingPoints
-  Insertion
+  InsertRings
   OutwardTriangles
   MeasuredTriangles
   Spacings

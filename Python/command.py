@@ -14,7 +14,7 @@ from . import reading
 from .clouds import Cloud, ReadOptions, bare_lines, crs_of, merged, notes_on, set_crs
 from .gdal_common import name_of, reference_of
 from .given_lines import fitted
-from .heights import check_heights
+from .several_heights import check_heights
 from .messages import ElevationSurfaceError, PictureError, counted
 from .options import (
     about,

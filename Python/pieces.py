@@ -24,7 +24,7 @@ from .clouds import Cloud, corner_flags, faults_note, heights_of, make_points, s
 from .description import DESCRIBED
 from .draping import check_given_z
 from .given_lines import in_system
-from .heights import PieceHeights
+from .several_heights import PieceHeights
 from .holes import BridgedVoids, hole_report
 from .mending import mended
 from .messages import ElevationSurfaceError, FileError, Messages

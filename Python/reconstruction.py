@@ -22,7 +22,7 @@ from vtkmodules.vtkCommonDataModel import (
 from .clouds import Cloud, coordinates_of, make_lines, make_points
 from .description import KINDS, listing, view_angles
 from .given_lines import fitted
-from .heights import check_heights, heights_on_ranks
+from .several_heights import check_heights, heights_on_ranks
 from .holes import BridgedVoids, hole_counts
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .names import argument

@@ -369,8 +369,8 @@ void SendMeeting(
 
 /**
  * Recovers the pieces in the mesh of the triangles sent. Its vertices are their corners, by number,
- * as the map sorts them. Recovery writes new triangles into the slots of old ones (Recovery.h):
- * triangle t stays that of the part that sent it, whatever corners it has then.
+ * as the map sorts them. Recovery writes new triangles into the slots of old ones
+ * (RecoverSegments.h): triangle t stays that of the part that sent it, whatever corners it has then.
  * @return what has become of the triangles of each part
  */
 ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,

@@ -23,7 +23,7 @@
  * Why the points near lines are enough for step 1: other points are on no piece, and crossings are
  * bent to no vertex further away (CutLines.h, NearLines.h). Why the triangles that meet missing
  * pieces are enough for step 3: recovery replaces crossed triangles alone, and its result is unique
- * (Recovery.h), so it is that of the whole mesh.
+ * (RecoverSegments.h), so it is that of the whole mesh.
  *
  * Cost: a part in files is read once in step 1, once in step 2, and once more in step 3 if it has a
  * triangle there. In memory are the lines and their pieces, the points near them, and in step 3 the

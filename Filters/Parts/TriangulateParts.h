@@ -21,8 +21,8 @@
  *   6. Lines are recovered as edges, of which pass 5 is done again, and long edges left out.
  * Should not all points be on the lattice, passes 2 and 3 are done again without it.
  *
- * Why the result is that of one rank: Pieces.h proves it for passes 2 and 3, Recovery.h for lines.
- * What depends on the order of points (duplicates, fans of co-circular points) depends on ids and
+ * Why the result is that of one rank: Pieces.h proves it for passes 2 and 3, RecoverSegments.h for
+ * lines. What depends on the order of points (duplicates, fans of co-circular points) depends on ids and
  * positions here, which do not change with the parts.
  *
  * Cost: a rank sends 32 bytes for a point, and the values of arrays, once, and the same for the

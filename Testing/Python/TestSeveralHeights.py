@@ -13,7 +13,7 @@ import numpy
 from in_folder import InFolder, Program, coordinates
 from vtkelevationsurface import reading, reconstruct, writing
 from vtkelevationsurface.clouds import Cloud, add_array, cells_of, make_points
-from vtkelevationsurface.heights import check_heights, several_heights
+from vtkelevationsurface.several_heights import check_heights, several_heights
 from vtkelevationsurface.messages import ElevationSurfaceError, ElevationSurfaceWarning, FileError
 from vtkelevationsurface.reading.facing import notes_on_faces
 from vtkelevationsurface.selecting import words_of

@@ -10,7 +10,7 @@
 #include "PointSets.h"
 
 #include "Kernel/Constrain/Constrain.h"
-#include "Kernel/Mesh/Recovery.h"
+#include "Kernel/Mesh/RecoverSegments.h"
 
 #include <array>
 #include <set>

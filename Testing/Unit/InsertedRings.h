@@ -9,7 +9,7 @@
 
 #include "DelaunayMesh.h"
 
-#include "Kernel/Trim/Insertion.h"
+#include "Kernel/Trim/InsertRings.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
  * those that the lines add, in which every line is a chain of edges. The passes:
  *   1. Cut the lines at each other and at points, in pieces that do not cross (CutLines.h).
  *   2. Triangulate all points (Triangulate.h), by their coordinates.
- *   3. Recover the pieces as edges (Recovery.h). Sort the changed triangles in among the others;
- *      leave out those with an edge over MaximumEdgeLength.
+ *   3. Recover the pieces as edges (RecoverSegments.h). Sort the changed triangles in among the
+ *      others; leave out those with an edge over MaximumEdgeLength.
  *
  * Guarantees: exact, as Triangulate.h: every edge that is not of a line is locally Delaunay; and
  * unique: the set of triangles depends on the positions of points and segments alone, not on their

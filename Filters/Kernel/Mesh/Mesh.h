@@ -6,8 +6,8 @@
  *
  * Where to begin: HalfEdgeMesh.h draws the numbering that all others use. TriangleList.h and
  * TriangleSweep.h work on triangles before there is a mesh, Holes.h and LongTriangles.h find what
- * the surface lacks, VertexStars.h, Recovery.h and Segments.h make lines its edges, Validate.h
- * tests it.
+ * the surface lacks, VertexStars.h, RecoverSegments.h and Segments.h make lines its edges,
+ * Validate.h tests it.
  */
 #ifndef elevation_Mesh_Mesh_h
 #define elevation_Mesh_Mesh_h
@@ -15,7 +15,7 @@
 #include "HalfEdgeMesh.h"
 #include "Holes.h"
 #include "LongTriangles.h"
-#include "Recovery.h"
+#include "RecoverSegments.h"
 #include "Segments.h"
 #include "TriangleList.h"
 #include "TriangleSweep.h"

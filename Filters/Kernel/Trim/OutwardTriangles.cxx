@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OutwardTriangles.h"
 
-#include "FollowSurface.h"
+#include "CutAlongRings.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
 #include "Rings.h"

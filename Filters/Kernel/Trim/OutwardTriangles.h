@@ -5,7 +5,7 @@
  * Classifies the triangles of a mesh as inside or outside rings of its vertices.
  *
  * The passes:
- *   1. Recover the edges of the rings that the mesh lacks (Recovery.h).
+ *   1. Recover the edges of the rings that the mesh lacks (RecoverSegments.h).
  *   2. For every edge of the mesh, count how often the rings run along it: crossing an edge with an
  *      odd count leads from inside to outside or back.
  *   3. Walk each connected part of the mesh from one of its triangles, which is located by the

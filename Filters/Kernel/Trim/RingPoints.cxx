@@ -11,7 +11,7 @@
 // Two points of the rings at the same place are one: the map of vertices is by place.
 #include "RingPoints.h"
 
-#include "FollowSurface.h"
+#include "CutAlongRings.h"
 #include "Rings.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Makes the points of rings vertices of a mesh: passes 2 and 3 of Insertion.h.
+ * Makes the points of rings vertices of a mesh: passes 2 and 3 of InsertRings.h.
  */
 #ifndef elevation_Trim_RingPoints_h
 #define elevation_Trim_RingPoints_h

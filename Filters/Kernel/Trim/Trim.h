@@ -11,7 +11,7 @@
  *      (NearTriangles.h). With InwardNormal, or if the sweep does not prove the triangles to be a
  *      mesh, all count as near: they are oriented, connected and checked, or refused by name.
  *   3. In the mesh of the near triangles, insert the rings' points and crossings with the border
- *      (Insertion.h), recover the rings' edges, and find what is outside (OutwardTriangles.h).
+ *      (InsertRings.h), recover the rings' edges, and find what is outside (OutwardTriangles.h).
  *   4. Write the triangles of each side.
  * Without lines, the outline of the measured triangles replaces passes 1 to 3 (Outline.h).
  *
@@ -22,7 +22,7 @@
 #ifndef elevation_Trim_Trim_h
 #define elevation_Trim_Trim_h
 
-#include "Insertion.h"
+#include "InsertRings.h"
 #include "Kernel/Mesh/Mesh.h"
 #include "Kernel/Messages/Messages.h"
 #include "NearTriangles.h"

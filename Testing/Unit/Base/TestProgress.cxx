@@ -5,7 +5,7 @@
 #include "Kernel/Constrain/Constrain.h"
 #include "Kernel/Fill/Fill.h"
 #include "Kernel/Mesh/Holes.h"
-#include "Kernel/Mesh/Recovery.h"
+#include "Kernel/Mesh/RecoverSegments.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "Kernel/Trim/Outline.h"
 #include "Kernel/Trim/OutwardTriangles.h"

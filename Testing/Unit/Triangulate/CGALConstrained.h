@@ -7,7 +7,7 @@
 #ifndef CGALConstrained_h
 #define CGALConstrained_h
 
-#include "Kernel/Mesh/Recovery.h"
+#include "Kernel/Mesh/RecoverSegments.h"
 
 #include <vector>
 

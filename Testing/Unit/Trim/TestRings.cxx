@@ -5,9 +5,9 @@
 #include "ErrorMessage.h"
 #include "Location.h"
 
-#include "Kernel/Trim/Rings.h"
-#include "Kernel/Trim/Insertion.h"
 #include "Kernel/Base/Predicates.h"
+#include "Kernel/Trim/InsertRings.h"
+#include "Kernel/Trim/Rings.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// FollowSurface.h says what comes out. A segment is walked from vertex to vertex of its chain:
+// CutAlongRings.h says what comes out. A segment is walked from vertex to vertex of its chain:
 //
 // - StepAlong() looks for an edge that lies on the segment.
 // - If there is none, Pass() goes from triangle to triangle. An edge between two original triangles
@@ -12,7 +12,7 @@
 // A triangle is "loose" if it is too thin to be cut, or has replaced such a one. Each loose
 // triangle counts as an original triangle of its own, so every edge of it is tried for a cut; where
 // there is no place for a cut, the edge is passed and replaced.
-#include "FollowSurface.h"
+#include "CutAlongRings.h"
 
 #include "Kernel/Base/Base.h"
 

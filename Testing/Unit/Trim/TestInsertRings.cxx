@@ -11,7 +11,7 @@
 
 #include "Kernel/Base/Predicates.h"
 #include "Kernel/Mesh/Segments.h"
-#include "Kernel/Trim/Insertion.h"
+#include "Kernel/Trim/InsertRings.h"
 #include "Kernel/Trim/OutwardTriangles.h"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,7 @@ double ClippedArea(std::vector<Point2> ring, const std::vector<Point2>& convex)
 
 TEST(MeshCutter, KnowsTheBorderOfATriangleThatIsCut)
 {
-  Mesh mesh = MeshOf({ { 0, 0 }, { 4, 0 }, { 0, 4 } }, { 0, 1, 2 });
+  Mesh mesh = Make({ { 0, 0 }, { 4, 0 }, { 0, 4 } }, { 0, 1, 2 });
   std::vector<InsertedVertex> inserted;
   std::vector<Index> parents;
   MeshCutter cutter(mesh, inserted, parents);

@@ -8,7 +8,7 @@
 #include "MeshRules.h"
 #include "WorkOf.h"
 
-#include "Kernel/Trim/Insertion.h"
+#include "Kernel/Trim/InsertRings.h"
 #include "Kernel/Trim/OutwardTriangles.h"
 
 #include <gtest/gtest.h>

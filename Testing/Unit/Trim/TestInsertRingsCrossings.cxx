@@ -9,7 +9,7 @@
 #include "Surface.h"
 
 #include "Kernel/Mesh/Segments.h"
-#include "Kernel/Trim/Insertion.h"
+#include "Kernel/Trim/InsertRings.h"
 
 #include <gtest/gtest.h>
 

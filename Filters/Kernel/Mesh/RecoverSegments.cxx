@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Recovery.h"
+#include "RecoverSegments.h"
 
 #include "Kernel/Base/Base.h"
 #include "Segments.h"

@@ -12,8 +12,8 @@
  * points. Where very many edges are near each other, as around a shared point or when one edge is
  * repeated, n log n, plus the pairs of rings that share edges and join them from different sides.
  */
-#ifndef elevation_Trim_Crossings_h
-#define elevation_Trim_Crossings_h
+#ifndef elevation_Trim_RingCrossings_h
+#define elevation_Trim_RingCrossings_h
 
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"

@@ -7,7 +7,7 @@
  *
  * In: a mesh with Twins, rings of points in the plane. Out: the mesh with more vertices, and the
  * rings as vertices of it. The passes:
- *   1. Check that the rings do not cross each other (Crossings.h).
+ *   1. Check that the rings do not cross each other (RingCrossings.h).
  *   2. Match the rings' points to corners of the mesh with the same x,y. A point within rounding of
  *      the border (SnapRounding.h) becomes a vertex of the border, which moves by that little. Not
  *      where two borders are that near: one would move into the other.
@@ -31,8 +31,8 @@
  * Cost: linear in the triangles if a point has to be matched or located, plus about log m for each
  * of m points in the same triangle.
  */
-#ifndef elevation_Trim_Insertion_h
-#define elevation_Trim_Insertion_h
+#ifndef elevation_Trim_InsertRings_h
+#define elevation_Trim_InsertRings_h
 
 #include "Kernel/Mesh/Mesh.h"
 #include "MeshCutter.h"
@@ -65,7 +65,7 @@ struct InsertedRings
  * @param[in]     points  finite
  * @param[in]     rings   ids of the points, at least three per ring; with Following::Lines, two
  * @param[in]     insert  off: the mesh stays as it is; an Error if something would be inserted
- * @param[in]     follow  only with insert; see FollowSurface.h
+ * @param[in]     follow  only with insert; see CutAlongRings.h
  * @throws Error naming the points: rings, or parts of one, that cross; a ring's point where two
  *         corners of the mesh lie; a ring along coincident borders; a crossing with a triangle too
  *         thin to be cut there; with insert off, a point or a crossing that the mesh does not have.

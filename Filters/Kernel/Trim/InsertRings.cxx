@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Insertion.h lists the passes: CheckCrossings() is pass 1, InsertPoints() 2 and 3, CutAtBorder()
+// InsertRings.h lists the passes: CheckCrossings() is pass 1, InsertPoints() 2 and 3, CutAtBorder()
 // 4; FollowSurface() threads what pass 5 inserts into the rings.
 //
 // During the work a ring is a list of pieces. A piece is the part of one edge of the given rings
@@ -11,11 +11,11 @@
 //   0, 1, ...     vertices of the mesh, given and new
 //   -3, -4, ...   points of the rings outside the mesh, from FirstOutside down; in the end they are
 //                 appended to the mesh's points and get numbers like these
-#include "Insertion.h"
+#include "InsertRings.h"
 
-#include "Crossings.h"
-#include "FollowSurface.h"
+#include "CutAlongRings.h"
 #include "Kernel/Base/Base.h"
+#include "RingCrossings.h"
 #include "RingPoints.h"
 #include "Rings.h"
 
@@ -375,20 +375,19 @@ private:
     const CellGrid grid = GridOf(segments);
     std::unordered_map<Index, std::vector<Index>> segmentsThrough;
     std::vector<char> isOn(mesh.Points.size(), 0);
-    ForEachStretch(
-      mesh.NumberOfPoints(), progress.Between(0.0, 0.5), [&](Index begin, Index end) {
-        for (Index v = begin; v < end; ++v)
-        {
-          const Point2& p = mesh.PointOf(v);
-          grid.Visit(p, [&](Index i) {
-            if (IsInside(segments[i], p))
-            {
-              isOn[v] = 1;
-              segmentsThrough[v].push_back(i);
-            }
-          });
-        }
-      });
+    ForEachStretch(mesh.NumberOfPoints(), progress.Between(0.0, 0.5), [&](Index begin, Index end) {
+      for (Index v = begin; v < end; ++v)
+      {
+        const Point2& p = mesh.PointOf(v);
+        grid.Visit(p, [&](Index i) {
+          if (IsInside(segments[i], p))
+          {
+            isOn[v] = 1;
+            segmentsThrough[v].push_back(i);
+          }
+        });
+      }
+    });
     if (segmentsThrough.empty())
     {
       return;

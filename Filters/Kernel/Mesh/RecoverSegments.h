@@ -27,8 +27,8 @@
  * [Lawson 1977] Software for C1 surface interpolation.
  * [Lee & Lin 1986] Generalized Delaunay triangulation for planar graphs.
  */
-#ifndef elevation_Mesh_Recovery_h
-#define elevation_Mesh_Recovery_h
+#ifndef elevation_Mesh_RecoverSegments_h
+#define elevation_Mesh_RecoverSegments_h
 
 #include "VertexStars.h"
 

@@ -9,7 +9,7 @@
 //        x               s=====t         two walks cross if the one that comes from the left of the
 //       / \             /       \        other at s is on the right of it after t.
 //      B   A           B         A
-#include "Crossings.h"
+#include "RingCrossings.h"
 
 #include "Kernel/Base/Base.h"
 #include "Rings.h"

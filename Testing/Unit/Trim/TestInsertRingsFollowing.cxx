@@ -12,7 +12,7 @@
 
 #include "Kernel/Base/Predicates.h"
 #include "Kernel/Mesh/Segments.h"
-#include "Kernel/Trim/Insertion.h"
+#include "Kernel/Trim/InsertRings.h"
 #include "Kernel/Trim/OutwardTriangles.h"
 
 #include <gtest/gtest.h>

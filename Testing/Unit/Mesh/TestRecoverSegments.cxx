@@ -5,7 +5,7 @@
 #include "WorkOf.h"
 
 #include "Kernel/Base/Predicates.h"
-#include "Kernel/Mesh/Recovery.h"
+#include "Kernel/Mesh/RecoverSegments.h"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,7 @@
  *   - An edge between two original triangles, or of another chain, is cut where it is crossed, at
  *     the crossing rounded to doubles. Each triangle beside it becomes two.
  *   - Edges within one original triangle, which is flat, need no vertex: the next edge of the chain
- *     is recovered across them (Recovery.h).
+ *     is recovered across them (RecoverSegments.h).
  *   - The chain goes through a vertex that the segment runs through or passes within rounding
  *     (SnapRounding.h), such as one where another segment has been cut; along a border that
  *     rounding puts before it.
@@ -33,8 +33,8 @@
  * Cost: log n for each of n segments, plus the edges that they cross, plus those that earlier
  * chains have made in the same triangles.
  */
-#ifndef elevation_Trim_FollowSurface_h
-#define elevation_Trim_FollowSurface_h
+#ifndef elevation_Trim_CutAlongRings_h
+#define elevation_Trim_CutAlongRings_h
 
 #include "Kernel/Mesh/Mesh.h"
 #include "MeshCutter.h"
