@@ -64,10 +64,32 @@ constexpr double WidestGap = 4.0;
 /** Stretches are longer where points are sparse; how their roughness depends on the length. */
 constexpr double LengthPower = 0.5;
 
+/** The square of roughness that is no noise grows with the length at least with this power. */
+constexpr double LeastGrowthPower = 1.6;
+
+/**
+ * The noise of an error, and a quantile of the shape, in the measure of noise: the square of the mean
+ * root of second differences. For a normal distribution.
+ */
+constexpr double NoiseOfMiss = 1.5;
+constexpr double ShapeQuantileInMeans = 2.43;
+
 constexpr double StandardQuantile = 0.683;
 constexpr double ShapeQuantile = 0.9;
 constexpr double LargestShapePower = 1.2;
 constexpr double LargestGapPower = 1.0;
+
+/** What the size of a number of the standard normal distribution does not exceed with a probability. */
+double NormalQuantile(double share)
+{
+  double low = 0.0, high = 10.0;
+  for (int step = 0; step < 60; ++step)
+  {
+    const double middle = 0.5 * (low + high);
+    (std::erf(middle / std::sqrt(2.0)) < share ? low : high) = middle;
+  }
+  return low;
+}
 
 /** NaN of none. */
 double Median(const std::vector<double>& values)
@@ -148,29 +170,42 @@ public:
     return result;
   }
 
-  /** The scale of each new vertex, times a number. */
-  std::vector<double> Scaled(double factor) const
+  /** What a share of errors does not exceed, at each new vertex. */
+  std::vector<double> Bounds(double share) const
   {
-    std::vector<double> result(this->NewScales);
-    for (double& scale : result)
+    const double noise = NormalQuantile(share) * NoiseOfMiss * this->Noise;
+    double factor = Carried(this->Errors, share, noise);
+    if (this->DirectErrors.size() >= LeastDirectErrors)
     {
-      scale *= factor;
+      factor = std::sqrt(factor * Carried(this->DirectErrors, share, noise));
+    }
+    std::vector<double> result(this->NewScales);
+    for (double& bound : result)
+    {
+      bound = std::hypot(factor * bound, noise);
     }
     return result;
   }
 
-  /** What a share of the errors does not exceed, in the scale of what is filled. */
-  double Quantile(double share) const
+private:
+  struct ScaledError
   {
-    const double carried = QuantileByRank(this->Errors, share);
-    if (this->DirectErrors.size() < LeastDirectErrors)
+    double Size;
+    double Scale;
+  };
+
+  /** The number by which scales are to be multiplied, so that a share of errors is within noise and scale. */
+  static double Carried(const std::vector<ScaledError>& errors, double share, double noise)
+  {
+    std::vector<double> ratios;
+    for (const ScaledError& error : errors)
     {
-      return carried;
+      const double square = error.Size * error.Size - noise * noise;
+      ratios.push_back(square > 0.0 ? std::sqrt(square) / error.Scale : 0.0);
     }
-    return std::sqrt(carried * QuantileByRank(this->DirectErrors, share));
+    return QuantileByRank(std::move(ratios), share);
   }
 
-private:
   /** A time that lines were left out. */
   struct Trial
   {
@@ -239,6 +274,7 @@ private:
     {
       return;
     }
+    this->Noise = this->NoiseAlong(this->All);
     const std::vector<int> colors = ColorTracks(this->Lines, this->All.Triangles);
     std::vector<Trial> trials = this->LeaveOut(this->All, colors, progress.Between(0.2, 0.45));
     this->SplineShare = this->BestShare(trials);
@@ -256,14 +292,13 @@ private:
       }
       const std::vector<double> scales =
         this->ScalesAt(trial.Spots, trial.Rest, isWider ? trial.Gap : this->Gap, nested);
-      std::vector<double>& errors = isWider ? this->Errors : this->DirectErrors;
+      std::vector<ScaledError>& errors = isWider ? this->Errors : this->DirectErrors;
       for (std::size_t i = 0; i < trial.Probes.size(); ++i)
       {
-        const double error =
-          std::fabs(trial.Misses[i] - this->SplineShare * trial.Bending[i]) / scales[i];
-        if (trial.Spots[i].IsInside && std::isfinite(error))
+        const double size = std::fabs(trial.Misses[i] - this->SplineShare * trial.Bending[i]);
+        if (trial.Spots[i].IsInside && scales[i] > 0.0)
         {
-          errors.push_back(error);
+          errors.push_back({ size, scales[i] });
         }
       }
     }
@@ -777,10 +812,43 @@ private:
   }
 
   /**
+   * What of the roughness is noise: what is left of it as stretches become short. It is there near
+   * lines, too.
+   */
+  double NoiseAlong(const Known& known) const
+  {
+    std::vector<double> steps;
+    for (Index t = 0; t < this->Lines.Count(); ++t)
+    {
+      const Index* const vertices = this->Lines.Begin(t);
+      for (Index i = 1; this->IsThere(known, t) && i < this->Lines.Size(t); ++i)
+      {
+        const Point2 p = this->Patch.At(vertices[i]);
+        const Point2 q = this->Patch.At(vertices[i - 1]);
+        steps.push_back(std::hypot(p.X - q.X, p.Y - q.Y));
+      }
+    }
+    if (steps.empty())
+    {
+      return 0.0;
+    }
+    const double step = Median(steps);
+    const double shorter = MeanOf(this->RoughnessAlong(known, 1.9 * step));
+    const double longer = MeanOf(this->RoughnessAlong(known, 3.9 * step));
+    if (!std::isfinite(shorter) || !std::isfinite(longer))
+    {
+      return 0.0;
+    }
+    const double grown =
+      (longer * longer - shorter * shorter) / (std::exp2(LeastGrowthPower) - 1.0);
+    return std::sqrt(std::max(0.0, shorter * shorter - std::max(0.0, grown)));
+  }
+
+  /**
    * How errors grow with the distance from the nearest end of a stretch of a length: the power of
    * u (2 - u).
    */
-  double ShapePower(const Known& known, double length) const
+  double ShapePower(const Known& known, double length, double noise) const
   {
     double products = 0.0, squares = 0.0, ofMiddle = 0.0;
     for (const double part : { 0.5, 0.25, 0.125 })
@@ -807,7 +875,8 @@ private:
         return 1.0;
       }
       const double u = 2.0 * sum / static_cast<double>(misses.size());
-      const double error = QuantileByRank(std::move(misses), ShapeQuantile);
+      const double all = QuantileByRank(std::move(misses), ShapeQuantile);
+      const double error = std::sqrt(std::max(0.01 * all * all, all * all - noise * noise));
       if (part == 0.5)
       {
         ofMiddle = error;
@@ -847,7 +916,7 @@ private:
           [factor](double value) { return factor * value; });
       }
     }
-    const double power = this->ShapePower(known, gap);
+    const double power = this->ShapePower(known, gap, ShapeQuantileInMeans * this->Noise);
     const double half = MeanOf(this->RoughnessAlong(known, 0.5 * gap));
     const double growth = half > 0.0 && all > 0.0
       ? std::max(0.0, std::min(LargestGapPower, std::log2(all / half)))
@@ -886,8 +955,9 @@ private:
   double Gap = 0.0;        ///< the median gap of these
   double SplineShare = 0.0;
   std::vector<double> NewScales;    ///< of new vertices
-  std::vector<double> Errors;       ///< in scales, of trials in wider gaps
-  std::vector<double> DirectErrors; ///< in scales, of lines that cross the gaps as they are
+  double Noise = 0.0;               ///< square mean of the roots of its second differences
+  std::vector<ScaledError> Errors;  ///< of trials in wider gaps
+  std::vector<ScaledError> DirectErrors; ///< of lines that cross the gaps as they are
 };
 
 BetweenLines::BetweenLines(
@@ -915,12 +985,12 @@ std::vector<double> BetweenLines::Apply(const Values& values, const Progress& pr
 
 std::vector<double> BetweenLines::StandardErrors() const
 {
-  return this->Tried->Scaled(this->Tried->Quantile(StandardQuantile));
+  return this->Tried->Bounds(StandardQuantile);
 }
 
 std::vector<double> BetweenLines::HalfIntervals(double probability) const
 {
-  return this->Tried->Scaled(this->Tried->Quantile(probability));
+  return this->Tried->Bounds(probability);
 }
 
 } // namespace elevation
