@@ -37,6 +37,7 @@ VALUES = {
     "memory": "2G",
     "view": "top",
     "lattice_tolerance": "0.1",
+    "confidence_level": "0.8",
 }
 # The second inputs and the processes, which are not numbers.
 OTHERS = {"SourceConnection", "SourceData", "BoundaryConnection", "BoundaryData", "Controller"}

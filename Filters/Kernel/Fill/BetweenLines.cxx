@@ -45,7 +45,25 @@ constexpr std::size_t LeastDirectErrors = 100;
 /** Where lines are left out, gaps are at least so many times as wide; else lines have crossed. */
 constexpr double LeastWidening = 1.4;
 
+/**
+ * The noise of an error, in the measure of noise: the square of the mean root of second
+ * differences. For a normal distribution.
+ */
+constexpr double NoiseOfMiss = 1.5;
+
 constexpr double StandardQuantile = 0.683;
+
+/** What the size of a number of the standard normal distribution does not exceed with a probability. */
+double NormalQuantile(double share)
+{
+  double low = 0.0, high = 10.0;
+  for (int step = 0; step < 60; ++step)
+  {
+    const double middle = 0.5 * (low + high);
+    (std::erf(middle / std::sqrt(2.0)) < share ? low : high) = middle;
+  }
+  return low;
+}
 
 } // namespace
 
@@ -90,29 +108,42 @@ public:
     return result;
   }
 
-  /** The scale of each new vertex, times a number. */
-  std::vector<double> Scaled(double factor) const
+  /** What a share of errors does not exceed, at each new vertex. */
+  std::vector<double> Bounds(double share) const
   {
-    std::vector<double> result(this->NewScales);
-    for (double& scale : result)
+    const double noise = NormalQuantile(share) * NoiseOfMiss * this->Noise;
+    double factor = Carried(this->Errors, share, noise);
+    if (this->DirectErrors.size() >= LeastDirectErrors)
     {
-      scale *= factor;
+      factor = std::sqrt(factor * Carried(this->DirectErrors, share, noise));
+    }
+    std::vector<double> result(this->NewScales);
+    for (double& bound : result)
+    {
+      bound = std::hypot(factor * bound, noise);
     }
     return result;
   }
 
-  /** What a share of the errors does not exceed, in the scale of what is filled. */
-  double Quantile(double share) const
+private:
+  struct ScaledError
   {
-    const double carried = QuantileByRank(this->Errors, share);
-    if (this->DirectErrors.size() < LeastDirectErrors)
+    double Size;
+    double Scale;
+  };
+
+  /** The number by which scales are to be multiplied, so that a share of errors is within noise and scale. */
+  static double Carried(const std::vector<ScaledError>& errors, double share, double noise)
+  {
+    std::vector<double> ratios;
+    for (const ScaledError& error : errors)
     {
-      return carried;
+      const double square = error.Size * error.Size - noise * noise;
+      ratios.push_back(square > 0.0 ? std::sqrt(square) / error.Scale : 0.0);
     }
-    return std::sqrt(carried * QuantileByRank(this->DirectErrors, share));
+    return QuantileByRank(std::move(ratios), share);
   }
 
-private:
   /** A time that lines were left out. */
   struct Trial
   {
@@ -183,6 +214,7 @@ private:
     {
       return;
     }
+    this->Noise = this->Roughness().NoiseAlong(this->All);
     const std::vector<int> colors = ColorTracks(this->Lines, this->All.Triangles);
     std::vector<Trial> trials = this->LeaveOut(this->All, colors, progress.Between(0.2, 0.45));
     this->SplineShare = this->BestShare(trials);
@@ -199,19 +231,19 @@ private:
         nested = this->ErrorsAtKnown(this->LeaveOut(trial.Rest, trial.Colors, one, 2));
       }
       const std::vector<double> scales = this->Roughness().ScalesAt(
-        trial.Spots, trial.Rest, isWider ? trial.Gap : this->Gap, nested);
-      std::vector<double>& errors = isWider ? this->Errors : this->DirectErrors;
+        trial.Spots, trial.Rest, isWider ? trial.Gap : this->Gap, nested, this->Noise);
+      std::vector<ScaledError>& errors = isWider ? this->Errors : this->DirectErrors;
       for (std::size_t i = 0; i < trial.Probes.size(); ++i)
       {
-        const double error =
-          std::fabs(trial.Misses[i] - this->SplineShare * trial.Bending[i]) / scales[i];
-        if (trial.Spots[i].IsInside && std::isfinite(error))
+        const double size = std::fabs(trial.Misses[i] - this->SplineShare * trial.Bending[i]);
+        if (trial.Spots[i].IsInside && scales[i] > 0.0)
         {
-          errors.push_back(error);
+          errors.push_back({ size, scales[i] });
         }
       }
     }
-    this->NewScales = this->Roughness().ScalesAt(this->Spots, this->All, this->Gap, missed);
+    this->NewScales =
+      this->Roughness().ScalesAt(this->Spots, this->All, this->Gap, missed, this->Noise);
     this->IsFound = this->Errors.size() >= LeastErrors;
   }
 
@@ -540,9 +572,10 @@ private:
   std::vector<Spot> Spots; ///< new vertices among the triangles of all known points
   double Gap = 0.0;        ///< the median gap of these
   double SplineShare = 0.0;
-  std::vector<double> NewScales;    ///< of new vertices
-  std::vector<double> Errors;       ///< in scales, of trials in wider gaps
-  std::vector<double> DirectErrors; ///< in scales, of lines that cross the gaps as they are
+  std::vector<double> NewScales;         ///< of new vertices
+  double Noise = 0.0;                    ///< square mean of the roots of its second differences
+  std::vector<ScaledError> Errors;       ///< of trials in wider gaps
+  std::vector<ScaledError> DirectErrors; ///< of lines that cross the gaps as they are
 };
 
 BetweenLines::BetweenLines(
@@ -570,12 +603,12 @@ std::vector<double> BetweenLines::Apply(const Values& values, const Progress& pr
 
 std::vector<double> BetweenLines::StandardErrors() const
 {
-  return this->Tried->Scaled(this->Tried->Quantile(StandardQuantile));
+  return this->Tried->Bounds(StandardQuantile);
 }
 
 std::vector<double> BetweenLines::HalfIntervals(double probability) const
 {
-  return this->Tried->Scaled(this->Tried->Quantile(probability));
+  return this->Tried->Bounds(probability);
 }
 
 } // namespace elevation

@@ -38,9 +38,13 @@
  * lengths, the errors of the trials, in their scale, are those between the lines in theirs. Where
  * crossing lines give errors in the gaps as they are, the mean of both counts, of logarithms.
  *
- * The standard error is what 68 % of these errors do not exceed, times the scale; half an interval
- * is what the asked share does not exceed, by rank, among the errors and one more (as in conformal
- * prediction): no normal distribution is assumed.
+ * Noise. What is left of the roughness as stretches become short is noise. It is as large near
+ * lines, and in narrow gaps: an error is taken for the hypotenuse of noise, which is normal, and of
+ * the rest, which is in scale. (Truth is what would be measured, with its noise.)
+ *
+ * The standard error is the factor of the scale with which 68 % of these errors are within scale and
+ * noise; for half an interval the asked share is, by rank, among the errors and one more (as in
+ * conformal prediction): but for noise, no normal distribution is assumed.
  *
  * Guarantees: planes are continued, up to rounding. The result depends on the positions of the
  * known points, their values and the patch, not on the order of points or triangles.

@@ -35,6 +35,15 @@ constexpr double WidestGap = 4.0;
 /** Stretches are longer where points are sparse; how their roughness depends on the length. */
 constexpr double LengthPower = 0.5;
 
+/** The square of roughness that is no noise grows with the length at least with this power. */
+constexpr double LeastGrowthPower = 1.6;
+
+/**
+ * A quantile of the shape, in the measure of noise: the square of the mean root of second
+ * differences. For a normal distribution.
+ */
+constexpr double ShapeQuantileInMeans = 2.43;
+
 constexpr double ShapeQuantile = 0.9;
 constexpr double LargestShapePower = 1.2;
 constexpr double LargestGapPower = 1.0;
@@ -222,10 +231,42 @@ std::vector<double> LineRoughness::MeansInCells(
 }
 
 /**
+ * What of the roughness is noise: what is left of it as stretches become short. It is there near
+ * lines, too.
+ */
+double LineRoughness::NoiseAlong(const Known& known) const
+{
+  std::vector<double> steps;
+  for (Index t = 0; t < this->Lines.Count(); ++t)
+  {
+    const Index* const vertices = this->Lines.Begin(t);
+    for (Index i = 1; this->IsThere(known, t) && i < this->Lines.Size(t); ++i)
+    {
+      const Point2 p = this->Patch.At(vertices[i]);
+      const Point2 q = this->Patch.At(vertices[i - 1]);
+      steps.push_back(std::hypot(p.X - q.X, p.Y - q.Y));
+    }
+  }
+  if (steps.empty())
+  {
+    return 0.0;
+  }
+  const double step = QuantileByRank(std::move(steps), 0.5);
+  const double shorter = MeanOf(this->Along(known, 1.9 * step));
+  const double longer = MeanOf(this->Along(known, 3.9 * step));
+  if (!std::isfinite(shorter) || !std::isfinite(longer))
+  {
+    return 0.0;
+  }
+  const double grown = (longer * longer - shorter * shorter) / (std::exp2(LeastGrowthPower) - 1.0);
+  return std::sqrt(std::max(0.0, shorter * shorter - std::max(0.0, grown)));
+}
+
+/**
  * How errors grow with the distance from the nearest end of a stretch of a length: the power of
  * u (2 - u).
  */
-double LineRoughness::ShapePower(const Known& known, double length) const
+double LineRoughness::ShapePower(const Known& known, double length, double noise) const
 {
   double products = 0.0, squares = 0.0, ofMiddle = 0.0;
   for (const double part : { 0.5, 0.25, 0.125 })
@@ -252,7 +293,8 @@ double LineRoughness::ShapePower(const Known& known, double length) const
       return 1.0;
     }
     const double u = 2.0 * sum / static_cast<double>(misses.size());
-    const double error = QuantileByRank(std::move(misses), ShapeQuantile);
+    const double all = QuantileByRank(std::move(misses), ShapeQuantile);
+    const double error = std::sqrt(std::max(0.01 * all * all, all * all - noise * noise));
     if (part == 0.5)
     {
       ofMiddle = error;
@@ -269,7 +311,7 @@ double LineRoughness::ShapePower(const Known& known, double length) const
 
 /** The scales of spots, for a median gap. See above. */
 std::vector<double> LineRoughness::ScalesAt(const std::vector<Spot>& spots, const Known& known,
-  double gap, const std::vector<double>& missed) const
+  double gap, const std::vector<double>& missed, double noise) const
 {
   const std::vector<double> rough = this->Along(known, gap);
   const double all = MeanOf(rough);
@@ -292,7 +334,7 @@ std::vector<double> LineRoughness::ScalesAt(const std::vector<Spot>& spots, cons
         [factor](double value) { return factor * value; });
     }
   }
-  const double power = this->ShapePower(known, gap);
+  const double power = this->ShapePower(known, gap, ShapeQuantileInMeans * noise);
   const double half = MeanOf(this->Along(known, 0.5 * gap));
   const double growth =
     half > 0.0 && all > 0.0 ? std::max(0.0, std::min(LargestGapPower, std::log2(all / half))) : 0.0;

@@ -72,12 +72,16 @@ public:
   /** Of each known point the roughness along its line, over stretches of a length; or NaN. */
   std::vector<double> Along(const Known& known, double length) const;
 
+  /** What of the roughness is noise, which is there near lines, too. */
+  double NoiseAlong(const Known& known) const;
+
   /**
    * The scales of spots, for a median gap.
    * @param[in] missed  errors at known points where lines were left out, or NaN
+   * @param[in] noise   of all lines, by NoiseAlong()
    */
   std::vector<double> ScalesAt(const std::vector<Spot>& spots, const Known& known, double gap,
-    const std::vector<double>& missed) const;
+    const std::vector<double>& missed, double noise) const;
 
 private:
   /** How a height at a place of a line differs from what the line between two others gives. */
@@ -99,7 +103,7 @@ private:
   Means MeansOf(const Known& known, const std::vector<double>& values, double gap) const;
   std::vector<double> MeansInCells(
     const Known& known, const std::vector<double>& values, double side) const;
-  double ShapePower(const Known& known, double length) const;
+  double ShapePower(const Known& known, double length, double noise) const;
 
   const PatchMesh& Patch;
   const Tracks& Lines;

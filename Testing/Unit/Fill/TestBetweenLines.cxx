@@ -225,6 +225,41 @@ TEST(BetweenLines, ErrorsGrowWithTheDistanceFromLines)
   EXPECT_GT(sums[1] / counts[1], 1.2 * sums[0] / counts[0]);
 }
 
+TEST(BetweenLines, NoiseCountsNearLinesToo)
+{
+  Shares mean;
+  for (unsigned seed = 1; seed <= 20; ++seed)
+  {
+    Random random(seed);
+    std::vector<Point2> points;
+    std::vector<double> coordinates;
+    const auto smooth = [](const Point2& p) {
+      return 8.0 * std::sin(p.X / 35.0) * std::cos(p.Y / 43.0);
+    };
+    for (int line = 0; line < 12; ++line)
+    {
+      for (int i = 0; i < 200; ++i)
+      {
+        points.push_back({ double(i), 16.0 * line + 2.0 * std::sin(i / 50.0 + 3.0 * line) });
+        double noise = -2.0;
+        for (int k = 0; k < 4; ++k)
+        {
+          noise += random.Unit();
+        }
+        coordinates.insert(coordinates.end(),
+          { points.back().X, points.back().Y, smooth(points.back()) + 0.2 * noise });
+      }
+    }
+    const Outcome run = Fill(Delaunay(points), coordinates, FillOptions(), 2.5);
+    const Shares shares = SharesOf(run, smooth);
+    mean.Standard += shares.Standard / 20.0;
+    mean.Interval += shares.Interval / 20.0;
+  }
+  // The truth is without noise here.
+  EXPECT_GT(mean.Standard, 0.65);
+  EXPECT_GT(mean.Interval, 0.88);
+}
+
 TEST(BetweenLines, IntervalsAreWiderTheMoreOftenTheyHoldTheTruth)
 {
   double before = 0.0;
