@@ -19,9 +19,9 @@
  *   (vtkUnsignedCharArray, 1 for new points), FilledError (vtkDoubleArray, the standard error of
  *   z: 0 for points of the input, NaN if unknown), FilledLow and FilledHigh (vtkDoubleArray, between
  *   which the true z lies with the probability ConfidenceLevel: z for points of the input, NaN if
- *   unknown), and the cell array HoleId (vtkIdTypeArray, -1 for cells of the input). Other point arrays: see InterpolatePointData. If the input has been
- *   filled before, its values in these arrays stay, and new holes are numbered after its largest
- *   HoleId.
+ *   unknown), and the cell array HoleId (vtkIdTypeArray, -1 for cells of the input). Other point
+ *   arrays: see InterpolatePointData. If the input has been filled before, its values in these
+ *   arrays stay, and new holes are numbered after its largest HoleId.
  * - 1, the report: the rim of each hole, filled or not, as a closed counter-clockwise line. Cell
  *   data: HoleId, Status (HoleStatusType) and StatusName, the same in words, Size (for comparison
  *   with MaximumHoleSize), NumberOfEdges, Perimeter, Area, NumberOfInsertedPoints, Interpolation

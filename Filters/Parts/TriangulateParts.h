@@ -22,8 +22,8 @@
  * Should not all points be on the lattice, passes 2 and 3 are done again without it.
  *
  * Why the result is that of one rank: Pieces.h proves it for passes 2 and 3, RecoverSegments.h for
- * lines. What depends on the order of points (duplicates, fans of co-circular points) depends on ids and
- * positions here, which do not change with the parts.
+ * lines. What depends on the order of points (duplicates, fans of co-circular points) depends on
+ * ids and positions here, which do not change with the parts.
  *
  * Cost: a rank sends 32 bytes for a point, and the values of arrays, once, and the same for the
  * points of some multiple of sqrt(m) of the m points of a part: those of seams, and those at which

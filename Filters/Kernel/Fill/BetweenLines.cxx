@@ -53,7 +53,7 @@ constexpr double NoiseOfMiss = 1.5;
 
 constexpr double StandardQuantile = 0.683;
 
-/** What the size of a number of the standard normal distribution does not exceed with a probability. */
+/** What the size of a standard normal number does not exceed with a probability. */
 double NormalQuantile(double share)
 {
   double low = 0.0, high = 10.0;
@@ -132,7 +132,7 @@ private:
     double Scale;
   };
 
-  /** The number by which scales are to be multiplied, so that a share of errors is within noise and scale. */
+  /** The factor of scales at which a share of errors is within noise and scale. */
   static double Carried(const std::vector<ScaledError>& errors, double share, double noise)
   {
     std::vector<double> ratios;

@@ -30,7 +30,8 @@
  * triangle, with fixed shares: by how much a point on a line differs from the line between points
  * half of G before and behind it, near the place and in a wide neighbourhood; the errors of lines
  * that were left out, near and wide, brought to the same mean; and the first of all points. It
- * counts with the power 0.7, in parts of the mean. p is how the first grows with the distance from the ends of a stretch, h how it grows with its length.
+ * counts with the power 0.7, in parts of the mean. p is how the first grows with the distance from
+ * the ends of a stretch, h how it grows with its length.
  * Weights that are fitted to the trials predict worse than fixed ones: lines are few.
  *
  * Carrying. The gaps of trials are twice as wide as those to be filled. Both are measured in their
