@@ -123,10 +123,10 @@ def interval_of(data, heights):
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     ends = data.GetArray("FilledLow"), data.GetArray("FilledHigh")
-    if all(ends):
+    if None not in ends:
         return [vtk_to_numpy(end) for end in ends]
     errors = data.GetArray("FilledError")
-    if not errors:
+    if errors is None:
         return None
     away = STANDARD_ERRORS * vtk_to_numpy(errors)
     return [heights - away, heights + away]

@@ -9,7 +9,7 @@ import matplotlib
 matplotlib.use("Agg")  # needs no screen
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy  # noqa: E402
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator  # noqa: E402
+from matplotlib.ticker import FixedLocator, FuncFormatter, MultipleLocator, NullLocator  # noqa: E402
 
 from VoidDraw import KINDS  # noqa: E402
 from VoidMethods import CANDIDATES  # noqa: E402
@@ -49,7 +49,7 @@ def save(figure, folder, name):
 
 
 def log_ratios(axis, least, most):
-    ticks = [tick for tick in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.2, 1.5, 2, 3, 4, 5) if
+    ticks = [tick for tick in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.2, 1.3, 1.5, 2, 3, 4, 5) if
              0.97 * least <= tick <= 1.03 * most]
     axis.set_major_locator(FixedLocator(ticks))
     axis.set_minor_locator(NullLocator())
@@ -70,8 +70,7 @@ def ratios_by_size(results, folder):
     if not drawn:
         plt.close(figure)
         return
-    axes.axhline(1.0, color="black", linewidth=1.2)
-    axes.text(results.sizes()[0] * 0.93, 1.012, results.base, fontsize=9, ha="left", va="bottom")
+    axes.axhline(1.0, color="black", linewidth=1.2, label=results.base)
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.xaxis.set_major_locator(FixedLocator(results.sizes()))
@@ -104,14 +103,14 @@ def ratios_by_kind(results, folder):
     if not drawn:
         plt.close(figure)
         return
-    axes.axvline(1.0, color="black", linewidth=1.2)
+    axes.axvline(1.0, color="black", linewidth=1.2, label=results.base)
     axes.set_xscale("log")
     log_ratios(axes.xaxis, min(drawn), max(drawn))
     for row in range(1, len(KINDS)):
         axes.axhline(row - 0.5, color="#cccccc", linewidth=0.8)
     axes.set_yticks(range(len(KINDS)), KINDS)
     axes.set_ylim(len(KINDS) - 0.5, -0.5)
-    axes.set_xlabel(f"RMSE in parts of that of {results.base} (line)")
+    axes.set_xlabel(f"RMSE in parts of that of {results.base}")
     axes.set_title("Error by kind of terrain; further left is better", loc="left", fontsize=12)
     axes.grid(True, axis="x", color="#dddddd", linewidth=0.8)
     axes.set_axisbelow(True)
@@ -140,6 +139,7 @@ def intervals(results, folder):
         axes.grid(True, color="#dddddd", linewidth=0.8)
         axes.set_axisbelow(True)
         axes.set_ylim(min(80, axes.get_ylim()[0]), 101)
+        axes.yaxis.set_major_locator(MultipleLocator(5))
     left.set_xticks(range(len(results.sizes())), [f"{size:,}" for size in results.sizes()])
     left.set_xlabel("lost nodes of a void")
     left.set_ylabel("true heights inside the interval, %")
@@ -190,8 +190,9 @@ def examples(results, folder):
         if not voids:
             axes.set_title(f"{kind}: none", fontsize=10)
             continue
-        void = min(voids, key=lambda one: (abs(one.size - 220), not one.has_island,
-                                           numpy.isnan(one.heights).sum()))
+        void = min(voids, key=lambda one: (
+            abs(one.size - 220), one.has_island != kind.startswith("rough"),
+            numpy.isnan(one.heights).sum()))
         width, height = (side * step for side, step in zip(void.lost.shape[::-1], void.steps))
         place = dict(origin="lower", extent=(0, width, 0, height))
         axes.imshow(shaded(void.heights, void.steps), cmap="gray", vmin=0, vmax=1.5, **place)
