@@ -28,7 +28,7 @@ from .several_heights import PieceHeights
 from .holes import BridgedVoids, hole_report
 from .mending import mended
 from .messages import ElevationSurfaceError, FileError, Messages
-from .opening import lattice_of
+from .open_edge_length import lattice_of
 from .properties import option_of, set_properties
 from .ranks import agreed, by_first, collected, rank_and_count, together, total
 from .reading.formats import recognise

@@ -26,7 +26,7 @@ from .several_heights import check_heights, heights_on_ranks
 from .holes import BridgedVoids, hole_counts
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .names import argument
-from .opening import length_to_open
+from .open_edge_length import length_to_open
 from .paths import check_suffix
 from .planes import in_plane, turn_back
 from .properties import COLOURS, PROPERTIES, checked

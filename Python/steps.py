@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 from .clouds import bare_lines, cell_names, coordinates_of, joined, marked_points
 from .messages import ElevationSurfaceError, Messages, counted
 from .names import PANEL, PYTHON, are_for, argument, option
-from .opening import LEAST_STEPS_APART, elongation, lattice_of, measured
+from .open_edge_length import LEAST_STEPS_APART, elongation, lattice_of, measured
 from .outline import (
     ON_BORDER,
     ON_OUTLINE,
