@@ -156,7 +156,8 @@ def check_stops(random, count, share, make):
         check(progress == sorted(progress), "progress rises")
         if any(gather(stopped)):
             reached += 1
-            check(not stopped or len(progress) == stopped[0], "no report follows abort %d" % i)
+            # Since VTK 9.3 the executive reports an end, 1.0, also of what has been stopped.
+            check(not stopped or set(progress[stopped[0]:]) <= {1.0}, "no report follows abort %d" % i)
             check(algorithm.GetOutput().GetNumberOfPoints() == 0, "empty after abort %d" % i)
             check(reported == ["warning"] * (RANK == 0), "%s of abort %d" % (reported, i))
     check(reached > count // 2, "%d of %d aborts have come to pass" % (reached, count))
