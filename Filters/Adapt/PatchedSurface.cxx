@@ -233,7 +233,7 @@ void AddErrors(vtkPolyData* input, const FillResult& patches, vtkPolyData* outpu
   const auto add = [&](const char* name, auto&& ofInput, auto&& ofNew) {
     vtkNew<vtkDoubleArray> array;
     array->SetName(name);
-    array->SetNumberOfTuples(output->GetNumberOfPoints());
+    SetTuples(output->GetNumberOfPoints(), array);
     auto* const earlier =
       vtkDoubleArray::SafeDownCast(input->GetPointData()->GetAbstractArray(name));
     const bool isThere = earlier && earlier->GetNumberOfComponents() == 1;
