@@ -4,6 +4,7 @@
 // Thins known grids to survey lines, fills the space between them, and compares with what was left
 // out: how often the truth is within the standard error and the interval. See README.md.
 #include "Arguments.h"
+#include "FillSurfaces.h"
 
 #include "Kernel/Fill/Fill.h"
 #include "Kernel/Fill/Walk.h"
@@ -15,7 +16,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <random>
 
 namespace
 {
@@ -83,20 +83,6 @@ bool ReadOptions(int argc, char* argv[], Options& options)
   table.Number("--seed", options.Seed, 0, 1000000000);
   return table.Read(argc, argv);
 }
-
-/** Numbers in [0, 1), the same with every library. */
-class Random
-{
-public:
-  explicit Random(std::uint64_t seed)
-    : Engine(seed)
-  {
-  }
-  double operator()() { return static_cast<double>(this->Engine() >> 11) * 0x1p-53; }
-
-private:
-  std::mt19937_64 Engine;
-};
 
 /** Elevations at nodes one apart; NaN where there is none. */
 struct Grid
