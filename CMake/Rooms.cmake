@@ -67,7 +67,7 @@ set(es_kernel_Trim
   RingCrossings
   MeshCutter
   CutAlongRings
-  RingPoints
+  InsertRingPoints
   InsertRings
   OutwardTriangles
   MeasuredTriangles
@@ -78,7 +78,7 @@ set(es_kernel_Trim
   Slivers
   SmallPieces
   SimpleRings
-  TraceSurface
+  TraceOutline
   MissingNodes
   Outline
   Trim)
@@ -119,7 +119,7 @@ set(es_kernel_headers_Cells
   Cells)
 set(es_kernel_headers_Trim)
 set(es_kernel_headers_Fill
-  Quantiles Trials Walk)
+  HeightTrials KnownPoints Quantiles Walk)
 
 # The rooms around the kernel.
 set(es_outer_rooms Adapt Parts)
@@ -142,6 +142,7 @@ set(es_Adapt
 set(es_headers_Adapt
   Adapt VTKClasses VTKVersions)
 set(es_Parts
+  BlocksOnRanks
   BoundaryZone
   CommonPoints
   ConstrainParts
@@ -155,9 +156,9 @@ set(es_Parts
   PackedData
   PartStore
   PointKeys
-  PointSource
+  PointDistributor
   PointTable
-  RankNotes
+  RankSignals
   Ranks
   ReconstructParts
   SettleParts
@@ -165,7 +166,6 @@ set(es_Parts
   SharedHoles
   SharedLatticeSearch
   SpoolFile
-  SpreadBlocks
   SurfacePart
   SurfaceParts
   TriangulateParts

@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Above which length triangles bridge what is missing, so that they are opened and filled."""
 
-import math
-
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
@@ -21,29 +19,6 @@ STEPS_ALONG = 2.0
 LEAST_STEPS_APART = 5.0
 TOLERANCE_PER_STEP = 1.5  # of the gap tolerance that vtkTrimOutwardTriangles chooses for lines
 MOST_SAMPLES = 1_000_000  # triangles: of more, about every k-th stands for k
-
-
-def lattice_of(ranks, surface):
-    """The lattice that was found, or None: a node, two steps, their lengths and their directions.
-
-    Directions are in degrees from x to y; with plane=best from the first axis of the plane, which is
-    level, to the second, upwards, and the node and the steps have x, y and z.
-    """
-
-    def local_lattice():
-        array = surface.GetFieldData().GetArray("Lattice")
-        return [] if array is None else [array.GetTuple(0)]
-
-    found = together(ranks, local_lattice)
-    if not found:
-        return None
-    origin, *steps = numpy.reshape(found[0], (3, 2)).tolist()
-    return {
-        "origin": origin,
-        "steps": steps,
-        "lengths": [math.hypot(*step) for step in steps],
-        "directions": [math.degrees(math.atan2(step[1], step[0])) for step in steps],
-    }
 
 
 def length_to_open(ranks, surface, result):

@@ -24,11 +24,10 @@ from .clouds import Cloud, corner_flags, faults_note, heights_of, make_points, s
 from .description import DESCRIBED
 from .draping import check_given_z
 from .given_lines import in_system
-from .several_heights import PieceHeights
 from .holes import BridgedVoids, hole_report
+from .lattice import lattice_of
 from .mending import mended
 from .messages import ElevationSurfaceError, FileError, Messages
-from .open_edge_length import lattice_of
 from .properties import option_of, set_properties
 from .ranks import agreed, by_first, collected, rank_and_count, together, total
 from .reading.formats import recognise
@@ -37,6 +36,7 @@ from .reading.unpacking import is_plain
 from .reconstruction import AS_GIVEN, least_reach
 from .report import MOST_LISTED, OUTSIDE, REASONS, facts_of, fault_report, trimming_report
 from .results import Failure, write_report
+from .several_heights import PieceHeights
 from .spreading import IN_NO_TRIANGLE
 from .steps import STEPS, boundary_of, in_our_names, concerns_constraints
 from .supervisor import note_partial_file, rank_and_size

@@ -9,9 +9,10 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
 from .clouds import bare_lines, cell_names, coordinates_of, joined, marked_points
+from .lattice import lattice_of
 from .messages import ElevationSurfaceError, Messages, counted
 from .names import PANEL, PYTHON, are_for, argument, option
-from .open_edge_length import LEAST_STEPS_APART, elongation, lattice_of, measured
+from .open_edge_length import LEAST_STEPS_APART, elongation, measured
 from .outline import (
     ON_BORDER,
     ON_OUTLINE,

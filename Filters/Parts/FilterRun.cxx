@@ -12,10 +12,10 @@
 #include "FilterRun.h"
 
 #include "Adapt/Adapt.h"
+#include "BlocksOnRanks.h"
 #include "Gathering.h"
 #include "PointKeys.h"
 #include "Ranks.h"
-#include "SpreadBlocks.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"

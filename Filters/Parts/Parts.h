@@ -8,11 +8,11 @@
  *
  *     the three filters                                  vtkReconstructPieces (files)
  *       FilterRun: the blocks of an input                  ReconstructParts: slices in, parts out
- *         SpreadBlocks, Gathering: to one rank
+ *         BlocksOnRanks, Gathering: to one rank
  *         Spread: or where they are
  *
  *     TriangulateParts          TrimParts                FillParts
- *       PointSource               TrimmedPart              FilledPart
+ *       PointDistributor               TrimmedPart              FilledPart
  *       SettleParts               BoundaryZone             SharedHoles, HoleNeighborhoods
  *       ConstrainParts                                     SharedBorder
  *       PartStore, SurfacePart
@@ -21,7 +21,7 @@
  *     SharedLatticeSearch: one lattice for all parts
  *     Joining, CommonPoints, PointKeys: which points of parts are one
  *     Engine: a program for parts;  SpoolFile: its boxes in files
- *     Ranks: what all ranks do together;  RankNotes: what one says to the others meanwhile
+ *     Ranks: what all ranks do together;  RankSignals: what one says to the others meanwhile
  *     PointTable, PackedData, Bytes: what is sent
  *
  * FilterRun and ReconstructParts decide where a surface is worked on; the programs for parts below

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /*
  * Everything rests on VTK's collective calls (AllReduce, AllGather), on a message from one rank to
- * another, and, with MPI alone, on the notes of RankNotes.h. From these:
+ * another, and, with MPI alone, on the signals of RankSignals.h. From these:
  *
  * - Sum(), Maximum(), Collect(): one wait, one or two collective calls.
  * - Agree(): a step, then a Collect() of what has gone wrong in it. The collection is the meeting
@@ -39,7 +39,7 @@ namespace elevation
 namespace
 {
 // Tags keep these messages apart from those of VTK's own filters on the same controller.
-// RankNotes.cxx has the next two numbers.
+// RankSignals.cxx has the next two numbers.
 constexpr int BytesTag = 20200; // of no other message
 
 bool AreEqual(vtkPoints* one, vtkPoints* other)
@@ -110,7 +110,7 @@ Ranks::Ranks(
   if (controller && controller->GetNumberOfProcesses() > 1)
   {
     this->Controller = controller;
-    this->Notes = std::make_unique<RankNotes>(controller);
+    this->Signals = std::make_unique<RankSignals>(controller);
   }
 }
 
@@ -130,14 +130,14 @@ int Ranks::Count() const
   return this->Controller ? this->Controller->GetNumberOfProcesses() : 1;
 }
 
-// With another controller than MPI's there are no notes, and VTK's calls do the waiting.
+// With another controller than MPI's there are no signals, and VTK's calls do the waiting.
 void Ranks::WaitForAll() const
 {
-  if (!this->Notes)
+  if (!this->Signals)
   {
     return;
   }
-  this->Notes->Meet(Patience, [this](const std::vector<int>& missing) {
+  this->Signals->Meet(Patience, [this](const std::vector<int>& missing) {
     std::string names;
     for (const int rank : missing)
     {
@@ -193,12 +193,12 @@ Bytes Ranks::CollectBytes(const Bytes& bytes) const
  * How a step ends on this rank, and what the rank brings to the meeting:
  *
  *     it is done                                    nothing
- *     it fails                                      its message, and a note to the others
- *     the user aborts it                            an empty message, and a note
- *     it is stopped by the note of another rank     nothing: the other one says why
+ *     it fails                                      its message, and a signal to the others
+ *     the user aborts it                            an empty message, and a signal
+ *     it is stopped by the signal of another rank   nothing: the other one says why
  *
  * All ranks then have the same list, in the order of ranks, and throw by it. Each rank takes in as
- * many notes as other ranks have failed: one left over would stop the next step.
+ * many signals as other ranks have failed: one left over would stop the next step.
  */
 void Ranks::Agree(const std::function<void()>& step) const
 {
@@ -231,10 +231,10 @@ void Ranks::Agree(const std::function<void()>& step) const
   if (own > 0)
   {
     // Before the meeting: others may be far from the end of their step.
-    this->Notes->SendFailure();
+    this->Signals->SendFailure();
   }
   failures = this->Collect(failures);
-  this->Notes->TakeFailures(static_cast<int>(failures.size()) - own);
+  this->Signals->TakeFailures(static_cast<int>(failures.size()) - own);
   if (std::any_of(failures.begin(), failures.end(), [](const Message& m) { return m.IsEmpty(); }))
   {
     throw Aborted();
@@ -253,7 +253,7 @@ Progress Ranks::Watched(const Progress& progress) const
   }
   // Once stopped, always stopped: a step that catches Aborted, and goes on, is stopped again.
   return [this, progress](double fraction) {
-    this->IsStopped = this->IsStopped || this->Notes->HasFailureCome();
+    this->IsStopped = this->IsStopped || this->Signals->HasFailureCome();
     return !this->IsStopped && (!progress || progress(fraction));
   };
 }

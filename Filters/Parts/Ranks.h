@@ -16,7 +16,7 @@
 #include "Bytes.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Messages/Messages.h"
-#include "RankNotes.h"
+#include "RankSignals.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
@@ -152,7 +152,7 @@ private:
 
   vtkMultiProcessController* Controller = nullptr; // nullptr: one rank
   std::function<void(const Message&)> Waiting;
-  std::unique_ptr<RankNotes> Notes;
+  std::unique_ptr<RankSignals> Signals;
   mutable bool IsStopped = false; // this step, as another rank has failed
   mutable Traffic OwnTraffic;
 };

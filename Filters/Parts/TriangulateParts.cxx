@@ -45,7 +45,7 @@ Buffer<Index> WithinLimit(double length, const SurfacePart& part, const Progress
 TriangulateParts::TriangulateParts(const Ranks& ranks, const std::string& folder)
   : AllRanks(ranks)
   , Folder(folder)
-  , Source(ranks, folder)
+  , Distributor(ranks, folder)
 {
 }
 
@@ -54,7 +54,7 @@ TriangulateParts::~TriangulateParts() = default;
 // Points stay with their source until the plane is cut.
 void TriangulateParts::Add(vtkPointSet* points, const Progress& progress)
 {
-  this->Source.Add(points, progress);
+  this->Distributor.Add(points, progress);
 }
 
 void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
@@ -65,9 +65,10 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
   this->Crew = std::make_unique<Engine>(this->AllRanks, ownParts, BoxNames(), this->Folder);
   this->Store = std::make_unique<PartStore>(*this->Crew);
   std::vector<vtkIdType> counts;
-  this->Plane = std::make_unique<Cuts>(this->Source.Distribute(
+  this->Plane = std::make_unique<Cuts>(this->Distributor.Distribute(
     *this->Crew, OwnPoints, this->Fraction(0.0, 0.1), this->Store->Part, counts));
-  this->Store->Number(std::move(counts), this->Source.AreIdsGiven(), this->Fraction(0.1, 0.15));
+  this->Store->Number(
+    std::move(counts), this->Distributor.AreIdsGiven(), this->Fraction(0.1, 0.15));
   // Before anything is triangulated: a part with too many points is an error that more parts would
   // cure.
   this->Store->CheckCounts();

@@ -4,7 +4,7 @@
  * @file
  * The triangulation of points in parts, which is that of all points at once. Private to the module.
  *
- * In: the points of all ranks, at once or in slices (PointSource.h), and lines that become edges.
+ * In: the points of all ranks, at once or in slices (PointDistributor.h), and lines that become edges.
  * Out: the part of the surface in each cell of the plane, with the corners that its triangles have
  * in other parts.
  *
@@ -41,7 +41,7 @@
 #include "Kernel/Cells/Cells.h"
 #include "Kernel/Messages/Messages.h"
 #include "PartStore.h"
-#include "PointSource.h"
+#include "PointDistributor.h"
 #include "SurfacePart.h"
 
 #include <cstddef>
@@ -66,8 +66,8 @@ public:
   explicit TriangulateParts(const Ranks& ranks, const std::string& folder = std::string());
   ~TriangulateParts();
 
-  void UseDoublePoints() { this->Source.UseDoublePoints(); }
-  /** As PointSource::Add(). */
+  void UseDoublePoints() { this->Distributor.UseDoublePoints(); }
+  /** As PointDistributor::Add(). */
   void Add(vtkPointSet* points, const Progress& progress);
 
   /**
@@ -83,8 +83,8 @@ public:
 
   Engine& Holders() const { return *this->Crew; } ///< of the parts, after it
   int PartCount() const { return this->Crew ? this->Crew->PartCount() : 0; } ///< 0: before it
-  int FirstOwn() const { return this->Crew->FirstOwn(); }          ///< part of this rank
-  vtkIdType PointCount() const { return this->Source.Count(); }    ///< that this rank has added
+  int FirstOwn() const { return this->Crew->FirstOwn(); }                    ///< part of this rank
+  vtkIdType PointCount() const { return this->Distributor.Count(); } ///< that this rank has added
 
   /** Of all parts, on all ranks after Triangulate(). Each point and triangle counts once. */
   struct Totals
@@ -139,7 +139,7 @@ private:
 
   const Ranks& AllRanks;
   const std::string Folder;
-  PointSource Source;
+  PointDistributor Distributor;
   DelaunayOptions Options;
   std::unique_ptr<Engine> Crew;
   std::unique_ptr<PartStore> Store;

@@ -6,7 +6,7 @@ import dataclasses
 import re
 import unicodedata
 
-from .known import (
+from .table_words import (
     AXIS_NAMES, HORIZONS, LETTERS, LETTERS_OF_AXES, NEXT_TO_AXES, ROLES, UNITS, UNITS_OF_TIME
 )
 

@@ -14,7 +14,7 @@ import re
 import numpy
 
 from .column_names import Meaning, in_brackets, meaning, plain
-from .known import (
+from .table_words import (
     CLEAR, CLEAR_OF_POOR, COLOURS, FINNISH, GOOD, HIGHEST, LINES_AS_AXES, MOST_STEP_OF_LINES, PARTS_OF_TIME, SEISMIC,
     TIMES, WEIGHTS
 )

@@ -9,7 +9,7 @@ import math
 import re
 
 from .column_names import known_names, meaning, plain, length_unit
-from .known import (
+from .table_words import (
     BLANK_IN_NUMBER, BLANKS_IN_THOUSANDS, COMMAS_TWICE, COMMENT_MARKS, DATE, ESRI_GRID, GROUPED, MISSING, NEXT_TO_AXES,
     NO_NUMBERS, NO_TABLES, NUMBERED_NAME, PAIRS, SEPARATORS, SEXAGESIMAL, SURFER_GRID, THOUSANDS, TOUCHING, WITH_DECIMALS
 )

@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_FLOAT
 
 from ..clouds import coordinates_of, keep_points, slices
-from .known import NULL_ROWS, NULLS
+from .table_words import NULL_ROWS, NULLS
 from ..messages import FileError, Reason, counted, counted_reason
 from ..names import option
 from ..progress import items_with_progress, no_progress, share

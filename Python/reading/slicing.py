@@ -22,7 +22,7 @@ from ..ranks import agreed, rank_and_count, together, total
 from ..selecting import NothingChosen, Selection, as_option, none_chosen
 from . import NAMES_IN_COLUMNS, check_use
 from .formats import FORMATS, recognise
-from .known import NULLS
+from .table_words import NULLS
 from .nulls import ALL_WITHOUT_DATA, nulls_in
 from .unpacking import STANDARD_INPUT, is_plain, named, unpacked
 from .upwards import notes_on_range

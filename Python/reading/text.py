@@ -15,7 +15,7 @@ import numpy
 
 from ..clouds import WHOLE, Cloud, ReadOptions, add_array, make_points
 from .columns import Choice, advice_on_columns
-from .known import COMMENT_MARKS, SUMMARY
+from .table_words import COMMENT_MARKS, SUMMARY
 from .layouts import (
     are_touching,
     check_marks,

@@ -147,7 +147,7 @@ private:
   /** A time that lines were left out. */
   struct Trial
   {
-    Known Rest;
+    KnownPoints Rest;
     std::vector<int> Colors;   ///< of the tracks of the rest
     std::vector<Index> Probes; ///< numbers of the points that are predicted
     std::vector<Spot> Spots;
@@ -248,9 +248,9 @@ private:
   }
 
   /** Triangulates known points, and prepares the spline. */
-  Known Connect(std::vector<Index> numbers, const Progress& progress) const
+  KnownPoints Connect(std::vector<Index> numbers, const Progress& progress) const
   {
-    Known result;
+    KnownPoints result;
     result.Numbers = std::move(numbers);
     result.VertexOf.assign(this->Count, None);
     std::vector<double> xyz;
@@ -289,7 +289,7 @@ private:
   }
 
   /** Farthest points first; of points that are left, the same part as of all. */
-  void ChooseCenters(Known& known, const Progress& progress) const
+  void ChooseCenters(KnownPoints& known, const Progress& progress) const
   {
     const std::size_t count = known.Numbers.size();
     const double part = static_cast<double>(count) / static_cast<double>(this->Count);
@@ -323,7 +323,7 @@ private:
   }
 
   /** Finds places that are near to each other, or follow lines, among the triangles. */
-  static std::vector<Spot> Locate(const Known& known, const std::vector<Point2>& places)
+  static std::vector<Spot> Locate(const KnownPoints& known, const std::vector<Point2>& places)
   {
     const Box everywhere{ { -DBL_MAX, -DBL_MAX }, { DBL_MAX, DBL_MAX } };
     Walk walk(known.Triangles, 0, everywhere);
@@ -365,7 +365,7 @@ private:
   }
 
   /** What the spline bends from the triangles, at spots whose triangles are those of known. */
-  std::vector<double> Bending(const Known& known, const std::vector<Spot>& spots,
+  std::vector<double> Bending(const KnownPoints& known, const std::vector<Spot>& spots,
     const std::vector<double>& values, const Progress& progress) const
   {
     std::vector<double> result(spots.size(), 0.0);
@@ -431,7 +431,7 @@ private:
    * Leaves out the lines of each colour.
    * @param[in] mostColors  only those of so many points
    */
-  std::vector<Trial> LeaveOut(const Known& from, const std::vector<int>& colors,
+  std::vector<Trial> LeaveOut(const KnownPoints& from, const std::vector<int>& colors,
     const Progress& progress, int mostColors = 4) const
   {
     std::vector<std::pair<double, int>> order; // (negative number of points, colour)
@@ -463,8 +463,8 @@ private:
     return trials;
   }
 
-  bool Try(const Known& from, const std::vector<int>& colors, int color, const Progress& progress,
-    Trial& trial) const
+  bool Try(const KnownPoints& from, const std::vector<int>& colors, int color,
+    const Progress& progress, Trial& trial) const
   {
     // A point where lines cross is left out if all of them are.
     std::vector<int> left(this->Count, 0);
@@ -567,7 +567,7 @@ private:
   double Scale = 1.0;
   std::vector<double> Elevations; ///< of known points
   bool IsFound = false;
-  Known All;
+  KnownPoints All;
   Tracks Lines;
   std::vector<Spot> Spots; ///< new vertices among the triangles of all known points
   double Gap = 0.0;        ///< the median gap of these

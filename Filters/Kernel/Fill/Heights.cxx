@@ -5,17 +5,17 @@
 //
 //   Heights()         CollectRing, CollectSlopes    the known points around the hole
 //                     MakeCandidates                ChooseCenters, without strays; MakeSpline
-//                     Choose                        TryBeside: Trials.h; shares, errors by distance
+//                     Choose                        TryBeside: HeightTrials.h; shares, errors by distance
 //   Apply()           SplineSum, then the membrane of what they miss, then Bound
 //   StandardErrors()  from the errors by distance
 //
 // The first three are done once for a hole, Apply() for its elevations and for each attribute.
 #include "Heights.h"
 
+#include "HeightTrials.h"
 #include "Kernel/Base/Base.h"
 #include "Quantiles.h"
 #include "Spline.h"
-#include "Trials.h"
 
 #include <algorithm>
 #include <cmath>
@@ -345,7 +345,7 @@ void Heights::ChooseCenters(
   // Half of them on the boundary, where patch and surface meet; then wherever points are farthest.
   choose(boundary, most / 2);
   choose(count, most);
-  // By place: the boundary's come first, in the order of its vertices, as Trials.h expects.
+  // By place: the boundary's come first, in the order of its vertices, as HeightTrials.h expects.
   std::sort(this->Centers.begin(), this->Centers.end());
   this->AllBoundaryIsCenter = this->Centers.size() >= boundary &&
     this->Centers[boundary - 1] == static_cast<Index>(boundary) - 1;

@@ -99,7 +99,7 @@ LineRoughness::Stretch LineRoughness::StretchAt(
   return stretch;
 }
 
-bool LineRoughness::IsThere(const Known& known, Index track) const
+bool LineRoughness::IsThere(const KnownPoints& known, Index track) const
 {
   // All vertices but those where it crosses others are there, or none.
   const Index* const begin = this->Lines.Begin(track);
@@ -108,7 +108,7 @@ bool LineRoughness::IsThere(const Known& known, Index track) const
 }
 
 /** Of each known point the roughness along its line, over stretches of a length; or NaN. */
-std::vector<double> LineRoughness::Along(const Known& known, double length) const
+std::vector<double> LineRoughness::Along(const KnownPoints& known, double length) const
 {
   std::vector<double> roughness(this->Count, NotANumber);
   for (Index t = 0; t < this->Lines.Count(); ++t)
@@ -136,7 +136,7 @@ double LineRoughness::MeanOf(const std::vector<double>& values)
 }
 
 LineRoughness::Means LineRoughness::MeansOf(
-  const Known& known, const std::vector<double>& values, double gap) const
+  const KnownPoints& known, const std::vector<double>& values, double gap) const
 {
   Means means{ this->MeansInCells(known, values, WideInGaps * gap), {} };
   means.Wide = means.Near;
@@ -181,7 +181,7 @@ LineRoughness::Means LineRoughness::MeansOf(
 
 /** Over the cell of each point and the eight around it, and one value of the mean of all. */
 std::vector<double> LineRoughness::MeansInCells(
-  const Known& known, const std::vector<double>& values, double side) const
+  const KnownPoints& known, const std::vector<double>& values, double side) const
 {
   const Box box = this->Patch.BoundaryBox();
   const double most = std::sqrt(static_cast<double>(this->Count)) + 1.0;
@@ -234,7 +234,7 @@ std::vector<double> LineRoughness::MeansInCells(
  * What of the roughness is noise: what is left of it as stretches become short. It is there near
  * lines, too.
  */
-double LineRoughness::NoiseAlong(const Known& known) const
+double LineRoughness::NoiseAlong(const KnownPoints& known) const
 {
   std::vector<double> steps;
   for (Index t = 0; t < this->Lines.Count(); ++t)
@@ -266,7 +266,7 @@ double LineRoughness::NoiseAlong(const Known& known) const
  * How errors grow with the distance from the nearest end of a stretch of a length: the power of
  * u (2 - u).
  */
-double LineRoughness::ShapePower(const Known& known, double length, double noise) const
+double LineRoughness::ShapePower(const KnownPoints& known, double length, double noise) const
 {
   double products = 0.0, squares = 0.0, ofMiddle = 0.0;
   for (const double part : { 0.5, 0.25, 0.125 })
@@ -310,8 +310,8 @@ double LineRoughness::ShapePower(const Known& known, double length, double noise
 }
 
 /** The scales of spots, for a median gap. See above. */
-std::vector<double> LineRoughness::ScalesAt(const std::vector<Spot>& spots, const Known& known,
-  double gap, const std::vector<double>& missed, double noise) const
+std::vector<double> LineRoughness::ScalesAt(const std::vector<Spot>& spots,
+  const KnownPoints& known, double gap, const std::vector<double>& missed, double noise) const
 {
   const std::vector<double> rough = this->Along(known, gap);
   const double all = MeanOf(rough);

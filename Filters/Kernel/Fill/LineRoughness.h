@@ -13,49 +13,15 @@
 #ifndef elevation_Fill_LineRoughness_h
 #define elevation_Fill_LineRoughness_h
 
-#include "Kernel/Base/Base.h"
-#include "Kernel/Mesh/Mesh.h"
+#include "KnownPoints.h"
 #include "Patch.h"
-#include "Spline.h"
 #include "Tracks.h"
 
 #include <limits>
-#include <memory>
 #include <vector>
 
 namespace elevation
 {
-
-/** A place among triangles. */
-struct Spot
-{
-  bool IsInside = false;
-  Index Corners[3] = { 0, 0, 0 }; ///< numbers of known points
-  double Shares[3] = { 0.0, 0.0, 0.0 };
-  double Distance = 0.0; ///< from the nearest corner
-  double Gap = 0.0;      ///< width of the gap: the height of the triangle over its shortest edge
-};
-
-/** What linear interpolation makes of values at known points. */
-inline double Linear(const Spot& spot, const std::vector<double>& values)
-{
-  double sum = 0.0;
-  for (int k = 0; k < 3; ++k)
-  {
-    sum += spot.Shares[k] * values[spot.Corners[k]];
-  }
-  return sum;
-}
-
-/** Some of the known points, with their triangles and a spline. */
-struct Known
-{
-  std::vector<Index> Numbers; ///< increasing
-  Mesh Triangles;
-  std::vector<Index> VertexOf;   ///< of all known points the vertex here, or None
-  std::vector<Index> Centers;    ///< numbers
-  std::unique_ptr<Spline> Plate; ///< null where the points determine none
-};
 
 class LineRoughness
 {
@@ -70,17 +36,17 @@ public:
   }
 
   /** Of each known point the roughness along its line, over stretches of a length; or NaN. */
-  std::vector<double> Along(const Known& known, double length) const;
+  std::vector<double> Along(const KnownPoints& known, double length) const;
 
   /** What of the roughness is noise, which is there near lines, too. */
-  double NoiseAlong(const Known& known) const;
+  double NoiseAlong(const KnownPoints& known) const;
 
   /**
    * The scales of spots, for a median gap.
    * @param[in] missed  errors at known points where lines were left out, or NaN
    * @param[in] noise   of all lines, by NoiseAlong()
    */
-  std::vector<double> ScalesAt(const std::vector<Spot>& spots, const Known& known, double gap,
+  std::vector<double> ScalesAt(const std::vector<Spot>& spots, const KnownPoints& known, double gap,
     const std::vector<double>& missed, double noise) const;
 
 private:
@@ -98,12 +64,12 @@ private:
     std::vector<double> Wide;
   };
   Stretch StretchAt(Index track, Index place, double before, double behind) const;
-  bool IsThere(const Known& known, Index track) const;
+  bool IsThere(const KnownPoints& known, Index track) const;
   static double MeanOf(const std::vector<double>& values);
-  Means MeansOf(const Known& known, const std::vector<double>& values, double gap) const;
+  Means MeansOf(const KnownPoints& known, const std::vector<double>& values, double gap) const;
   std::vector<double> MeansInCells(
-    const Known& known, const std::vector<double>& values, double side) const;
-  double ShapePower(const Known& known, double length, double noise) const;
+    const KnownPoints& known, const std::vector<double>& values, double side) const;
+  double ShapePower(const KnownPoints& known, double length, double noise) const;
 
   const PatchMesh& Patch;
   const Tracks& Lines;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// InsertRings.h lists the passes: CheckCrossings() is pass 1, InsertPoints() 2 and 3, CutAtBorder()
+// InsertRings.h lists the passes: CheckCrossings() is pass 1, InsertRingPoints() 2 and 3, CutAtBorder()
 // 4; FollowSurface() threads what pass 5 inserts into the rings.
 //
 // During the work a ring is a list of pieces. A piece is the part of one edge of the given rings
@@ -14,9 +14,9 @@
 #include "InsertRings.h"
 
 #include "CutAlongRings.h"
+#include "InsertRingPoints.h"
 #include "Kernel/Base/Base.h"
 #include "RingCrossings.h"
-#include "RingPoints.h"
 #include "Rings.h"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ public:
     {
       CheckCrossings(this->Points, this->Drawn, progress.Between(0.0, 0.1));
     }
-    this->VertexAt = InsertPoints(this->Surface, this->Points, this->Drawn, this->MayInsert,
+    this->VertexAt = InsertRingPoints(this->Surface, this->Points, this->Drawn, this->MayInsert,
       this->Follow != Following::None, this->Cutter, progress.Between(0.1, 0.8));
     // Every point of the rings is now a vertex, or known to be outside.
     this->StartRings();

@@ -45,7 +45,7 @@
 #include "Openings.h"
 #include "PartialMesh.h"
 #include "Scales.h"
-#include "TraceSurface.h"
+#include "TraceOutline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -185,7 +185,7 @@ public:
     // With a grid, pieces that missing nodes separate stay, however small.
     const SurfaceOptions tracing{ [this](Index t) { return this->ToleranceOf(t); },
       !this->Grid.Steps.IsSet() };
-    if (!TraceSurface(this->Measured, this->Border, this->CornersNear(doubtful), tracing,
+    if (!TraceOutline(this->Measured, this->Border, this->CornersNear(doubtful), tracing,
           progress.Between(decided, 0.97), this->Result.IsSurface, this->Result.Vertices) ||
       !this->MeasureLoss(neighbors, progress.Between(0.97, 1.0)))
     {
@@ -228,14 +228,14 @@ public:
     // asked is only which ones are.
     const auto nothing = [](Index) { return 0.0; };
     DropSmallGroups(list, border, doubtful, nothing, isInside, progress.Between(0.6, 0.65));
-    std::vector<Known> states(list.Count, Known::Surface);
+    std::vector<TriangleState> states(list.Count, TriangleState::Surface);
     for (const Index t : doubtful)
     {
-      states[t] = !isInside[t]        ? Known::Nothing
-        : this->IsSurfaceBySpacing(t) ? Known::SurfaceBySpacing
-                                      : Known::Doubtful;
+      states[t] = !isInside[t]        ? TriangleState::Nothing
+        : this->IsSurfaceBySpacing(t) ? TriangleState::SurfaceBySpacing
+                                      : TriangleState::Doubtful;
       // What is at the border is taken in any case.
-      if (states[t] > Known::SurfaceBySpacing && !border.HasAny(list.CornersOf(t)))
+      if (states[t] > TriangleState::SurfaceBySpacing && !border.HasAny(list.CornersOf(t)))
       {
         near.AddAll(list.CornersOf(t));
       }
@@ -298,8 +298,8 @@ private:
   }
 
   /** What is around the border and some vertices, for FindPart(). */
-  OutlinePart PartNear(
-    const IdSet& vertices, int margin, const std::vector<Known>& states, const Progress& progress)
+  OutlinePart PartNear(const IdSet& vertices, int margin, const std::vector<TriangleState>& states,
+    const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
     constexpr int around = 3;
@@ -361,7 +361,7 @@ private:
     // whole mesh, too.
     for (Index t = 0; t < list.Count; ++t)
     {
-      if (this->States[t] == Known::SurfaceBySpacing)
+      if (this->States[t] == TriangleState::SurfaceBySpacing)
       {
         near.AddAll(list.CornersOf(t));
       }
@@ -453,7 +453,7 @@ private:
         Prefetch(&shortSpacings[ahead[2]]);
         const double length = limit * SpacingOf(shortSpacings, list.CornersOf(t));
         keep[t] = longest[t] <= length * length ||
-          (this->States && this->States[t] <= Known::SurfaceBySpacing);
+          (this->States && this->States[t] <= TriangleState::SurfaceBySpacing);
       }
     };
     constexpr Index atOnce = 1 << 13;
@@ -472,7 +472,7 @@ private:
       {
         if (!keep[t])
         {
-          const bool isKnown = this->States && this->States[t] == Known::Doubtful;
+          const bool isKnown = this->States && this->States[t] == TriangleState::Doubtful;
           (isKnown ? doubtful : inGroups).push_back(t);
         }
       }
@@ -589,11 +589,11 @@ private:
   const double Tolerance; ///< at scale 1
   const GridSteps Grid;
   MeshBorder Border;
-  const Known* States = nullptr;   ///< one per triangle, if they are a part of a mesh
-  std::int64_t NumberOfPoints = 0; ///< of that mesh
-  IdSet Ends{ 0 };                 ///< vertices that have more triangles in it
-  Buffer<double> Spacings;         ///< one per vertex, set where it was needed
-  std::vector<float> Scales;       ///< one per vertex, or none
+  const TriangleState* States = nullptr; ///< one per triangle, if they are a part of a mesh
+  std::int64_t NumberOfPoints = 0;       ///< of that mesh
+  IdSet Ends{ 0 };                       ///< vertices that have more triangles in it
+  Buffer<double> Spacings;               ///< one per vertex, set where it was needed
+  std::vector<float> Scales;             ///< one per vertex, or none
   ExtractedBoundary Result;
 };
 

@@ -53,7 +53,7 @@ struct ExtractedBoundary
 };
 
 /** What is known of a triangle of a part of a mesh. */
-enum class Known : char
+enum class TriangleState : char
 {
   Surface,          ///< by the cheaper test
   SurfaceBySpacing, ///< as the cheaper test has left it in doubt
@@ -65,7 +65,7 @@ enum class Known : char
 struct OutlinePart
 {
   std::vector<Index> Triangles;         ///< increasing; all others are surface
-  std::vector<Known> States;            ///< one per triangle
+  std::vector<TriangleState> States;    ///< one per triangle
   std::vector<double> Spacings;         ///< one per point of the part; NaN: not known
   std::vector<BorderEdge> Border;       ///< of the part
   std::int64_t NumberOfInnerPoints = 0; ///< corners that are not at the border of the part
@@ -74,11 +74,11 @@ struct OutlinePart
 /** What FindSharedOutline() needs to know of the mesh. */
 struct OutlineMesh
 {
-  const std::vector<Known>& States;    ///< one per triangle of the list
-  const std::vector<double>& Spacings; ///< one per point of the list; NaN: not known
-  std::vector<BorderEdge> Border;      ///< of the mesh
-  std::int64_t NumberOfPoints;         ///< corners of all triangles of the mesh
-  std::int64_t NumberOfTriangles;      ///< of the mesh
+  const std::vector<TriangleState>& States; ///< one per triangle of the list
+  const std::vector<double>& Spacings;      ///< one per point of the list; NaN: not known
+  std::vector<BorderEdge> Border;           ///< of the mesh
+  std::int64_t NumberOfPoints;              ///< corners of all triangles of the mesh
+  std::int64_t NumberOfTriangles;           ///< of the mesh
 };
 
 /**

@@ -234,11 +234,11 @@ TEST(OutlineOfParts, DecidesBySpacingOnlyTrianglesWhoseSpacingsAreAllKnown)
       const Index* const corners = half.List().CornersOf(part.Triangles[i]);
       const bool areKnown =
         std::none_of(corners, corners + 3, [&](Index v) { return std::isnan(part.Spacings[v]); });
-      const bool isDecided = part.States[i] == Known::SurfaceBySpacing;
+      const bool isDecided = part.States[i] == TriangleState::SurfaceBySpacing;
       EXPECT_TRUE(areKnown || !isDecided)
         << "round " << round << ", triangle " << part.Triangles[i];
       decided += isDecided;
-      open += part.States[i] == Known::Doubtful && !areKnown;
+      open += part.States[i] == TriangleState::Doubtful && !areKnown;
     }
   }
   EXPECT_GT(decided, 100);

@@ -7,8 +7,8 @@
  * A block is known on all ranks by its path in the composite (Place::Path). Ranks may have
  * different trees; those that lack a block just have no place for it.
  */
-#ifndef SpreadBlocks_h
-#define SpreadBlocks_h
+#ifndef BlocksOnRanks_h
+#define BlocksOnRanks_h
 
 #include "Gathering.h"
 #include "Kernel/Messages/Messages.h"

@@ -11,7 +11,7 @@
  * of the place decides, and the sample is thinned whenever it is too large; it is the same however
  * the slices are cut.
  */
-#include "PointSource.h"
+#include "PointDistributor.h"
 
 #include "Adapt/Adapt.h"
 #include "PointKeys.h"
@@ -94,7 +94,7 @@ bool TakeIdKind(std::vector<ArrayKind>& kinds, std::string& name)
 }
 } // namespace
 
-PointSource::PointSource(const Ranks& ranks, const std::string& folder)
+PointDistributor::PointDistributor(const Ranks& ranks, const std::string& folder)
   : AllRanks(ranks)
 {
   if (folder.empty())
@@ -114,13 +114,13 @@ PointSource::PointSource(const Ranks& ranks, const std::string& folder)
   this->Folder = folder;
 }
 
-PointSource::~PointSource() = default;
+PointDistributor::~PointDistributor() = default;
 
 /**
  * The arrays of a slice; the others need the same. This rank alone decides, as others may have
  * added none yet.
  */
-void PointSource::TakeKinds(vtkPointSet* points)
+void PointDistributor::TakeKinds(vtkPointSet* points)
 {
   CheckPointArrays(points);
   std::set<std::string> leftOut;
@@ -145,7 +145,7 @@ void PointSource::TakeKinds(vtkPointSet* points)
 }
 
 // A slice is written in stretches, which go one at a time in the last pass.
-void PointSource::Add(vtkPointSet* points, const Progress& progress)
+void PointDistributor::Add(vtkPointSet* points, const Progress& progress)
 {
   if (!points || points->GetNumberOfPoints() == 0)
   {
@@ -198,7 +198,7 @@ void PointSource::Add(vtkPointSet* points, const Progress& progress)
  * as the mask gets another bit: what remains is what the longer mask would have chosen from the
  * start.
  */
-void PointSource::SampleStretch(const std::vector<vtkIdType>& places)
+void PointDistributor::SampleStretch(const std::vector<vtkIdType>& places)
 {
   for (const vtkIdType at : places)
   {
@@ -216,7 +216,7 @@ void PointSource::SampleStretch(const std::vector<vtkIdType>& places)
 }
 
 /** Keeps what the mask admits; the order stays. */
-void PointSource::KeepSample()
+void PointDistributor::KeepSample()
 {
   const auto out =
     std::remove_if(this->Sample.begin(), this->Sample.end(), [this](const SampledPoint& point) {
@@ -229,7 +229,7 @@ void PointSource::KeepSample()
  * All ranks agree on the arrays, whether coordinates are float, and the number of each rank's first
  * point. Errors in the arrays name the rank.
  */
-void PointSource::NumberPoints(SurfacePart& common)
+void PointDistributor::NumberPoints(SurfacePart& common)
 {
   this->AllRanks.Agree([&]() {
     try
@@ -278,7 +278,7 @@ void PointSource::NumberPoints(SurfacePart& common)
  * Rows of points, with the ids given, if any. Points of other ranks have rows, as places are those of
  * the input, but go nowhere: their owner sends them.
  */
-void PointSource::Read(vtkPointSet* points, const std::string& idsName, vtkIdType first)
+void PointDistributor::Read(vtkPointSet* points, const std::string& idsName, vtkIdType first)
 {
   this->Rows.Read(points, first);
   vtkDataArray* const ids =
@@ -293,7 +293,7 @@ void PointSource::Read(vtkPointSet* points, const std::string& idsName, vtkIdTyp
  * A sample of points that come at once: one of each stretch of some, at a place that follows no
  * rule, as rows of a grid may be as long as a stretch.
  */
-std::vector<double> PointSource::SampleAtOnce(vtkIdType parts) const
+std::vector<double> PointDistributor::SampleAtOnce(vtkIdType parts) const
 {
   const vtkIdType count = static_cast<vtkIdType>(this->Rows.Count());
   std::vector<vtkIdType> all = { count };
@@ -316,7 +316,7 @@ std::vector<double> PointSource::SampleAtOnce(vtkIdType parts) const
 }
 
 /** Cuts the plane by the samples of all ranks, on each of them alike. */
-Cuts PointSource::CutPlane(int parts)
+Cuts PointDistributor::CutPlane(int parts)
 {
   std::vector<double> coordinates;
   if (this->IsInFile())
@@ -355,8 +355,8 @@ Cuts PointSource::CutPlane(int parts)
  * Sends own points, in their order; then there are none. Memory is given back as rows are packed,
  * part by part.
  */
-void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Progress& progress,
-  std::vector<vtkIdType>& counts)
+void PointDistributor::SendSlice(const Cuts& plane, Engine& engine, int box,
+  const Progress& progress, std::vector<vtkIdType>& counts)
 {
   // First the parts alone, so that the places of each take no more memory than they need.
   const int firstOwn = engine.FirstOwn();
@@ -408,8 +408,8 @@ void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Pr
  * Slice by slice, all ranks send and deliver together until none has a slice left. So no more than
  * a slice of each rank is in memory. Points that come at once are one slice.
  */
-Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, SurfacePart& common,
-  std::vector<vtkIdType>& counts)
+Cuts PointDistributor::Distribute(Engine& engine, int box, const Progress& progress,
+  SurfacePart& common, std::vector<vtkIdType>& counts)
 {
   this->NumberPoints(common);
   Cuts plane = this->CutPlane(engine.PartCount());

@@ -20,8 +20,8 @@
  * Cost: linear. 32 bytes a point, and the values of its arrays, are sent once, and written twice
  * where points come in slices.
  */
-#ifndef PointSource_h
-#define PointSource_h
+#ifndef PointDistributor_h
+#define PointDistributor_h
 
 #include "Adapt/Adapt.h"
 #include "Engine.h"
@@ -43,13 +43,13 @@ namespace elevation
  * One use: Add() as often as there are slices, each on its own rank alone; then Distribute() once,
  * on all ranks together.
  */
-class PointSource
+class PointDistributor
 {
 public:
   /** @param[in] folder  an empty one, for files; or no name: Add() is called at most once, with points
       that stay until Distribute() */
-  PointSource(const Ranks& ranks, const std::string& folder);
-  ~PointSource();
+  PointDistributor(const Ranks& ranks, const std::string& folder);
+  ~PointDistributor();
 
   /** Whatever the type of the points is. */
   void UseDoublePoints() { this->PointType = VTK_DOUBLE; }
@@ -101,16 +101,16 @@ private:
     std::vector<vtkIdType>& counts);
 
   const Ranks& AllRanks;
-  vtkIdType OwnCount = 0, First = 0;   // the number of the first
-  int PointType = VTK_FLOAT;           // where all are float
-  bool AreGiven = false;               // their global ids
+  vtkIdType OwnCount = 0, First = 0; // the number of the first
+  int PointType = VTK_FLOAT;         // where all are float
+  bool AreGiven = false;             // their global ids
   // Points that come at once:
   vtkPointSet* Input = nullptr; // nullptr: no points
   // Those that come in slices:
   std::string Folder;           // empty: they come at once
   std::vector<Inbox> Stretches; // each in a file of its own
   vtkIdType InLastStretch = 0;  // points
-  vtkNew<vtkPointData> Arrays; // those of the slices, without values
+  vtkNew<vtkPointData> Arrays;  // those of the slices, without values
   std::vector<ArrayKind> Kinds;
   std::vector<SampledPoint> Sample;
   std::uint64_t SampleMask = 0;

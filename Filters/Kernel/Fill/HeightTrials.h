@@ -8,8 +8,8 @@
  * the logarithms of the methods' shares, and errors by distance from the boundary. Heights.h states
  * the rules. Only Heights.cxx includes this file.
  */
-#ifndef elevation_Fill_Trials_h
-#define elevation_Fill_Trials_h
+#ifndef elevation_Fill_HeightTrials_h
+#define elevation_Fill_HeightTrials_h
 
 #include "Heights.h"
 #include "Spline.h"
@@ -290,8 +290,8 @@ private:
     }
     return std::min(counts[0], counts[1]) < LeastPlacesForGrowth
       ? UsualGrowth
-      : std::min(MostGrowth,
-          std::max(LeastGrowth, std::exp(sums[1] / counts[1] - sums[0] / counts[0])));
+      : std::min(
+          MostGrowth, std::max(LeastGrowth, std::exp(sums[1] / counts[1] - sums[0] / counts[0])));
   }
 
   /** The value that a share of all values does not exceed. */
@@ -483,11 +483,11 @@ private:
   std::size_t FirstProbe = 0; ///< probes come last
   std::vector<Point2> Points;
   std::vector<Point2> Normalized;
-  std::vector<std::size_t> Order;   ///< around the hole, of those that are not probes
-  std::vector<Index> CenterPlace;   ///< index in Points of each centre
-  std::vector<Index> Probes;        ///< numbers of new vertices
-  std::vector<double> Moved;        ///< values where the points are moved to
-  std::vector<double> Misses[3];    ///< errors of each method at all probes, place by place
+  std::vector<std::size_t> Order; ///< around the hole, of those that are not probes
+  std::vector<Index> CenterPlace; ///< index in Points of each centre
+  std::vector<Index> Probes;      ///< numbers of new vertices
+  std::vector<double> Moved;      ///< values where the points are moved to
+  std::vector<double> Misses[3];  ///< errors of each method at all probes, place by place
   std::vector<Place> Places;
 };
 

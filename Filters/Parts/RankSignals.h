@@ -2,22 +2,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Notes of a rank to all others: that it has failed in a long step, so that they need not finish
+ * Signals of a rank to all others: that it has failed in a long step, so that they need not finish
  * theirs; and that it has come to where all meet, so that they know whom they wait for. Private to
  * the module.
  *
- * A note is one number, sent to every other rank without waiting for it. This needs MPI: with any
- * other controller, or where VTK has been built without the module VTK::ParallelMPI, no note is
+ * A signal is one number, sent to every other rank without waiting for it. This needs MPI: with any
+ * other controller, or where VTK has been built without the module VTK::ParallelMPI, no signal is
  * sent; the others learn of a failure at the end of their step, and wait without a word.
  *
  *     rank 0   |--- step ------------X  failed
- *                                    | note
- *     rank 1   |--- step ------------v-|  its next report finds the note, and the step ends
+ *                                    | signal
+ *     rank 1   |--- step ------------v-|  its next report finds the signal, and the step ends
  *
- *     both then meet in Ranks::Agree(), count the failures, and take that many notes in
+ *     both then meet in Ranks::Agree(), count the failures, and take that many signals in
  */
-#ifndef RankNotes_h
-#define RankNotes_h
+#ifndef RankSignals_h
+#define RankSignals_h
 
 #include "Adapt/Adapt.h"
 
@@ -30,11 +30,11 @@ namespace elevation
 {
 
 /** One for the life of a Ranks. All ranks have one, or none has. */
-class RankNotes
+class RankSignals
 {
 public:
-  explicit RankNotes(vtkMultiProcessController* ranks);
-  ~RankNotes();
+  explicit RankSignals(vtkMultiProcessController* ranks);
+  ~RankSignals();
 
   /** Reports a failure to all other ranks. At most once before TakeFailures(). */
   void SendFailure();
@@ -43,8 +43,8 @@ public:
   bool HasFailureCome();
 
   /**
-   * Ends a step after which all know how many other ranks have failed: takes all notes in. One may
-   * still be under way, as notes and the data of VTK's collective calls pass each other; it is
+   * Ends a step after which all know how many other ranks have failed: takes all signals in. One may
+   * still be under way, as signals and the data of VTK's collective calls pass each other; it is
    * waited for.
    */
   void TakeFailures(int failures);
@@ -59,7 +59,7 @@ public:
 private:
   struct Sent;
   vtkMPIController* Ranks = nullptr; // nullptr: none is sent
-  std::unique_ptr<Sent> OwnFailure;  // the notes of a failure that are under way
+  std::unique_ptr<Sent> OwnFailure;  // the signals of a failure that are under way
   std::chrono::steady_clock::time_point Next;
 };
 

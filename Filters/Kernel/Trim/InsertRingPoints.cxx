@@ -9,7 +9,7 @@
 // 4. InsertLocated: cuts at these. The points that wait in a triangle move on to its parts.
 //
 // Two points of the rings at the same place are one: the map of vertices is by place.
-#include "RingPoints.h"
+#include "InsertRingPoints.h"
 
 #include "CutAlongRings.h"
 #include "Rings.h"
@@ -47,7 +47,7 @@ public:
     bool follows, MeshCutter& cutter)
     : Surface(mesh)
     , Points(points)
-    , RingPoints(rings.Vertices)
+    , InsertRingPoints(rings.Vertices)
     , MayInsert(insert)
     , Follows(follows)
     , Cutter(cutter)
@@ -76,7 +76,7 @@ private:
   void MatchCorners(const Progress& progress)
   {
     const Mesh& mesh = this->Surface;
-    for (const Index point : this->RingPoints)
+    for (const Index point : this->InsertRingPoints)
     {
       this->VertexAt.emplace(this->Points[point], None);
     }
@@ -136,7 +136,7 @@ private:
   {
     const Mesh& mesh = this->Surface;
     std::vector<Index> open; // ids of Points
-    for (const Index point : this->RingPoints)
+    for (const Index point : this->InsertRingPoints)
     {
       Index& vertex = this->VertexAt.at(this->Points[point]);
       if (vertex == None)
@@ -403,7 +403,7 @@ private:
 
   Mesh& Surface;
   const NamedPoints& Points;
-  const std::vector<Index>& RingPoints;
+  const std::vector<Index>& InsertRingPoints;
   const bool MayInsert;
   const bool Follows;
   MeshCutter& Cutter;
@@ -414,8 +414,8 @@ private:
 
 } // namespace
 
-RingVertices InsertPoints(Mesh& mesh, const NamedPoints& points, const Rings& rings, bool insert,
-  bool follows, MeshCutter& cutter, const Progress& progress)
+RingVertices InsertRingPoints(Mesh& mesh, const NamedPoints& points, const Rings& rings,
+  bool insert, bool follows, MeshCutter& cutter, const Progress& progress)
 {
   return PointInsertion(mesh, points, rings, insert, follows, cutter).Run(progress);
 }

@@ -10,8 +10,8 @@
  *
  * Cost: linear, and n log n in the triangles near the border.
  */
-#ifndef elevation_Trim_TraceSurface_h
-#define elevation_Trim_TraceSurface_h
+#ifndef elevation_Trim_TraceOutline_h
+#define elevation_Trim_TraceOutline_h
 
 #include "MeasuredTriangles.h"
 #include "PartialMesh.h"
@@ -35,7 +35,7 @@ struct SurfaceOptions
  * @return false if the triangles are a part of a mesh, too small to decide which pieces are small
  * @throws Aborted, std::bad_alloc
  */
-bool TraceSurface(const MeasuredTriangles& measured, const MeshBorder& border, IdSet near,
+bool TraceOutline(const MeasuredTriangles& measured, const MeshBorder& border, IdSet near,
   const SurfaceOptions& options, const Progress& progress, std::vector<char>& flags, Rings& rings);
 
 } // namespace elevation

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SpreadBlocks.h"
+#include "BlocksOnRanks.h"
 
 #include "Adapt/Adapt.h"
 #include "Bytes.h"

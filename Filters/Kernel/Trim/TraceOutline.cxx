@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "TraceSurface.h"
+#include "TraceOutline.h"
 
 #include "Kernel/Base/Base.h"
 #include "Openings.h"
@@ -56,7 +56,7 @@ std::vector<char> SmoothFlags(const MeasuredTriangles& measured, const PartialMe
 
 } // namespace
 
-bool TraceSurface(const MeasuredTriangles& measured, const MeshBorder& border, IdSet near,
+bool TraceOutline(const MeasuredTriangles& measured, const MeshBorder& border, IdSet near,
   const SurfaceOptions& options, const Progress& progress, std::vector<char>& flags, Rings& rings)
 {
   const TriangleList& list = measured.List;

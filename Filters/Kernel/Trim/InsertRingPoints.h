@@ -4,8 +4,8 @@
  * @file
  * Makes the points of rings vertices of a mesh: passes 2 and 3 of InsertRings.h.
  */
-#ifndef elevation_Trim_RingPoints_h
-#define elevation_Trim_RingPoints_h
+#ifndef elevation_Trim_InsertRingPoints_h
+#define elevation_Trim_InsertRingPoints_h
 
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
@@ -27,8 +27,8 @@ using RingVertices = std::unordered_map<Point2, Index, PointHash>;
  * @param[in] follows  whether edges of the rings are to follow the surface
  * @throws as InsertRings()
  */
-RingVertices InsertPoints(Mesh& mesh, const NamedPoints& points, const Rings& rings, bool insert,
-  bool follows, MeshCutter& cutter, const Progress& progress);
+RingVertices InsertRingPoints(Mesh& mesh, const NamedPoints& points, const Rings& rings,
+  bool insert, bool follows, MeshCutter& cutter, const Progress& progress);
 
 /** The half-edges of the border, as segments in a grid. */
 struct BorderEdges

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "RankNotes.h"
+#include "RankSignals.h"
 
 #include "vtkMultiProcessController.h"
 #if VTK_MODULE_ENABLE_VTK_ParallelMPI
@@ -20,10 +20,10 @@ namespace
 constexpr int FailureTag = 20201, ArrivalTag = 20202; // of no other message
 } // namespace
 
-struct RankNotes::Sent
+struct RankSignals::Sent
 {
   /**
-   * Sends the others a note. MPI reads Note until each request is done, so Wait() comes before the
+   * Sends the others a signal. MPI reads Note until each request is done, so Wait() comes before the
    * object goes.
    */
   Sent(vtkMPIController* ranks, int tag)
@@ -58,12 +58,12 @@ struct RankNotes::Sent
   std::vector<vtkMPICommunicator::Request> Requests;
 };
 
-RankNotes::RankNotes(vtkMultiProcessController* ranks)
+RankSignals::RankSignals(vtkMultiProcessController* ranks)
   : Ranks(vtkMPIController::SafeDownCast(ranks))
 {
 }
 
-void RankNotes::SendFailure()
+void RankSignals::SendFailure()
 {
   if (this->Ranks)
   {
@@ -71,14 +71,14 @@ void RankNotes::SendFailure()
   }
 }
 
-bool RankNotes::HasFailureCome()
+bool RankSignals::HasFailureCome()
 {
   const auto now = std::chrono::steady_clock::now();
   if (!this->Ranks || now < this->Next)
   {
     return false;
   }
-  // A report of progress may come every few microseconds, and each probe enters MPI. A note that
+  // A report of progress may come every few microseconds, and each probe enters MPI. A signal that
   // has come stays there to be probed again, until TakeFailures().
   this->Next = now + std::chrono::milliseconds(50);
   int isThere = 0, source = 0;
@@ -86,12 +86,12 @@ bool RankNotes::HasFailureCome()
   return isThere != 0;
 }
 
-void RankNotes::TakeFailures(int failures)
+void RankSignals::TakeFailures(int failures)
 {
   for (int i = 0; this->Ranks && i < failures; ++i)
   {
-    int note = 0;
-    this->Ranks->Receive(&note, 1, vtkMultiProcessController::ANY_SOURCE, FailureTag);
+    int signal = 0;
+    this->Ranks->Receive(&signal, 1, vtkMultiProcessController::ANY_SOURCE, FailureTag);
   }
   if (this->OwnFailure)
   {
@@ -101,10 +101,10 @@ void RankNotes::TakeFailures(int failures)
 }
 
 /*
- * Nobody goes on before the notes of all have come, so each rank has at most one note of another
+ * Nobody goes on before the signals of all have come, so each rank has at most one signal of another
  * that belongs to a later meeting, and takes that there.
  */
-void RankNotes::Meet(
+void RankSignals::Meet(
   std::chrono::milliseconds patience, const std::function<void(const std::vector<int>&)>& late)
 {
   if (!this->Ranks)
@@ -114,18 +114,18 @@ void RankNotes::Meet(
   Sent arrival(this->Ranks, ArrivalTag);
   std::vector<int> missing;
   arrival.ForEachOther([&missing](int rank) { missing.push_back(rank); });
-  // Asked for rank by rank, as messages of one rank come in the order of sending: a note of the
+  // Asked for rank by rank, as messages of one rank come in the order of sending: a signal of the
   // next meeting cannot overtake that of this one.
   const auto hasCome = [this](int rank) {
-    int isThere = 0, source = 0, note = 0;
+    int isThere = 0, source = 0, signal = 0;
     this->Ranks->Iprobe(rank, ArrivalTag, &isThere, &source);
-    return isThere != 0 && this->Ranks->Receive(&note, 1, rank, ArrivalTag) != 0;
+    return isThere != 0 && this->Ranks->Receive(&signal, 1, rank, ArrivalTag) != 0;
   };
   const auto end = std::chrono::steady_clock::now() + patience;
   bool isLate = false;
   while (!missing.empty())
   {
-    // Before the probe: notes may have come while this process was stopped itself.
+    // Before the probe: signals may have come while this process was stopped itself.
     const bool isOver = std::chrono::steady_clock::now() >= end;
     missing.erase(std::remove_if(missing.begin(), missing.end(), hasCome), missing.end());
     if (isOver && !isLate && !missing.empty())
@@ -141,27 +141,28 @@ void RankNotes::Meet(
 
 #else
 
-struct RankNotes::Sent
+struct RankSignals::Sent
 {
 };
 
-RankNotes::RankNotes(vtkMultiProcessController*) {}
+RankSignals::RankSignals(vtkMultiProcessController*) {}
 
-void RankNotes::SendFailure() {}
+void RankSignals::SendFailure() {}
 
-bool RankNotes::HasFailureCome()
+bool RankSignals::HasFailureCome()
 {
   return false;
 }
 
-void RankNotes::TakeFailures(int) {}
+void RankSignals::TakeFailures(int) {}
 
-void RankNotes::Meet(std::chrono::milliseconds, const std::function<void(const std::vector<int>&)>&)
+void RankSignals::Meet(
+  std::chrono::milliseconds, const std::function<void(const std::vector<int>&)>&)
 {
 }
 
 #endif
 
-RankNotes::~RankNotes() = default;
+RankSignals::~RankSignals() = default;
 
 } // namespace elevation
