@@ -40,6 +40,20 @@ inline void ForgetAbort(vtkAlgorithm* filter)
 #endif
 }
 
+/**
+ * Makes the executive take the outputs of this execution for incomplete, although nobody may have
+ * asked this filter itself to stop: a filter before it or on another rank was. Since VTK 9.3 that
+ * is said without AbortExecute, which nobody but who has set it would ever take back.
+ */
+inline void MarkIncomplete(vtkAlgorithm* filter)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
+  filter->SetAbortOutput(true);
+#else
+  filter->SetAbortExecute(1);
+#endif
+}
+
 /** Makes room for tuples, more than there are, and keeps the values. */
 inline void ReserveTuples(vtkAbstractArray* array, vtkIdType count)
 {

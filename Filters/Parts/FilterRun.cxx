@@ -581,8 +581,7 @@ void FilterRun::ShareResults(const Ranks& ranks)
     this->Errors.clear();
     this->Warnings.clear();
     // The executive runs an aborted filter again for each output: on all ranks, or on none.
-    this->Filter->SetAbortExecute(1);
-    IsAbortRequested(this->Filter); // it makes the executive aware
+    MarkIncomplete(this->Filter);
     this->Warnings.push_back(MakeMessage<sentences::Stopped>());
   }
 }
