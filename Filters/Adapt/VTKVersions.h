@@ -10,6 +10,7 @@
 
 #include "vtkAbstractArray.h"
 #include "vtkAlgorithm.h"
+#include "vtkInformation.h"
 #include "vtkVersionMacros.h"
 
 namespace elevation
@@ -51,6 +52,17 @@ inline void MarkIncomplete(vtkAlgorithm* filter)
   filter->SetAbortOutput(true);
 #else
   filter->SetAbortExecute(1);
+#endif
+}
+
+/** Whether what comes by this connection is incomplete: a filter before was stopped. */
+inline bool IsIncomplete(vtkInformation* input)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
+  return input->Get(vtkAlgorithm::ABORTED()) != 0;
+#else
+  static_cast<void>(input); // empty, and nothing more is known
+  return false;
 #endif
 }
 

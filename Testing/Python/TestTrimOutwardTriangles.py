@@ -180,8 +180,9 @@ class TestTrimOutwardTriangles(unittest.TestCase):
         trim.SetInputData(triangulate(numpy.random.RandomState(3).rand(500, 2)))
         fill.SetInputConnection(trim.GetOutputPort())
         tag = trim.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
-        with Messages(trim), Messages(fill):
+        with Messages(trim, fill) as messages:
             fill.Update()
+        self.assertEqual([one.code for one in messages.warnings], ["Stopped"])
         self.assertEqual(fill.GetOutput().GetNumberOfCells(), 0)
         trim.RemoveObserver(tag)
         trim.SetAbortExecute(0)  # the others were never asked to stop
