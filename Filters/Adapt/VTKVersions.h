@@ -10,6 +10,7 @@
 
 #include "vtkAbstractArray.h"
 #include "vtkAlgorithm.h"
+#include "vtkInformation.h"
 #include "vtkVersionMacros.h"
 
 namespace elevation
@@ -37,6 +38,31 @@ inline void ForgetAbort(vtkAlgorithm* filter)
   filter->SetAbortExecute(0);
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
   filter->SetAbortOutput(false);
+#endif
+}
+
+/**
+ * Makes the executive take the outputs of this execution for incomplete, although nobody may have
+ * asked this filter itself to stop: a filter before it or on another rank was. Since VTK 9.3 that
+ * is said without AbortExecute, which nobody but who has set it would ever take back.
+ */
+inline void MarkIncomplete(vtkAlgorithm* filter)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
+  filter->SetAbortOutput(true);
+#else
+  filter->SetAbortExecute(1);
+#endif
+}
+
+/** Whether what comes by this connection is incomplete: a filter before was stopped. */
+inline bool IsIncomplete(vtkInformation* input)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
+  return input->Get(vtkAlgorithm::ABORTED()) != 0;
+#else
+  static_cast<void>(input); // empty, and nothing more is known
+  return false;
 #endif
 }
 

@@ -66,6 +66,22 @@ void WarnOfGathering(Place* home, const Message& why)
   }
 }
 
+/** Whether a filter before this one was stopped: that one reports it, or who stopped it knows. */
+bool IsStoppedBefore(vtkAlgorithm* filter, vtkInformationVector** inputs)
+{
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < inputs[port]->GetNumberOfInformationObjects(); ++i)
+    {
+      if (IsIncomplete(inputs[port]->GetInformationObject(i)))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 void EmptyOutputs(const Place& place)
 {
   for (vtkPolyData* output : place.Outputs)
@@ -581,9 +597,11 @@ void FilterRun::ShareResults(const Ranks& ranks)
     this->Errors.clear();
     this->Warnings.clear();
     // The executive runs an aborted filter again for each output: on all ranks, or on none.
-    this->Filter->SetAbortExecute(1);
-    IsAbortRequested(this->Filter); // it makes the executive aware
-    this->Warnings.push_back(MakeMessage<sentences::Stopped>());
+    MarkIncomplete(this->Filter);
+    if (!IsStoppedBefore(this->Filter, this->Inputs))
+    {
+      this->Warnings.push_back(MakeMessage<sentences::Stopped>());
+    }
   }
 }
 

@@ -335,6 +335,10 @@ class Sources(unittest.TestCase):
             for folder, _, names in os.walk(os.path.join(ROOT, "Filters")) for name in names)
         self.assertEqual([code for code in codes if f"sentences::{code}" not in sources], [])
 
+    def test_sentences_of_filters_are_for_all_who_use_them(self):
+        table = read_source("Filters", "Kernel", "Messages", "Sentences.h")
+        self.assertNotRegex(table, r"(?i)\bpress\b|\bclick|\bapply\b|\bpanel\b")  # as of a panel in ParaView
+
     def test_nothing_is_written_as_an_option_of_the_program_alone(self):
         # Those of the program's own run may: no panel sees them.
         own = ("command.py", "description.py", "help.py", "options.py", "pieces.py", "slicing.py", "names.py",

@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersSources import vtkRegularPolygonSource
 
-from vtkelevationsurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
+from vtkelevationsurface import vtkFillElevationHoles, vtkGridDelaunay2D, vtkTrimOutwardTriangles
 from vtkelevationsurface.messages import Messages
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -174,6 +174,21 @@ class TestTrimOutwardTriangles(unittest.TestCase):
         trim.Modified()
         trim.Update()
         self.assertGreater(trim.GetOutput(0).GetNumberOfCells(), 0)
+
+    def test_an_abort_is_forgotten_after_it_by_the_filters_that_follow(self):
+        trim, fill = vtkTrimOutwardTriangles(), vtkFillElevationHoles()
+        trim.SetInputData(triangulate(numpy.random.RandomState(3).rand(500, 2)))
+        fill.SetInputConnection(trim.GetOutputPort())
+        tag = trim.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
+        with Messages(trim, fill) as messages:
+            fill.Update()
+        self.assertEqual([one.code for one in messages.warnings], ["Stopped"])
+        self.assertEqual(fill.GetOutput().GetNumberOfCells(), 0)
+        trim.RemoveObserver(tag)
+        trim.SetAbortExecute(0)  # the others were never asked to stop
+        trim.Modified()
+        fill.Update()
+        self.assertGreater(fill.GetOutput().GetNumberOfCells(), 0)
 
     def test_a_ring_that_is_there_as_polygon_and_as_line_counts_once(self):
         ring = vtkRegularPolygonSource()  # makes both

@@ -12,6 +12,16 @@ function (step what)
   endif ()
 endfunction ()
 
+# What VTK asks of the files of a module beside its CMake.
+function (vtk_fetch_module name)
+  set(fetched "${name}" PARENT_SCOPE)
+endfunction ()
+include("${SOURCE}/CMake/ElevationSurface.remote.cmake")
+file(READ "${SOURCE}/vtk.module" module)
+if (NOT fetched STREQUAL "ElevationSurface" OR NOT module MATCHES "SPDX_LICENSE_IDENTIFIER[ \n]+BSD-3-Clause")
+  message(FATAL_ERROR "The module cannot be fetched, or its licence is not named.")
+endif ()
+
 set(tree "${WORK_FOLDER}/VTK")
 set(build "${WORK_FOLDER}/build")
 file(REMOVE_RECURSE "${WORK_FOLDER}")
