@@ -123,8 +123,9 @@ public:
   /** @return whether no place is covered twice; if not, Fault() is the error message */
   bool Run(const Progress& progress)
   {
-    this->MakeSegments(progress.Between(0.0, 0.05));
-    this->FindRims(progress.Between(0.05, 0.1));
+    Stages stages(progress, { 5, 5, 30, 60 });
+    this->MakeSegments(stages.Next());
+    this->FindRims(stages.Next());
     Sort(
       this->Events.begin(), this->Events.end(),
       [](const Event& a, const Event& b) {
@@ -132,8 +133,8 @@ public:
         return a.At != b.At ? IsLower(a.At, b.At)
                             : (a.IsStart != b.IsStart ? b.IsStart : a.Segment < b.Segment);
       },
-      progress.Between(0.1, 0.4));
-    const Progress sweeping = progress.Between(0.4, 1.0);
+      stages.Next());
+    const Progress sweeping = stages.Next();
     std::size_t nextReport = 0;
     for (std::size_t first = 0; first < this->Events.size();)
     {
@@ -524,11 +525,12 @@ Mesh MakeBorderMesh(const std::vector<BorderEdge>& border, const PointView& poin
 
 Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
 {
+  Stages stages(progress, { 50, 50 });
   Holes holes;
-  holes.Walks = TraceBorder(mesh, progress.Between(0.0, 0.5));
+  holes.Walks = TraceBorder(mesh, stages.Next());
   StartAtLowest(mesh, holes.Walks);
   BorderSweep sweep(mesh, firstCell, holes);
-  if (!sweep.Run(progress.Between(0.5, 1.0)))
+  if (!sweep.Run(stages.Next()))
   {
     throw Error(sweep.Fault());
   }
@@ -542,9 +544,10 @@ Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
 Holes FindBorderHoles(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
 {
+  Stages stages(progress, { 20, 80 });
   std::vector<Index> ids;
-  const Mesh mesh = MakeBorderMesh(border, points, progress.Between(0.0, 0.2), ids);
-  Holes holes = FindHoles(mesh, 0, progress.Between(0.2, 1.0));
+  const Mesh mesh = MakeBorderMesh(border, points, stages.Next(), ids);
+  Holes holes = FindHoles(mesh, 0, stages.Next());
   for (Index& vertex : holes.Walks.Vertices)
   {
     vertex = ids[vertex];
@@ -555,12 +558,13 @@ Holes FindBorderHoles(
 bool CoversOnce(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
 {
+  Stages stages(progress, { 50, 25, 25 });
   std::vector<Index> ids;
-  const Mesh mesh = MakeBorderMesh(border, points, progress.Between(0.0, 0.5), ids);
+  const Mesh mesh = MakeBorderMesh(border, points, stages.Next(), ids);
   Holes holes;
-  holes.Walks = TraceBorder(mesh, progress.Between(0.5, 0.75));
+  holes.Walks = TraceBorder(mesh, stages.Next());
   StartAtLowest(mesh, holes.Walks);
-  return BorderSweep(mesh, 0, holes).Run(progress.Between(0.75, 1.0));
+  return BorderSweep(mesh, 0, holes).Run(stages.Next());
 }
 
 } // namespace elevation

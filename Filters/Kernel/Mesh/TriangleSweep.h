@@ -252,6 +252,7 @@ public:
    */
   bool Run(const Visitor& visitor, const Progress& progress)
   {
+    Stages stages(progress, { 30, 10, 55, 5 });
     const Index number = this->Number;
     for (Index i = 0; i < number; ++i)
     {
@@ -264,16 +265,16 @@ public:
         OpenEdges<Vertex>(this->Vertices, 1024 + static_cast<std::size_t>(this->List.Count) / 64),
         visitor, IdSet(number > 1 ? this->List.Points.Count : 0), {} });
     }
-    if (!this->Read(progress.Between(0.0, 0.3)))
+    if (!this->Read(stages.Next()))
     {
       return false;
     }
     bool isRight = true;
+    const Progress marking = stages.Next();
     // Several ranges: first each marks its corners, then corners of two ranges are found.
     if (number > 1)
     {
-      isRight = this->InRanges(
-        progress.Between(0.3, 0.4), [this](Range& range) { return this->Mark(range); });
+      isRight = this->InRanges(marking, [this](Range& range) { return this->Mark(range); });
       IdSet all(this->List.Points.Count);
       for (Range& range : this->Ranges)
       {
@@ -281,10 +282,9 @@ public:
         range.Corners = IdSet(0);
       }
     }
-    isRight = isRight && this->InRanges(progress.Between(0.4, 0.95), [this](Range& range) {
-      return this->Sweep(range);
-    });
-    return isRight && this->SweepDeferred(progress.Between(0.95, 1.0));
+    isRight =
+      isRight && this->InRanges(stages.Next(), [this](Range& range) { return this->Sweep(range); });
+    return isRight && this->SweepDeferred(stages.Next());
   }
 
   /** The visitors, by range; the first one may have visited triangles out of order. */
