@@ -71,16 +71,15 @@ public:
       this->Grid.Starts.Append(0);
       return;
     }
+    Stages stages(progress, { 9, 17, 61, 0, 13 });
     this->Lay(extent);
-    const Progress filling = progress.Between(0.0, 0.875);
-    this->CountInGroups(filling.Between(0.0, 0.1));
+    this->CountInGroups(stages.Next());
     // From counts: blocks are known before a point is moved.
     this->MakeBlocks();
-    this->SortIntoBlocks(filling.Between(0.1, 0.3));
-    this->FillBlocks(filling.Between(0.3, 1.0));
-    const Progress joining = progress.Between(0.875, 1.0);
-    this->CloseGaps(joining.Between(0.0, 0.0));
-    this->Join(joining);
+    this->SortIntoBlocks(stages.Next());
+    this->FillBlocks(stages.Next());
+    this->CloseGaps(stages.Next());
+    this->Join(stages.Next());
   }
 
 private:
@@ -410,13 +409,15 @@ private:
 BinGrid::BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress,
   int threads, Extent* known)
 {
+  Stages stages(progress, { 20, 80 });
+  const Progress looking = stages.Next();
   // A search for a lattice has found the extent already.
   const auto look = [&]() {
-    return FindExtent(points, threads, progress.Between(0.0, 0.2), [](Index, const Point2&) {});
+    return FindExtent(points, threads, looking, [](Index, const Point2&) {});
   };
   Extent extent = known ? std::move(*known) : look();
   this->NotFinite = std::move(extent.NotFinite);
-  GridBuilder(*this, points, policy, threads).Run(extent, progress.Between(0.2, 1.0));
+  GridBuilder(*this, points, policy, threads).Run(extent, stages.Next());
 }
 
 } // namespace elevation
