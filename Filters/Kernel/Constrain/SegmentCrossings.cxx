@@ -29,12 +29,14 @@ public:
 
   void Run(const std::vector<Crossing>& crossings, const Progress& progress)
   {
+    Stages stages(progress, { 50, 20, 30 });
+    const Progress placing = stages.Next();
     // First all crossings with an end in reach, which need no place; the others are sorted by their
     // place.
     std::vector<Place> places;
     for (const std::size_t i : Counted(crossings.size()))
     {
-      ReportStep(progress, i, 2 * crossings.size(), 1024);
+      ReportStep(placing, i, crossings.size(), 1024);
       // An end so near the other piece would leave a stub of some units: the other is bent to it.
       if (!this->CutAtEnds(crossings[i]))
       {
@@ -46,9 +48,9 @@ public:
     Sort(
       places.begin(), places.end(),
       [](const Place& p, const Place& q) { return IsLower(p.Position, q.Position); },
-      progress.Between(0.5, 0.7));
+      stages.Next());
 
-    const Progress naming = progress.Between(0.7, 1.0);
+    const Progress naming = stages.Next();
     StepCount steps;
     // Crossings that round to one place are cut at one vertex.
     for (std::size_t i = 0, end = 0; i < places.size(); i = end)
@@ -185,13 +187,13 @@ private:
 
 std::vector<Crossing> FindCrossings(const SegmentNetwork& network, const Progress& progress)
 {
+  Stages stages(progress, { 80, 20 });
   std::vector<Crossing> crossings;
-  VisitCrossings(
-    network.PieceEnds, network.Grid, progress.Between(0.0, 0.8), [&](std::size_t i, std::size_t j) {
-      crossings.push_back({ static_cast<Index>(i), static_cast<Index>(j) });
-    });
+  VisitCrossings(network.PieceEnds, network.Grid, stages.Next(), [&](std::size_t i, std::size_t j) {
+    crossings.push_back({ static_cast<Index>(i), static_cast<Index>(j) });
+  });
   // A pair may be found in every cell that both are in.
-  Sort(crossings.begin(), crossings.end(), std::less<Crossing>(), progress.Between(0.8, 1.0));
+  Sort(crossings.begin(), crossings.end(), std::less<Crossing>(), stages.Next());
   crossings.erase(std::unique(crossings.begin(), crossings.end()), crossings.end());
   return crossings;
 }
