@@ -58,7 +58,7 @@ public:
   Follower(Mesh& mesh, MeshCutter& cutter, const Progress& progress)
     : Surface(mesh)
     , Cutter(cutter)
-    , Stars(mesh, progress.Between(0.0, 0.3))
+    , Stars(mesh, progress)
     , Fixed(mesh.Triangles.size(), 0)
   {
   }
@@ -410,9 +410,9 @@ private:
 void FollowSurface(
   Mesh& mesh, MeshCutter& cutter, std::vector<FollowedSegment>& segments, const Progress& progress)
 {
-  Follower follower(mesh, cutter, progress);
-  const Progress walking = progress.Between(0.3, 1.0);
-  WorkReporter work(walking);
+  Stages stages(progress, { 30, 70 });
+  Follower follower(mesh, cutter, stages.Next());
+  WorkReporter work(stages.Next());
   for (std::size_t i = 0; i < segments.size(); ++i)
   {
     work.Step(i, segments.size());

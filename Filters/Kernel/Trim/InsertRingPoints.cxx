@@ -56,9 +56,10 @@ public:
 
   RingVertices Run(const Progress& progress)
   {
-    this->MatchCorners(progress.Between(0.0, 0.57));
-    this->LocateOthers(progress.Between(0.57, 0.93));
-    this->InsertLocated(progress.Between(0.93, 1.0));
+    Stages stages(progress, { 57, 36, 7 });
+    this->MatchCorners(stages.Next());
+    this->LocateOthers(stages.Next());
+    this->InsertLocated(stages.Next());
     return std::move(this->VertexAt);
   }
 
@@ -75,6 +76,7 @@ private:
   /** Finds the corners of the mesh at points of the rings. */
   void MatchCorners(const Progress& progress)
   {
+    Stages stages(progress, { 30, 70 });
     const Mesh& mesh = this->Surface;
     for (const Index point : this->InsertRingPoints)
     {
@@ -98,14 +100,14 @@ private:
       sieve.Add(bitOf(entry.first));
     }
     std::vector<char> isToMatch(mesh.Points.size());
-    ForEachStretch(mesh.NumberOfPoints(), progress.Between(0.0, 0.3), [&](Index begin, Index end) {
+    ForEachStretch(mesh.NumberOfPoints(), stages.Next(), [&](Index begin, Index end) {
       for (Index v = begin; v < end; ++v)
       {
         const Point2& p = mesh.PointOf(v);
         isToMatch[v] = sieve.Has(bitOf(p)) && this->VertexAt.count(p) > 0;
       }
     });
-    const Progress matching = progress.Between(0.3, 1.0);
+    const Progress matching = stages.Next();
     // Over half-edges, not points: a point that no triangle uses is not a corner, and two at the
     // same place are no trouble if only one is used.
     for (const Index h : Counted(mesh.NumberOfHalfEdges()))
@@ -134,7 +136,9 @@ private:
   /** Finds the triangle that contains each point that is not a corner. */
   void LocateOthers(const Progress& progress)
   {
+    Stages stages(progress, { 20, 80 });
     const Mesh& mesh = this->Surface;
+    const Progress snapping = stages.Next();
     std::vector<Index> open; // ids of Points
     for (const Index point : this->InsertRingPoints)
     {
@@ -147,7 +151,7 @@ private:
     }
     if (!open.empty() && this->MayInsert)
     {
-      this->SnapBorderToPoints(open, progress.Between(0.0, 0.2));
+      this->SnapBorderToPoints(open, snapping);
     }
     if (open.empty())
     {
@@ -159,8 +163,7 @@ private:
     const CellGrid grid(open.size(),
       [&](std::size_t i) { return std::array<Point2, 1>{ { this->Points[open[i]] } }; });
     std::vector<Index> triangles(open.size(), None);
-    const Progress looking = progress.Between(0.2, 1.0);
-    ForEachStretch(mesh.NumberOfTriangles(), looking, [&](Index begin, Index end) {
+    ForEachStretch(mesh.NumberOfTriangles(), stages.Next(), [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
         // The points of successive triangles may be far apart in memory.

@@ -133,6 +133,7 @@ void AddBorder(
 bool MeasureBySweep(
   const TriangleList& list, int threads, const Progress& progress, MeasuredTriangles& measured)
 {
+  Stages stages(progress, { 85, 11, 2, 2 });
   const Index count = list.Count;
   measured.Corners.Resize(3 * static_cast<std::size_t>(count));
   measured.Longest.Resize(count);
@@ -140,8 +141,8 @@ bool MeasureBySweep(
   measured.Ids.Resize(static_cast<std::size_t>(list.Points.Count) +
     static_cast<std::size_t>(sweep.NumberOfRanges()) * Measurer::AtOnce);
   std::atomic<Index> numbers{ 0 };
-  if (!sweep.Run(Measurer{ &sweep.At(0), &measured, measured.Longest.data(), &numbers },
-        progress.Between(0.0, 0.85)))
+  if (!sweep.Run(
+        Measurer{ &sweep.At(0), &measured, measured.Longest.data(), &numbers }, stages.Next()))
   {
     return false;
   }
@@ -156,14 +157,14 @@ bool MeasureBySweep(
   measured.List.Count = count;
   measured.List.Points.Double = measured.Coordinates.data();
   measured.List.Points.Count = numbers;
-  TakeVertices(sweep, progress.Between(0.85, 0.96), measured);
+  TakeVertices(sweep, stages.Next(), measured);
   // A mesh that has to be scaled takes the other way, Measure(), which copies coordinates anyway.
   if (largest > LargestUnscaled || largest < LeastUnscaled ||
-    !CoversOnce(measured.Border, list.Points, progress.Between(0.96, 0.98)))
+    !CoversOnce(measured.Border, list.Points, stages.Next()))
   {
     return false;
   }
-  AddBorder(sweep, progress.Between(0.98, 1.0), measured);
+  AddBorder(sweep, stages.Next(), measured);
   return true;
 }
 

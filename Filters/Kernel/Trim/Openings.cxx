@@ -70,45 +70,44 @@ void VisitOpenings(const Components& parts, std::vector<Opening>& openings, IsOp
 void CloseSmallLakes(
   const Mesh& mesh, const LakeShare& share, std::vector<char>& flags, const Progress& progress)
 {
+  Stages stages(progress, { 60, 20, 20 });
   const Components parts = FindFlagParts(
-    mesh, [&](Index t) { return flags[t] == Surface; }, progress.Between(0.0, 0.6));
+    mesh, [&](Index t) { return flags[t] == Surface; }, stages.Next());
   std::vector<Opening> openings(parts.Count());
   const auto isOpen = [&](Index t) { return flags[t] != Surface; };
-  VisitOpenings(
-    parts, openings, isOpen, progress.Between(0.6, 0.8), [&](Index t, Opening& opening) {
-      opening.Share += ToFixedPoint(share(t));
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
-      {
-        opening.ReachesBorder |= mesh.IsBorder(h);
-      }
-    });
-  VisitOpenings(
-    parts, openings, isOpen, progress.Between(0.8, 1.0), [&](Index t, Opening& opening) {
-      // A lake that is large enough for bays stays as it is.
-      if (!opening.ReachesBorder && opening.Share < LakeWithBays * FixedOne)
-      {
-        flags[t] = opening.Share < FixedOne ? Surface : Outside;
-      }
-    });
+  VisitOpenings(parts, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
+    opening.Share += ToFixedPoint(share(t));
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      opening.ReachesBorder |= mesh.IsBorder(h);
+    }
+  });
+  VisitOpenings(parts, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
+    // A lake that is large enough for bays stays as it is.
+    if (!opening.ReachesBorder && opening.Share < LakeWithBays * FixedOne)
+    {
+      flags[t] = opening.Share < FixedOne ? Surface : Outside;
+    }
+  });
 }
 
 void CloseSmallBays(
   const Mesh& mesh, const LakeShare& share, std::vector<char>& flags, const Progress& progress)
 {
+  Stages stages(progress, { 50, 20, 20, 10 });
   const Components parts = FindFlagParts(
-    mesh, [&](Index t) { return flags[t]; }, progress.Between(0.0, 0.5));
+    mesh, [&](Index t) { return flags[t]; }, stages.Next());
   std::vector<Opening> openings(parts.Count());
   const auto isOpen = [&](Index t) { return flags[t] == Bay; };
+  VisitOpenings(parts, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
+    opening.Share += ToFixedPoint(share(t));
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      opening.Longest = std::max(opening.Longest, mesh.SquaredLengthOf(h));
+    }
+  });
   VisitOpenings(
-    parts, openings, isOpen, progress.Between(0.5, 0.7), [&](Index t, Opening& opening) {
-      opening.Share += ToFixedPoint(share(t));
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
-      {
-        opening.Longest = std::max(opening.Longest, mesh.SquaredLengthOf(h));
-      }
-    });
-  VisitOpenings(
-    parts, openings, isOpen, progress.Between(0.7, 0.9), [&](Index t, Opening& opening) {
+    parts, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
         const char beside =
@@ -122,16 +121,16 @@ void CloseSmallBays(
         opening.Open += beside == Surface ? -length : length;
       }
     });
-  VisitOpenings(
-    parts, openings, isOpen, progress.Between(0.9, 1.0), [&](Index t, Opening& opening) {
-      flags[t] = opening.Share < FixedOne && opening.Open <= 0 ? Surface : Outside;
-    });
+  VisitOpenings(parts, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
+    flags[t] = opening.Share < FixedOne && opening.Open <= 0 ? Surface : Outside;
+  });
 }
 
 std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBorder,
   const std::vector<Index>& triangles, const LakeShare& share, std::vector<char>& keep,
   const Progress& progress)
 {
+  Stages stages(progress, { 70, 30 });
   Buffer<Index> parents; // of vertices, UnionFind.h
   parents.Resize(list.Points.Count);
   std::iota(parents.begin(), parents.end(), 0);
@@ -139,7 +138,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
   sums.Resize(list.Points.Count);
   std::fill(sums.begin(), sums.end(), 0);
   const Index count = static_cast<Index>(triangles.size());
-  ForEachStretch(count, progress.Between(0.0, 0.7), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
     {
       // A few triangles ahead: their corners' entries are in no order.
@@ -168,7 +167,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
     }
   });
   std::vector<Index> others;
-  ForEachStretch(count, progress.Between(0.7, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
     {
       const Index t = triangles[i];

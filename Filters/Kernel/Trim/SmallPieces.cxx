@@ -51,9 +51,10 @@ struct PieceSizes
 std::vector<std::pair<Index, Index>> CornersOfSmall(const Mesh& mesh, const Components& pieces,
   const PieceSizes& sizes, const std::vector<char>& keep, const Progress& progress)
 {
+  Stages stages(progress, { 70, 30 });
   // Listing the corners of pieces that may be small is cheap; counting all vertices would not be.
   std::vector<std::pair<Index, Index>> corners;
-  ForEachStretch(mesh.NumberOfTriangles(), progress.Between(0.0, 0.7), [&](Index begin, Index end) {
+  ForEachStretch(mesh.NumberOfTriangles(), stages.Next(), [&](Index begin, Index end) {
     for (Index h = 3 * begin; h < 3 * end; ++h)
     {
       const Index piece = pieces.ComponentOf(Mesh::Triangle(h));
@@ -63,8 +64,7 @@ std::vector<std::pair<Index, Index>> CornersOfSmall(const Mesh& mesh, const Comp
       }
     }
   });
-  Sort(corners.begin(), corners.end(), std::less<std::pair<Index, Index>>(),
-    progress.Between(0.7, 1.0));
+  Sort(corners.begin(), corners.end(), std::less<std::pair<Index, Index>>(), stages.Next());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   return corners;
 }
@@ -74,12 +74,13 @@ std::vector<std::pair<Index, Index>> CornersOfSmall(const Mesh& mesh, const Comp
 std::vector<Index> DropSmallPieces(
   const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
 {
-  const Components pieces = FindComponents(mesh, progress.Between(0.0, 0.5), [&](Index h) {
+  Stages stages(progress, { 50, 20, 30 });
+  const Components pieces = FindComponents(mesh, stages.Next(), [&](Index h) {
     return keep[Mesh::Triangle(h)] == keep[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
   });
-  const PieceSizes sizes(mesh, pieces, keep, progress.Between(0.5, 0.7));
+  const PieceSizes sizes(mesh, pieces, keep, stages.Next());
   const std::vector<std::pair<Index, Index>> corners =
-    CornersOfSmall(mesh, pieces, sizes, keep, progress.Between(0.7, 1.0));
+    CornersOfSmall(mesh, pieces, sizes, keep, stages.Next());
   // A surface of small pieces only keeps them all.
   bool hasLarge = false;
   for (Index piece = 0; piece < pieces.Count(); ++piece)

@@ -13,6 +13,7 @@ namespace elevation
 
 Neighbors::Neighbors(const MeasuredTriangles& measured, const Progress& progress)
 {
+  Stages stages(progress, { 30, 70 });
   const TriangleList& list = measured.List;
   const Index count = list.Points.Count;
   this->Offsets.Resize(static_cast<std::size_t>(count) + 1);
@@ -22,7 +23,7 @@ Neighbors::Neighbors(const MeasuredTriangles& measured, const Progress& progress
     (Group - 1) * (static_cast<std::size_t>(count) + 1));
   // At first the end of each vertex's range, which is filled backwards.
   std::uint32_t sum = 0; // below 9 per point
-  ForEachStretch(count, progress.Between(0.0, 0.3), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       const std::uint32_t size = measured.Degrees[v];
@@ -35,7 +36,7 @@ Neighbors::Neighbors(const MeasuredTriangles& measured, const Progress& progress
   this->Offsets[count] = sum;
   // Ranges are filled from their ends, so that Offsets holds their begins when all is written.
   const auto add = [&](Index a, Index b) { this->Ids[--this->Offsets[a]] = b; };
-  ForEachStretch(list.Count, progress.Between(0.3, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(list.Count, stages.Next(), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       const Index* ahead = list.CornersOf(std::min(t + 40, list.Count - 1));
