@@ -84,7 +84,7 @@ void SegmentNetwork::Collect(const ConstraintLines& lines, const Progress& progr
 {
   Stages stages(progress, { 50, 10, 40 });
   const std::vector<Index> vertexOf = CollectPoints(lines, stages.Next(), this->Vertices);
-  stages.Next(); // the segments, without reports
+  Report(stages.Next(), 0.0);
   std::vector<char> hasSegment(this->Vertices.size(), 0);
   // From the lower end up, so that segments in both directions are the same.
   lines.VisitSegments([&](Index line, Index k, Index next) {

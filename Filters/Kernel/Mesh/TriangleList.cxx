@@ -140,7 +140,7 @@ Mesh SubMesh(
   mesh.Ids = corners.ListAndRank();
   mesh.FirstNewId = list.Points.Count;
   mesh.Points.reserve(mesh.Ids.size());
-  stages.Next(); // copies points, without reports
+  Report(stages.Next(), 0.0);
   for (std::size_t i = 0; i < mesh.Ids.size(); ++i)
   {
     list.PrefetchPoint(mesh.Ids[std::min(i + 16, mesh.Ids.size() - 1)]);
