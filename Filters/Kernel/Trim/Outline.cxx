@@ -184,7 +184,7 @@ public:
     {
       this->Result.IsSurface[t] = Outside;
     }
-    // With a grid, pieces that missing nodes separate stay, however small.
+    // With a grid, components that missing nodes separate stay, however small.
     const SurfaceOptions tracing{ [this](Index t) { return this->ToleranceOf(t); },
       !this->Grid.Steps.IsSet() };
     if (!TraceOutline(this->Measured, this->Border, this->CornersNear(doubtful), tracing,

@@ -6,7 +6,7 @@
 #include "Openings.h"
 #include "SimpleRings.h"
 #include "Slivers.h"
-#include "SmallPieces.h"
+#include "SmallComponents.h"
 
 #include <algorithm>
 #include <utility>
@@ -63,8 +63,9 @@ bool TraceOutline(const MeasuredTriangles& measured, const MeshBorder& border, I
 {
   Stages stages(progress, { 10, 90 });
   const TriangleList& list = measured.List;
-  // Openings are closed within the triangles near the surface's border. Whether a piece is small
-  // may depend on more of it, so rounds add triangles until all pieces that look small are whole.
+  // Openings are closed within the triangles near the surface's border. Whether a component is
+  // small may depend on more of it, so rounds add triangles until all components that look small
+  // are whole.
   const IdSet atEdge = VerticesOfSlivers(measured, near, stages.Next());
   near = atEdge;
   const Progress tracing = stages.Next();
@@ -80,8 +81,8 @@ bool TraceOutline(const MeasuredTriangles& measured, const MeshBorder& border, I
     std::vector<char> smooth =
       SmoothFlags(measured, mesh, atEdge, isAll, options, flags, ofRound.Next());
     const Progress dropping = ofRound.Next();
-    const std::vector<Index> unknown = options.DropsSmallPieces
-      ? DropSmallPieces(mesh.Surface, smooth, dropping)
+    const std::vector<Index> unknown = options.DropsSmallComponents
+      ? DropSmallComponents(mesh.Surface, smooth, dropping)
       : std::vector<Index>();
     if (unknown.empty())
     {
@@ -95,7 +96,7 @@ bool TraceOutline(const MeasuredTriangles& measured, const MeshBorder& border, I
     {
       return false;
     }
-    // In the next round, include more of these pieces.
+    // In the next round, include more of these components.
     for (const Index vertex : unknown)
     {
       near.Add(mesh.Surface.Ids[vertex]);
