@@ -157,7 +157,7 @@ public:
     this->Steps = count;
     ReportStep(this->Monitor, done, count, 1024);
   }
-  /** A small piece of work is done. */
+  /** A little work is done. */
   void Tick()
   {
     this->Ticks.Add();

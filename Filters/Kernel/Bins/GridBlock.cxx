@@ -35,7 +35,7 @@ public:
   {
     Stages stages(progress, { 10, 50, 30, 5, 5, 0 });
     this->SortIntoBins(stages.Next());
-    if (this->Filled.Pieces(this->Grid.Bins) > 1)
+    if (this->Filled.Tasks(this->Grid.Bins) > 1)
     {
       // Room for a node for each 48 points; if there are more, the buffer grows.
       this->Filled.Nodes.Reserve(this->Filled.Count / 48); // growing it takes long

@@ -50,7 +50,7 @@ constexpr double MostPointsPerPoint = 10.0;
 constexpr double BytesPerPoint = 500.0; // of memory, while and after it is inserted
 
 /** What a thread takes at a time: patches of about this many points in all, or a larger one. */
-constexpr double PointsPerPiece = 250.0;
+constexpr double PointsPerTask = 250.0;
 
 /**
  * Distance between neighbouring numbers near x, in the precision of the points. It limits how small
@@ -430,11 +430,11 @@ private:
     return end;
   }
 
-  /** Holes of a batch, and the pieces that a thread takes at a time. */
+  /** Holes of a batch, and the tasks that a thread takes at a time. */
   struct Batch
   {
     std::vector<std::pair<double, Index>> Order; ///< (negative work, hole): most work first
-    std::vector<std::size_t> Pieces{ 0 };
+    std::vector<std::size_t> Tasks{ 0 };
   };
 
   /** The largest holes come first, so that threads finish at about the same time. */
@@ -449,14 +449,14 @@ private:
       }
     }
     std::sort(batch.Order.begin(), batch.Order.end());
-    double ofPiece = 0.0;
+    double ofTask = 0.0;
     for (std::size_t k = 0; k < batch.Order.size(); ++k)
     {
-      ofPiece -= batch.Order[k].first;
-      if (ofPiece > PointsPerPiece || k + 1 == batch.Order.size())
+      ofTask -= batch.Order[k].first;
+      if (ofTask > PointsPerTask || k + 1 == batch.Order.size())
       {
-        batch.Pieces.push_back(k + 1);
-        ofPiece = 0.0;
+        batch.Tasks.push_back(k + 1);
+        ofTask = 0.0;
       }
     }
     return batch;
@@ -473,9 +473,9 @@ private:
     {
       this->Plans[begin].NumberOfThreads = this->Threads;
     }
-    ForEachPiece(static_cast<Index>(batch.Pieces.size()) - 1, isAlone ? 1 : this->Threads,
-      isAlone ? Progress() : progress, [&](Index piece) {
-        for (std::size_t k = batch.Pieces[piece]; k < batch.Pieces[piece + 1]; ++k)
+    ForEachTask(static_cast<Index>(batch.Tasks.size()) - 1, isAlone ? 1 : this->Threads,
+      isAlone ? Progress() : progress, [&](Index task) {
+        for (std::size_t k = batch.Tasks[task]; k < batch.Tasks[task + 1]; ++k)
         {
           const Index hole = batch.Order[k].second;
           this->FillOne(hole, isAlone ? progress : Progress(), filled[hole - begin]);

@@ -285,10 +285,10 @@ LatticeSample SampleForLattice(const PointView& points, double totalCount, int t
   Picked picked(NumberOfRanges(points.Count));
   std::vector<PlaceSet> sets(picked.size());
   const std::uint64_t limit = HashLimit(WideSampleSize(totalCount), totalCount);
-  Extent extent = FindExtent(points, threads, stages.Next(), [&](Index piece, const Point2& p) {
+  Extent extent = FindExtent(points, threads, stages.Next(), [&](Index range, const Point2& p) {
     if (HashOf(p) < limit)
     {
-      sets[piece].Add(p);
+      sets[range].Add(p);
     }
   });
   std::transform(
@@ -334,7 +334,7 @@ std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
   Stages stages(progress, { 80, 20 });
   Picked picked(NumberOfRanges(points.Count));
   ForEachRange(
-    points.Count, threads, stages.Next(), [&](Index piece, Index begin, Index end) {
+    points.Count, threads, stages.Next(), [&](Index range, Index begin, Index end) {
       PlaceSet here;
       ForEachPoint(points, begin, end, notFinite, [&](Index, const Point2& p) {
         if (place.Contains(p))
@@ -342,7 +342,7 @@ std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
           here.Add(p);
         }
       });
-      picked[piece] = here.Places();
+      picked[range] = here.Places();
     });
   return JoinPicked(std::move(picked), stages.Next());
 }

@@ -111,17 +111,17 @@ private:
   NodeBox FindBox(const Progress& progress) const
   {
     return FindNodeBox(this->NodeOf, this->Search, this->Search.Steps, [&]() {
-      std::vector<NodeBox> pieces(NumberOfRanges(this->Points.Count));
-      this->ForEachRange(progress, [&](Index piece, Index begin, Index end) {
+      std::vector<NodeBox> boxes(NumberOfRanges(this->Points.Count));
+      this->ForEachRange(progress, [&](Index range, Index begin, Index end) {
         NodeBox here;
         ForEachPoint(this->Points, begin, end, this->Search.NotFinite,
           [&](Index, const Point2& p) { this->NodeOf.Extend(here, p); });
-        pieces[piece] = here;
+        boxes[range] = here;
       });
       NodeBox box;
-      for (const NodeBox& piece : pieces)
+      for (const NodeBox& one : boxes)
       {
-        box.Join(piece);
+        box.Join(one);
       }
       return box;
     });
@@ -165,7 +165,7 @@ private:
     std::vector<double> offsets(NumberOfRanges(this->Points.Count), 0.0);
     this->Second.resize(offsets.size());
     std::atomic<bool> fits{ true };
-    this->ForEachRange(progress, [&](Index piece, Index begin, Index end) {
+    this->ForEachRange(progress, [&](Index range, Index begin, Index end) {
       if (!fits)
       {
         return;
@@ -197,8 +197,8 @@ private:
       {
         fits = false;
       }
-      offsets[piece] = largest;
-      this->Second[piece] = std::move(second);
+      offsets[range] = largest;
+      this->Second[range] = std::move(second);
     });
     // With rounding: growth proves with it that triangles are not flat.
     this->Nodes.LargestOffset = *std::max_element(offsets.begin(), offsets.end()) +
@@ -206,7 +206,7 @@ private:
     return fits;
   }
 
-  /** Calls work(piece, begin, end) for ranges of the points. */
+  /** Calls work(range, begin, end) for ranges of the points. */
   template <typename Work>
   void ForEachRange(const Progress& progress, Work&& work) const
   {
@@ -217,10 +217,10 @@ private:
   bool PlaceSorted(Buckets& sorted, IdSet& duplicates, const Progress& progress)
   {
     Stages stages(progress, { 35, 50, 15 });
-    ForEachPiece(sorted.Count(), this->Threads, stages.Next(),
+    ForEachTask(sorted.Count(), this->Threads, stages.Next(),
       [&](Index bucket) { this->OccupyBucket(sorted, bucket); });
     this->CountBefore();
-    ForEachPiece(sorted.Count(), this->Threads, stages.Next(),
+    ForEachTask(sorted.Count(), this->Threads, stages.Next(),
       [&](Index bucket) { this->PlaceBucket(sorted, bucket); });
     const Progress settling = stages.Next();
     const Index placed = sorted.Begins.back();
@@ -244,10 +244,10 @@ private:
     const Progress occupying = stages.Next();
     if (this->IsScattered)
     {
-      this->ForEachRange(occupying, [&](Index piece, Index begin, Index end) {
+      this->ForEachRange(occupying, [&](Index range, Index begin, Index end) {
         std::vector<Index> second;
         this->Occupy(begin, end, second);
-        this->Second[piece] = std::move(second);
+        this->Second[range] = std::move(second);
       });
     }
     this->CountBefore();
@@ -483,31 +483,31 @@ void LatticeNodes::Placement::CountBefore()
 {
   const Index words = static_cast<Index>(this->Nodes.Memory.size());
   this->Nodes.Before.Resize(this->Nodes.Memory.size());
-  // Two passes, as the sums of all earlier pieces are needed before ranks can be written.
-  const Index pieces = std::min(this->Threads, words);
-  const auto beginOf = [&](Index piece) {
-    return static_cast<Index>(std::int64_t(words) * piece / pieces);
+  // Two passes, as the sums of all earlier ranges are needed before ranks can be written.
+  const Index ranges = std::min(this->Threads, words);
+  const auto beginOf = [&](Index range) {
+    return static_cast<Index>(std::int64_t(words) * range / ranges);
   };
-  std::vector<Index> sums(pieces, 0);
-  ForEachPiece(pieces - 1, this->Threads, [&](Index piece) {
+  std::vector<Index> sums(ranges, 0);
+  ForEachTask(ranges - 1, this->Threads, [&](Index range) {
     Index sum = 0;
-    CountWork(static_cast<std::size_t>(beginOf(piece + 1) - beginOf(piece)));
-    for (Index word = beginOf(piece); word < beginOf(piece + 1); ++word)
+    CountWork(static_cast<std::size_t>(beginOf(range + 1) - beginOf(range)));
+    for (Index word = beginOf(range); word < beginOf(range + 1); ++word)
     {
       sum += CountBits(this->Nodes.Word(word));
     }
-    sums[piece + 1] = sum;
+    sums[range + 1] = sum;
   });
   std::partial_sum(sums.begin(), sums.end(), sums.begin());
-  ForEachPiece(pieces, this->Threads, [&](Index piece) {
-    Index rank = sums[piece];
-    CountWork(static_cast<std::size_t>(beginOf(piece + 1) - beginOf(piece)));
-    for (Index word = beginOf(piece); word < beginOf(piece + 1); ++word)
+  ForEachTask(ranges, this->Threads, [&](Index range) {
+    Index rank = sums[range];
+    CountWork(static_cast<std::size_t>(beginOf(range + 1) - beginOf(range)));
+    for (Index word = beginOf(range); word < beginOf(range + 1); ++word)
     {
       this->Nodes.Before[word] = rank;
       rank += CountBits(this->Nodes.Word(word));
     }
-    sums[piece] = rank;
+    sums[range] = rank;
   });
   this->Nodes.Ids.Resize(sums.back());
 }

@@ -309,8 +309,8 @@ public:
   std::vector<BorderEdge> Border(Index count, const Progress& progress, IdOf&& idOf, Visit&& visit)
   {
     const OpenEdges<Vertex>& edges = this->Ranges[0].Edges;
-    std::vector<std::vector<BorderEdge>> pieces(elevation::NumberOfRanges(count));
-    ForEachRange(count, this->Threads, progress, [&](Index piece, Index begin, Index end) {
+    std::vector<std::vector<BorderEdge>> byRange(elevation::NumberOfRanges(count));
+    ForEachRange(count, this->Threads, progress, [&](Index range, Index begin, Index end) {
       std::vector<BorderEdge> here;
       for (Index i = begin; i < end; ++i)
       {
@@ -322,21 +322,21 @@ public:
         }
         visit(i, id != None ? this->Vertices + id : nullptr);
       }
-      pieces[piece] = std::move(here);
+      byRange[range] = std::move(here);
     });
     std::size_t size = 0;
-    for (const std::vector<BorderEdge>& piece : pieces)
+    for (const std::vector<BorderEdge>& some : byRange)
     {
-      size += piece.size();
+      size += some.size();
     }
     std::vector<BorderEdge> border;
     border.reserve(size);
-    for (std::vector<BorderEdge>& piece : pieces)
+    for (std::vector<BorderEdge>& some : byRange)
     {
       Report(progress, 1.0);
-      CountWork(piece.size());
-      border.insert(border.end(), piece.begin(), piece.end());
-      piece = std::vector<BorderEdge>();
+      CountWork(some.size());
+      border.insert(border.end(), some.begin(), some.end());
+      some = std::vector<BorderEdge>();
     }
     edges.AddOthers(border);
     return border;

@@ -68,11 +68,11 @@ void GreedyInsertion::AddSample(std::uint32_t every, int threads, const Progress
   const auto isNew = [&](Index place) {
     return this->Inserted.Links[place] == InsertionMesh::Unassigned && IsInSample(place, every - 1);
   };
-  ForEachPiece((count + pointsAtOnce - 1) / pointsAtOnce, threads, progress, [&](Index piece) {
+  ForEachTask((count + pointsAtOnce - 1) / pointsAtOnce, threads, progress, [&](Index task) {
     Index face = this->Ordered.front(), known = None;
     Slopes slopes{ 0.0, 0.0 };
     for (const Index place :
-      Counted(piece * pointsAtOnce, std::min(count, (piece + 1) * pointsAtOnce)))
+      Counted(task * pointsAtOnce, std::min(count, (task + 1) * pointsAtOnce)))
     {
       if (!isNew(place))
       {

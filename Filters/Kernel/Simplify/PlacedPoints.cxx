@@ -167,7 +167,7 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
     return row < nodes.Rows ? nodes.RankOf(nodes.NodeAt(row, 0)) : nodes.NumberOfPoints();
   };
   placed.Places.Resize(static_cast<std::size_t>(nodes.NumberOfPoints()));
-  ForEachPiece(nodes.Rows, threads, stages.Next(), [&](Index row) {
+  ForEachTask(nodes.Rows, threads, stages.Next(), [&](Index row) {
     Index place = placesBefore(row);
     // Rows are converted in parallel, each from its first place on.
     nodes.VisitRow(row, [&](Index column) {

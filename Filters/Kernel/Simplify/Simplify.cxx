@@ -79,13 +79,13 @@ public:
   {
     constexpr Index facesAtOnce = 4096;
     const Index count = static_cast<Index>(this->Chosen.Order().size());
-    const Index pieces = (count + facesAtOnce - 1) / facesAtOnce;
-    std::vector<double> largest(static_cast<std::size_t>(pieces), 0.0);
+    const Index tasks = (count + facesAtOnce - 1) / facesAtOnce;
+    std::vector<double> largest(static_cast<std::size_t>(tasks), 0.0);
     std::vector<std::vector<Index>> found(largest.size());
-    ForEachPiece(pieces, threads, progress, [&](Index piece) {
-      for (const Index i : Counted(piece * facesAtOnce, std::min(count, (piece + 1) * facesAtOnce)))
+    ForEachTask(tasks, threads, progress, [&](Index task) {
+      for (const Index i : Counted(task * facesAtOnce, std::min(count, (task + 1) * facesAtOnce)))
       {
-        this->MeasureFace(this->Chosen.Order()[i], most, largest[piece], found[piece]);
+        this->MeasureFace(this->Chosen.Order()[i], most, largest[task], found[task]);
       }
     });
     for (const std::vector<Index>& some : found)
