@@ -92,7 +92,7 @@ void PassSides(vtkPolyData* input, elevation::DataSetTriangles& triangles,
   Stages stages(progress, { 25, 15, 30, 30 });
   const int threads = elevation::ResolveNumberOfThreads(options.NumberOfThreads);
   // Without an inserted point no triangle was cut.
-  const bool arePieces = !trimmed.Inserted.empty();
+  const bool areCut = !trimmed.Inserted.empty();
   elevation::PassPoints(input, trimmed, stages.Next(), kept);
   Report(stages.Next(), 0.0);
   if (lines)
@@ -108,8 +108,8 @@ void PassSides(vtkPolyData* input, elevation::DataSetTriangles& triangles,
   PassTriangles(input, triangles, trimmed.Kept, threads, kept);
   PassTriangles(input, triangles, trimmed.Outward, threads, outward);
   elevation::PassCellData(
-    input, elevation::FirstPolygon(input), trimmed.Kept, arePieces, stages.Next(), kept);
-  elevation::PassCellData(input, 0, trimmed.Outward, arePieces, stages.Next(), outward);
+    input, elevation::FirstPolygon(input), trimmed.Kept, areCut, stages.Next(), kept);
+  elevation::PassCellData(input, 0, trimmed.Outward, areCut, stages.Next(), outward);
   kept->GetFieldData()->PassData(input->GetFieldData());
   outward->GetFieldData()->PassData(input->GetFieldData());
 }

@@ -274,8 +274,8 @@ void PassTrimmedPoints(
   }
 }
 
-// Vertices and lines go with the kept side (firstCells), pieces of a triangle with its values.
-void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool arePieces,
+// Vertices and lines go with the kept side (firstCells), what is cut of a triangle with its values.
+void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool areCut,
   const Progress& progress, vtkPolyData* output)
 {
   const vtkIdType count = firstCells + static_cast<vtkIdType>(side.Parents.size());
@@ -284,7 +284,7 @@ void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& s
     return cell < firstCells ? cell : firstTriangle + side.Parents[cell - firstCells];
   };
   CopyTuples(input->GetCellData(), count, sourceOf, progress, output->GetCellData());
-  if (arePieces)
+  if (areCut)
   {
     // Parts of a triangle have its values, which are no longer global ids then.
     output->GetCellData()->SetActiveAttribute(-1, vtkDataSetAttributes::GLOBALIDS);
