@@ -169,7 +169,7 @@ bool BoundaryZone::TrimOutline(
     {
       // At most one part knows the spacing of a point, that in which it is away from the border.
       const double spacing = ofPoints->GetComponent(i, 0);
-      double& joined = spacings[this->Common->Place(part, i)];
+      double& joined = spacings[this->Common->JoinedPoint(part, i)];
       joined = std::isnan(spacing) ? joined : spacing;
     }
   }
@@ -225,7 +225,7 @@ bool BoundaryZone::AreSamePlaces() const
     {
       double p[3], q[3];
       this->GivenParts[part]->GetPoint(i, p);
-      this->JoinedParts->GetPoint(this->Common->Place(part, i), q);
+      this->JoinedParts->GetPoint(this->Common->JoinedPoint(part, i), q);
       const auto isSame = [](double a, double b) {
         return a == b || (std::isnan(a) && std::isnan(b)); // of an unused point
       };
@@ -342,7 +342,7 @@ std::vector<Index> BoundaryZone::FindOwners(std::vector<TrimmedZone>& splits) co
       vtkUnsignedCharArray* const marks = GhostsOf(this->GivenParts[part]->GetPointData());
       for (vtkIdType i = 0; i < this->GivenParts[part]->GetNumberOfPoints(); ++i)
       {
-        std::size_t& owner = owners[this->Common->Place(part, i)];
+        std::size_t& owner = owners[this->Common->JoinedPoint(part, i)];
         const bool isMarked = IsCopy(marks, i);
         if (isLooking)
         {
@@ -380,7 +380,7 @@ void BoundaryZone::PlaceCorners(std::size_t part, std::vector<Index>& places,
   // Of points of the part that are one joined point, the first is left: it is written last.
   for (vtkIdType i = count - 1; i >= 0; --i)
   {
-    places[this->Common->Place(part, i)] = static_cast<Index>(i);
+    places[this->Common->JoinedPoint(part, i)] = static_cast<Index>(i);
   }
   std::vector<Index> added;
   const vtkIdType inserted = this->JoinedParts->GetNumberOfPoints();
@@ -414,7 +414,7 @@ void BoundaryZone::PlaceCorners(std::size_t part, std::vector<Index>& places,
   };
   for (vtkIdType i = 0; i < count; ++i)
   {
-    const Index point = static_cast<Index>(this->Common->Place(part, i));
+    const Index point = static_cast<Index>(this->Common->JoinedPoint(part, i));
     places[point] = None;
     if (isOnBoundary(point))
     {

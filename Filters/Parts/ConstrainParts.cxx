@@ -30,10 +30,10 @@ namespace elevation
 namespace
 {
 /** A point of some part: how a number of the two lists above becomes a number of all points. */
-struct PlaceInPart
+struct PointInPart
 {
   int Part;
-  vtkIdType Place; // in OwnPoints
+  vtkIdType Point; // in OwnPoints
 };
 
 /** Step 1; the functions are what it does, in their order. */
@@ -69,7 +69,7 @@ private:
   DataSetPoints SourcePoints;
   ConstraintLines Lines;
   PointTable Near; // those of this rank; then of all ranks, by their ids
-  std::vector<PlaceInPart> NearPlaces, AddedPlaces;
+  std::vector<PointInPart> NearPlaces, AddedPlaces;
   vtkIdType LargestId = -1;
   LinePieces Pieces;
 };
@@ -107,7 +107,7 @@ void AddedLines::ListNear(const Progress& progress, std::vector<Message>& warnin
       this->Near.Unpack(&packed, 1);
       std::transform(
         near.begin(), near.end(), std::back_inserter(this->NearPlaces), [part](Index place) {
-          return PlaceInPart{ part, place };
+          return PointInPart{ part, place };
         });
     });
   });
@@ -125,9 +125,9 @@ void AddedLines::ShareNear()
     std::iota(all.begin(), all.end(), vtkIdType(0));
     // The same to each rank, this one included.
     std::generate(packed.begin(), packed.end(), [&]() { return this->Near.Pack(all); });
-    for (const PlaceInPart& at : this->NearPlaces)
+    for (const PointInPart& at : this->NearPlaces)
     {
-      places.insert(places.end(), { at.Part, at.Place });
+      places.insert(places.end(), { at.Part, at.Point });
     }
   });
   packed = this->AllRanks.Exchange(std::move(packed));
@@ -233,8 +233,8 @@ SharedLines AddedLines::Result() const
   const Index near = static_cast<Index>(this->Near.Count());
   const DataSetPoints places = ViewOf(this->Near);
   const auto numberOf = [&](Index id) {
-    const PlaceInPart& at = id < near ? this->NearPlaces[id] : this->AddedPlaces[id - near];
-    return this->Store.FirstOf(at.Part) + at.Place;
+    const PointInPart& at = id < near ? this->NearPlaces[id] : this->AddedPlaces[id - near];
+    return this->Store.FirstOf(at.Part) + at.Point;
   };
   const auto placeOf = [&](Index id) {
     return id < near ? places.View.At(id) : this->Pieces.Added[id - near].Position;
@@ -254,7 +254,7 @@ SharedLines AddedLines::Result() const
 struct SentTriangle
 {
   int Part;          // that has it
-  std::size_t Place; // among its own
+  std::size_t Triangle; // among its own
   GlobalTriangle Corners;
   std::array<Point2, 3> Places;
 };
@@ -412,7 +412,7 @@ ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
   for (std::size_t t = 0; t < sent.size(); ++t)
   {
     const auto corners = mesh.Triangles.begin() + 3 * static_cast<std::ptrdiff_t>(t);
-    ChangedTriangle now{ sent[t].Place, {} };
+    ChangedTriangle now{ sent[t].Triangle, {} };
     const auto setCorners = [&]() {
       std::transform(
         corners, corners + 3, now.Corners.begin(), [&](Index corner) { return numbers[corner]; });

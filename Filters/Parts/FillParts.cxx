@@ -80,7 +80,7 @@ FillParts::KnownPart FillParts::Describe(int part, const FilledPart& one)
   KnownPart known;
   for (const Index corner : one.OwnMesh.Triangles)
   {
-    known.Place.Add(one.OwnMesh.PointOf(corner));
+    known.Extent.Add(one.OwnMesh.PointOf(corner));
   }
   known.Triangles = one.OwnMesh.NumberOfTriangles();
   known.Points = one.Input->GetNumberOfPoints();
@@ -171,7 +171,7 @@ void FillParts::FindReaches()
       const double reach = 0.5 * known.LargestHeight;
       const Box within{ { rim.Low.X - reach, rim.Low.Y - reach },
         { rim.High.X + reach, rim.High.Y + reach } };
-      if (within.Intersects(known.Place))
+      if (within.Intersects(known.Extent))
       {
         this->AllHoles.Reach[hole] = std::max(this->AllHoles.Reach[hole], reach);
       }
@@ -315,7 +315,7 @@ double FillParts::PointsAround(Index hole, const KnownPart& part) const
   const HoleExtent& extent = this->AllHoles.Extents[hole];
   const Box box = this->AllHoles.BoxOf(hole);
   const double area = box.Width() * box.Height();
-  const Box& all = part.Place;
+  const Box& all = part.Extent;
   return std::max(area / (extent.MeanEdge * extent.MeanEdge),
     0.5 * part.Triangles * area / (all.Width() * all.Height()));
 }
@@ -372,7 +372,7 @@ void FillParts::Surround(const std::vector<char>& areWaiting, const Progress& pr
       for (std::size_t i = 0; i < this->Groups[group].Holes.size() && areWaiting[group]; ++i)
       {
         const Box box = this->AllHoles.BoxOf(this->Groups[group].Holes[i]);
-        if (box.Intersects(this->KnownParts[part].Place))
+        if (box.Intersects(this->KnownParts[part].Extent))
         {
           boxes[static_cast<int>(group)].push_back(box);
         }

@@ -93,7 +93,7 @@ private:
   /** What all ranks know of a part. */
   struct KnownPart
   {
-    Box Place; ///< of its triangles
+    Box Extent; ///< of its triangles
     double Triangles = 0.0;
     vtkIdType Points = 0, OwnPoints = 0; ///< with those that other parts count, and without
     vtkIdType LargestId = -1;

@@ -256,7 +256,7 @@ void PartStore::PutTogether(int part, const Progress& progress, SurfacePart& who
   for (const ChangedTriangle& changed : ValuesIn<ChangedTriangle>(this->Crew.At(part, Changed)))
   {
     std::transform(changed.Corners.begin(), changed.Corners.end(),
-      whole.Result.Triangles.data() + 3 * changed.Place,
+      whole.Result.Triangles.data() + 3 * changed.Triangle,
       [&](GlobalId number) { return static_cast<Index>(whole.PlaceOf(number, first)); });
   }
 }

@@ -16,11 +16,11 @@ namespace elevation
 
 namespace
 {
-/** A point by its node, column and row, and its place in a piece. */
+/** A point by its node, column and row, and its index in a piece. */
 struct PlacedNode
 {
   LatticeNode Node;
-  Index Place;
+  Index Point;
 };
 
 /** @throws NotOnLattice if a point is on no node */
@@ -54,7 +54,7 @@ void KeepOneOnEach(const PointView& points, DuplicatePolicy policy, std::vector<
   Sort(
     placed.begin(), placed.end(),
     [&](const PlacedNode& p, const PlacedNode& q) {
-      return isSame(p, q) ? IsPreferred(points, policy, p.Place, q.Place)
+      return isSame(p, q) ? IsPreferred(points, policy, p.Point, q.Point)
                           : std::tie(p.Node.J, p.Node.I) < std::tie(q.Node.J, q.Node.I);
     },
     progress);
@@ -67,11 +67,11 @@ void KeepOneOnEach(const PointView& points, DuplicatePolicy policy, std::vector<
       placed[++kept] = placed[i];
       continue;
     }
-    if (points.At(placed[kept].Place) != points.At(placed[i].Place))
+    if (points.At(placed[kept].Point) != points.At(placed[i].Point))
     {
       throw NotOnLattice();
     }
-    duplicates.push_back(placed[i].Place);
+    duplicates.push_back(placed[i].Point);
   }
   placed.resize(std::min(placed.size(), kept + 1));
   std::sort(duplicates.begin(), duplicates.end());
@@ -115,7 +115,7 @@ Triangulation TriangulateSparse(
   }
   for (Index& corner : result.Triangles)
   {
-    corner = placed[corner].Place;
+    corner = placed[corner].Point;
   }
   return result;
 }

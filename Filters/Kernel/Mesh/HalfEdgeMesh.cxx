@@ -406,7 +406,7 @@ public:
 private:
   /** A border that leaves a vertex: the vertex, and the border's place in Borders. */
   using Leave = std::pair<Index, Index>;
-  using Place = std::vector<Leave>::const_iterator;
+  using LeaveEntry = std::vector<Leave>::const_iterator;
 
   /**
    * Where more meet, they are sorted by angle from the one in Leaving, for binary search. Below,
@@ -495,12 +495,12 @@ private:
     const Point2& p = this->Surface.PointOf(b);
     const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
     Index best = this->Leaving[b];
-    Place other = this->FirstAt(b);
+    LeaveEntry other = this->FirstAt(b);
     // Sorted from the direction of the first border that leaves b: the answer is the first one
     // after that of b->a, or, past the last, the first border itself.
     if (this->Further.end() - other > Many && other[Many].first == b)
     {
-      const Place last = this->FirstAt(b + 1);
+      const LeaveEntry last = this->FirstAt(b + 1);
       const Point2& start = this->EndOf(best);
       other = std::partition_point(other, last,
         [&](const Leave& u) { return TurnsToFirst(p, start, this->EndOf(u.second), from); });
@@ -547,7 +547,7 @@ private:
 
   Index Count() const { return static_cast<Index>(this->Borders.size()); }
   /** Where the further borders of a vertex begin in Further. */
-  Place FirstAt(Index vertex) const
+  LeaveEntry FirstAt(Index vertex) const
   {
     return std::lower_bound(this->Further.begin(), this->Further.end(), Leave(vertex, 0));
   }

@@ -40,7 +40,7 @@ namespace elevation
 /** What the sweep keeps of a vertex; a visitor's Vertex adds its own. */
 struct SweptVertex
 {
-  Point2 Place{ 0.0, 0.0 };
+  Point2 Position{ 0.0, 0.0 };
   Index Upper[2] = { None, None }; ///< upper ends of open half-edges: one up, one down
   Index NumberOfOthers = 0; ///< further open half-edges of which it is the lower end
   Index Unused = 0;         ///< so that no vertex spans two cache lines
@@ -374,7 +374,7 @@ private:
           for (Index v = begin; v < end; ++v, p += 3)
           {
             Vertex* vertex = new (this->Vertices + v) Vertex;
-            vertex->Place = { static_cast<double>(p[0]), static_cast<double>(p[1]) };
+            vertex->Position = { static_cast<double>(p[0]), static_cast<double>(p[1]) };
             sum += 0.0 * static_cast<double>(p[2]);
           }
           if (!(sum == 0.0))
@@ -541,8 +541,8 @@ private:
         Vertex& a = *b;
         last = ids[2];
         b = vertices + last;
-        isRight &= IsCounterClockwise(a.Place, b->Place, p.Place);
-        edges.Add(SweptEdge(before, a.Place, last, b->Place));
+        isRight &= IsCounterClockwise(a.Position, b->Position, p.Position);
+        edges.Add(SweptEdge(before, a.Position, last, b->Position));
         visitor.Visit(t, p, a, *b);
         ids += 3;
         ++t;
@@ -551,9 +551,9 @@ private:
       if (!edges.MatchBoth(p, right, last))
       {
         // First match both: a match makes room for the other one to stay open.
-        const SweptEdge firstEdge(first, p.Place, right, r.Place);
+        const SweptEdge firstEdge(first, p.Position, right, r.Position);
         const bool hasTwin = edges.Match(firstEdge);
-        edges.Add(SweptEdge(last, b->Place, first, p.Place));
+        edges.Add(SweptEdge(last, b->Position, first, p.Position));
         if (!hasTwin)
         {
           edges.Add(firstEdge); // where the fan is closed, the last edge is its twin

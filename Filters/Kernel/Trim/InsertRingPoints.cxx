@@ -8,7 +8,7 @@
 // 3. LocateOthers: one sweep over the triangles finds which one holds each other point.
 // 4. InsertLocated: cuts at these. The points that wait in a triangle move on to its parts.
 //
-// Two points of the rings at the same place are one: the map of vertices is by place.
+// Two points of the rings at the same position are one: the map of vertices is by position.
 #include "InsertRingPoints.h"
 
 #include "CutAlongRings.h"
@@ -68,7 +68,7 @@ private:
    * A point that is not a corner, and the triangle that holds it, which changes while others are
    * cut.
    */
-  struct Place
+  struct LocatedPoint
   {
     Index Triangle;
     Index Point;
@@ -278,19 +278,20 @@ private:
   {
     // In an order that depends only on the places, not on the numbers of triangles, and is random:
     // each cut then divides the points that wait in a triangle about evenly.
-    std::sort(this->Located.begin(), this->Located.end(), [&](const Place& a, const Place& b) {
-      const Point2& p = this->Points[a.Point];
-      const Point2& q = this->Points[b.Point];
-      const std::uint64_t mixedP = PointHash()(p);
-      const std::uint64_t mixedQ = PointHash()(q);
-      return std::tie(mixedP, p.X, p.Y) < std::tie(mixedQ, q.X, q.Y);
-    });
+    std::sort(this->Located.begin(), this->Located.end(),
+      [&](const LocatedPoint& a, const LocatedPoint& b) {
+        const Point2& p = this->Points[a.Point];
+        const Point2& q = this->Points[b.Point];
+        const std::uint64_t mixedP = PointHash()(p);
+        const std::uint64_t mixedQ = PointHash()(q);
+        return std::tie(mixedP, p.X, p.Y) < std::tie(mixedQ, q.X, q.Y);
+      });
     // Weights in the triangles before they are cut.
     std::vector<InsertedVertex> weights;
-    for (const Place& place : this->Located)
+    for (const LocatedPoint& located : this->Located)
     {
-      weights.push_back(this->Cutter.WeightsIn(place.Triangle, this->Points[place.Point]));
-      this->Waiting[place.Triangle].push_back(static_cast<Index>(weights.size()) - 1);
+      weights.push_back(this->Cutter.WeightsIn(located.Triangle, this->Points[located.Point]));
+      this->Waiting[located.Triangle].push_back(static_cast<Index>(weights.size()) - 1);
     }
     for (std::size_t i = 0; i < this->Located.size(); ++i)
     {
@@ -393,13 +394,13 @@ private:
     {
       if (i != done)
       {
-        Place& place = this->Located[i];
+        LocatedPoint& located = this->Located[i];
         // There is always one: the parts cover what they were cut from, also where an edge was
         // moved to the point, as the two triangles of the edge make the same quadrilateral as
         // before.
-        place.Triangle = *std::find_if(parts.begin(), parts.end(),
-          [&](Index part) { return this->Cutter.Holds(part, this->Points[place.Point]); });
-        this->Waiting[place.Triangle].push_back(i);
+        located.Triangle = *std::find_if(parts.begin(), parts.end(),
+          [&](Index part) { return this->Cutter.Holds(part, this->Points[located.Point]); });
+        this->Waiting[located.Triangle].push_back(i);
       }
     }
   }
@@ -411,7 +412,7 @@ private:
   const bool Follows;
   MeshCutter& Cutter;
   RingVertices VertexAt;
-  std::vector<Place> Located;
+  std::vector<LocatedPoint> Located;
   std::unordered_map<Index, std::vector<Index>> Waiting; ///< by triangle: indices in Located
 };
 

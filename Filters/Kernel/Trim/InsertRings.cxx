@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// InsertRings.h lists the passes: CheckCrossings() is pass 1, InsertRingPoints() 2 and 3, CutAtBorder()
-// 4; FollowSurface() threads what pass 5 inserts into the rings.
+// InsertRings.h lists the passes: CheckCrossings() is pass 1, InsertRingPoints() 2 and 3,
+// CutAtBorder() 4; FollowSurface() threads what pass 5 inserts into the rings.
 //
 // During the work a ring is a list of pieces. A piece is the part of one edge of the given rings
 // from one vertex to the next. Pieces are cut at stops into more pieces, and remember the edge that
@@ -107,7 +107,7 @@ private:
   struct BorderCrossing
   {
     Index Border; ///< index in BorderEdges
-    Point2 Place;
+    Point2 Position;
     std::size_t Piece;
     bool IsBeyond; ///< whether it is past the foot of the triangle's apex, along the border
   };
@@ -245,8 +245,9 @@ private:
         const Ends& ends = border.Segments[a.Border];
         return a.Border != b.Border  ? a.Border < b.Border
           : a.IsBeyond != b.IsBeyond ? b.IsBeyond
-          : a.Place != b.Place       ? IsBefore(ends[0], ends[1], a.Place, b.Place) != a.IsBeyond
-                                     : a.Piece < b.Piece;
+          : a.Position != b.Position
+          ? IsBefore(ends[0], ends[1], a.Position, b.Position) != a.IsBeyond
+          : a.Piece < b.Piece;
       });
     const Mesh& mesh = this->Surface;
     Index h = None;
@@ -260,13 +261,13 @@ private:
         last = None;
       }
       // Two pieces may cross the border at one rounded place: one vertex serves both.
-      const bool isSamePlace = last != None && crossings[i - 1].Place == crossing.Place;
+      const bool isSamePosition = last != None && crossings[i - 1].Position == crossing.Position;
       const Index from = mesh.Origin(h), to = mesh.Destination(h);
-      Index vertex = isSamePlace               ? last
-        : crossing.Place == mesh.PointOf(from) ? from
-        : crossing.Place == mesh.PointOf(to)   ? to
-                                               : None;
-      Point2 place = crossing.Place;
+      Index vertex = isSamePosition               ? last
+        : crossing.Position == mesh.PointOf(from) ? from
+        : crossing.Position == mesh.PointOf(to)   ? to
+                                                  : None;
+      Point2 place = crossing.Position;
       if (vertex == None && !this->Cutter.MoveToCut(h, place))
       {
         throw Error("The boundary's edge " + this->EdgeName(this->Pieces[crossing.Piece].Edge) +

@@ -66,9 +66,9 @@ struct Measurer
 
   void Begin(Vertex& p, Vertex& a)
   {
-    this->Largest = std::max({ this->Largest, std::fabs(p.Place.X), std::fabs(p.Place.Y),
-      std::fabs(a.Place.X), std::fabs(a.Place.Y) });
-    this->ToLast = SquaredLength(p.Place, a.Place);
+    this->Largest = std::max({ this->Largest, std::fabs(p.Position.X), std::fabs(p.Position.Y),
+      std::fabs(a.Position.X), std::fabs(a.Position.Y) });
+    this->ToLast = SquaredLength(p.Position, a.Position);
     this->First = this->NumberOf(p);
     this->Last = this->NumberOf(a);
   }
@@ -79,10 +79,10 @@ struct Measurer
     corners[0] = this->First;
     corners[1] = this->Last;
     corners[2] = this->Last = this->NumberOf(b);
-    this->Largest = std::max({ this->Largest, std::fabs(b.Place.X), std::fabs(b.Place.Y) });
+    this->Largest = std::max({ this->Largest, std::fabs(b.Position.X), std::fabs(b.Position.Y) });
     const double right = this->ToLast;
-    const double opposite = SquaredLength(a.Place, b.Place);
-    this->ToLast = SquaredLength(b.Place, p.Place);
+    const double opposite = SquaredLength(a.Position, b.Position);
+    this->ToLast = SquaredLength(b.Position, p.Position);
     this->Longest[t] = std::max(std::max(right, opposite), this->ToLast);
     p.Edges.Add(right);
     a.Edges.Add(opposite);
@@ -103,8 +103,8 @@ void TakeVertices(
       vertex = vertex ? vertex : &nobody;
       measured.Set(number, vertex->Edges);
       double* p = measured.Coordinates.data() + 3 * static_cast<std::size_t>(number);
-      p[0] = vertex->Place.X;
-      p[1] = vertex->Place.Y;
+      p[0] = vertex->Position.X;
+      p[1] = vertex->Position.Y;
       p[2] = 0.0;
     });
 }
@@ -122,7 +122,7 @@ void AddBorder(
     ReportStep(progress, done++, measured.Border.size());
     Measurer::Vertex& origin = sweep.At(edge.Origin);
     Measurer::Vertex& destination = sweep.At(edge.Destination);
-    destination.Edges.Add(SquaredLength(origin.Place, destination.Place));
+    destination.Edges.Add(SquaredLength(origin.Position, destination.Position));
     measured.Set(destination.Number, destination.Edges);
     edge = { origin.Number, destination.Number };
   }

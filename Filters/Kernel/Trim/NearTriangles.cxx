@@ -248,15 +248,15 @@ struct Classifier
 
   void Begin(const Vertex& p, const Vertex& a)
   {
-    this->Around = this->Raster.KindAround(p.Place);
-    this->LastReach = ReachOf(p.Place, a.Place);
+    this->Around = this->Raster.KindAround(p.Position);
+    this->LastReach = ReachOf(p.Position, a.Position);
   }
 
   void Visit(Index t, const Vertex& first, const Vertex& second, const Vertex& third)
   {
     // The triangles of a fan share sides: the third corner of one is the second of the next, so its
     // reach is known.
-    const Point2 p = first.Place, a = second.Place, b = third.Place;
+    const Point2 p = first.Position, a = second.Position, b = third.Position;
     const double reach = ReachOf(p, b);
     // All corners near the first one: the whole triangle is.
     const bool isShort = (reach <= this->Reach) & (this->LastReach <= this->Reach);

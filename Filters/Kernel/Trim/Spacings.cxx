@@ -100,7 +100,7 @@ public:
   double SpacingAt(Index v)
   {
     this->Vertex = v;
-    this->Place = this->List.Points.At(v);
+    this->Position = this->List.Points.At(v);
     this->IsCut = false;
     std::fill_n(this->Nearest, SpacingNeighbor,
       Candidate{ std::numeric_limits<double>::infinity(), None, false });
@@ -147,7 +147,7 @@ private:
     }
     // Without branches, as they would be unpredictable.
     const Index v = this->Vertex;
-    const Point2 p = this->Place;
+    const Point2 p = this->Position;
     const PointView points = this->List.Points;
     const std::uint64_t* const known = this->Known.data();
     // The sixth distance so far. It falls as vertices are added, but a limit that is not the latest
@@ -234,7 +234,7 @@ private:
   const IdSet* const Incomplete;
   bool IsCut = false; ///< an incomplete vertex has been expanded
   Index Vertex = None;
-  Point2 Place{ 0.0, 0.0 };
+  Point2 Position{ 0.0, 0.0 };
   Candidate Nearest[SpacingNeighbor];
   std::vector<Index> Found;
   // A cache of the vertices that have been among the nearest of Vertex. One that has lost its slot
