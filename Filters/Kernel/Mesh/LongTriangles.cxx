@@ -366,19 +366,19 @@ std::vector<Index> NumberRegions(const Mesh& mesh, double longest, const Progres
   {
     return regionOf;
   }
-  const Components parts = FindComponents(mesh, stages.Next(), [&](Index h) {
+  const Components components = FindComponents(mesh, stages.Next(), [&](Index h) {
     return isLong[Mesh::Triangle(h)] && isLong[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
   });
-  std::vector<Index> numbers(parts.Count(), None);
+  std::vector<Index> numbers(components.Count(), None);
   Index number = 0;
-  for (Index part = 0; part < parts.Count(); ++part)
+  for (Index component = 0; component < components.Count(); ++component)
   {
-    numbers[part] = isLong[parts.Lowest[part]] ? number++ : None;
+    numbers[component] = isLong[components.Lowest[component]] ? number++ : None;
   }
   regionOf.resize(count);
   for (Index t = 0; t < count; ++t)
   {
-    regionOf[t] = numbers[parts.ComponentOf(t)];
+    regionOf[t] = numbers[components.ComponentOf(t)];
   }
   return regionOf;
 }

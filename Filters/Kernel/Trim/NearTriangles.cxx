@@ -173,10 +173,10 @@ private:
         }
         // Rare: behind rings. The locator wants a triangle that no ring cuts; this one is inside
         // the cell.
-        const double part = 0.25 * this->Side;
+        const double offset = 0.25 * this->Side;
         const Point2 p{ this->Low.X + (column + 0.5) * this->Side,
           this->Low.Y + (row + 0.5) * this->Side };
-        kind = locator.IsInside(p, { p.X + part, p.Y }, { p.X, p.Y + part }) ? Inside : Outward;
+        kind = locator.IsInside(p, { p.X + offset, p.Y }, { p.X, p.Y + offset }) ? Inside : Outward;
       }
     }
   }

@@ -15,9 +15,9 @@ namespace
 
 constexpr std::int64_t LakeWithBays = 4; // least lakes
 
-/** The parts of triangles with equal values of flagOf(t), connected by edges. */
+/** The components of triangles with equal values of flagOf(t), connected by edges. */
 template <typename FlagOf>
-Components FindFlagParts(const Mesh& mesh, FlagOf&& flagOf, const Progress& progress)
+Components FindFlagComponents(const Mesh& mesh, FlagOf&& flagOf, const Progress& progress)
 {
   // -1 separates the triangles on both sides of an edge, 0 joins them on the same side.
   return FindComponents(mesh, progress, [&](Index h) {
@@ -51,18 +51,19 @@ struct Opening
  * of the surface, too; isOpen says which triangles belong to openings.
  */
 template <typename IsOpen, typename Look>
-void VisitOpenings(const Components& parts, std::vector<Opening>& openings, IsOpen&& isOpen,
+void VisitOpenings(const Components& components, std::vector<Opening>& openings, IsOpen&& isOpen,
   const Progress& progress, Look&& look)
 {
-  ForEachStretch(static_cast<Index>(parts.Labels.size()), progress, [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      if (isOpen(t))
+  ForEachStretch(
+    static_cast<Index>(components.Labels.size()), progress, [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
       {
-        look(t, openings[parts.ComponentOf(t)]);
+        if (isOpen(t))
+        {
+          look(t, openings[components.ComponentOf(t)]);
+        }
       }
-    }
-  });
+    });
 }
 
 } // namespace
@@ -71,18 +72,18 @@ void CloseSmallLakes(
   const Mesh& mesh, const LakeShare& share, std::vector<char>& flags, const Progress& progress)
 {
   Stages stages(progress, { 60, 20, 20 });
-  const Components parts = FindFlagParts(
+  const Components components = FindFlagComponents(
     mesh, [&](Index t) { return flags[t] == Surface; }, stages.Next());
-  std::vector<Opening> openings(parts.Count());
+  std::vector<Opening> openings(components.Count());
   const auto isOpen = [&](Index t) { return flags[t] != Surface; };
-  VisitOpenings(parts, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
+  VisitOpenings(components, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
     opening.Share += ToFixedPoint(share(t));
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
       opening.ReachesBorder |= mesh.IsBorder(h);
     }
   });
-  VisitOpenings(parts, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
+  VisitOpenings(components, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
     // A lake that is large enough for bays stays as it is.
     if (!opening.ReachesBorder && opening.Share < LakeWithBays * FixedOne)
     {
@@ -95,11 +96,11 @@ void CloseSmallBays(
   const Mesh& mesh, const LakeShare& share, std::vector<char>& flags, const Progress& progress)
 {
   Stages stages(progress, { 50, 20, 20, 10 });
-  const Components parts = FindFlagParts(
+  const Components components = FindFlagComponents(
     mesh, [&](Index t) { return flags[t]; }, stages.Next());
-  std::vector<Opening> openings(parts.Count());
+  std::vector<Opening> openings(components.Count());
   const auto isOpen = [&](Index t) { return flags[t] == Bay; };
-  VisitOpenings(parts, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
+  VisitOpenings(components, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
     opening.Share += ToFixedPoint(share(t));
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
@@ -107,7 +108,7 @@ void CloseSmallBays(
     }
   });
   VisitOpenings(
-    parts, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
+    components, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
         const char beside =
@@ -121,7 +122,7 @@ void CloseSmallBays(
         opening.Open += beside == Surface ? -length : length;
       }
     });
-  VisitOpenings(parts, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
+  VisitOpenings(components, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
     flags[t] = opening.Share < FixedOne && opening.Open <= 0 ? Surface : Outside;
   });
 }

@@ -107,10 +107,10 @@ OutwardTriangles FindOutward(
   // location of one of its triangles, give the side of all. Where the mesh has several components
   // that rings separate, each has its own location.
   const RingLocator locator(mesh.Points, boundary);
-  const Components parts = FindComponents(
+  const Components components = FindComponents(
     mesh, stages.Next(), [&isOnBoundary](Index h) { return static_cast<int>(isOnBoundary[h]); });
   std::vector<char> isOutward; // one per label
-  for (const Index t : parts.Lowest)
+  for (const Index t : components.Lowest)
   {
     const bool isInside = locator.IsInside(mesh.PointOf(mesh.Origin(3 * t)),
       mesh.PointOf(mesh.Origin(3 * t + 1)), mesh.PointOf(mesh.Origin(3 * t + 2)));
@@ -122,7 +122,7 @@ OutwardTriangles FindOutward(
   ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
-      result.IsOutward[t] = isOutward[parts.Labels[t]];
+      result.IsOutward[t] = isOutward[components.Labels[t]];
     }
   });
   Report(progress, 1.0);

@@ -210,8 +210,8 @@ void MarkBordersAround(const Mesh& mesh, const Rings& rings, Index firstOutside,
       // The half-open rule counts one of two edges that meet at the height of p.
       if ((ends[0].Y <= p.Y) != (ends[1].Y <= p.Y))
       {
-        const double part = (p.Y - ends[0].Y) / (ends[1].Y - ends[0].Y);
-        const double x = ends[0].X + part * (ends[1].X - ends[0].X);
+        const double share = (p.Y - ends[0].Y) / (ends[1].Y - ends[0].Y);
+        const double x = ends[0].X + share * (ends[1].X - ends[0].X);
         // Of edges that meet there, the same in any order.
         const auto keyOf = [](double at, const Ends& e) {
           return std::make_tuple(at, e[0].X, e[0].Y, e[1].X, e[1].Y);
@@ -372,9 +372,9 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
 /** What an extracted boundary leaves out. @param[in] all  if it leaves out all */
 Message LossOf(const ExtractedBoundary& found, bool all)
 {
-  const auto percent = [](double part) {
+  const auto percent = [](double share) {
     std::ostringstream text;
-    text << std::fixed << std::setprecision(1) << 100.0 * part;
+    text << std::fixed << std::setprecision(1) << 100.0 * share;
     return text.str();
   };
   const std::string tolerance = ToText(found.GapTolerance, 4);
