@@ -89,8 +89,8 @@ private:
 /**
  * The stages of a computation, one after another. A function states once, at its top, which share
  * of the whole each takes, and gives Next() to each; never two in one call, as arguments have no
- * order. A stage that may be left out gets a share of 0 then, and one whose work is not foreseen
- * gets 0 always.
+ * order. A stage that may be left out takes its Next() all the same, or has a share of 0; one whose
+ * work is not foreseen has 0 always.
  */
 class Stages
 {
