@@ -140,7 +140,7 @@ bool ElevateBetweenLines(const Mesh& mesh, const VertexStars* stars, double long
   const Values& elevation, const FillOptions& options, const Progress& progress, FilledHole& filled,
   HoleReport& report)
 {
-  Stages stages(progress, { 75, 25, 0 });
+  Stages stages(progress, { 75, 25 });
   Patch& patch = filled.Triangles;
   const BetweenLines lines(patch, longest, elevation, stages.Next());
   if (!lines.AreFound())
@@ -148,10 +148,9 @@ bool ElevateBetweenLines(const Mesh& mesh, const VertexStars* stars, double long
     return false;
   }
   SetElevations(lines.Apply(elevation, stages.Next()), patch);
-  const Progress applying = stages.Next();
   for (const Values& values : options.Attributes)
   {
-    filled.Attributes.push_back(lines.Apply(values, applying));
+    filled.Attributes.push_back(lines.Apply(values, progress.Between(1.0, 1.0)));
     if (filled.Attributes.back().empty())
     {
       filled.Attributes.back() =
@@ -259,8 +258,7 @@ public:
 
   FillResult Run()
   {
-    const Progress& monitor = this->Options.Monitor;
-    Stages stages(monitor, { 2, 98 });
+    Stages stages(this->Options.Monitor, { 2, 98 });
     // The neighbours' mean looks at the patch alone; all other methods are tried around the hole.
     const bool needsStars = this->Options.Method != Interpolation::NeighborMean;
     this->Least = needsStars ? PointsPerTrial : PointsPerPatch;
@@ -289,7 +287,7 @@ public:
       begin = end;
     }
     this->DropRegionsWithoutRoom();
-    Report(monitor, 1.0);
+    Report(this->Options.Monitor, 1.0);
     return std::move(this->Result);
   }
 
@@ -324,8 +322,6 @@ private:
    */
   void PlanAll(const Progress& progress)
   {
-    Stages stages(progress, { 100, 0, 0 });
-    const Progress searching = stages.Next(), connecting = stages.Next(), planning = stages.Next();
     const FillOptions& options = this->Options;
     // Lattice nodes are used only if the user sets no spacing.
     LatticeSearch lattice;
@@ -334,18 +330,18 @@ private:
     {
       lattice = this->Context.FoundLattice
         ? *this->Context.FoundLattice
-        : FindLattice(this->Points, LatticeTolerance, this->Threads, searching);
+        : FindLattice(this->Points, LatticeTolerance, this->Threads, progress);
     }
     if (lattice.Found)
     {
-      this->Stars = std::make_unique<VertexStars>(this->Surface, connecting);
+      this->Stars = std::make_unique<VertexStars>(this->Surface, progress.Between(1.0, 1.0));
     }
     this->Result.Reports.reserve(this->GivenHoles.Count());
     for (Index hole = 0; hole < this->GivenHoles.Count(); ++hole)
     {
       if (hole % 4096 == 0)
       {
-        Report(planning, 0.0);
+        Report(progress, 1.0);
       }
       this->Result.Reports.push_back(MeasureHole(this->Surface, this->GivenHoles, hole, options));
       HoleReport& report = this->Result.Reports.back();
