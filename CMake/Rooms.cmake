@@ -76,7 +76,7 @@ set(es_kernel_Trim
   Scales
   Openings
   Slivers
-  SmallPieces
+  SmallComponents
   SimpleRings
   TraceOutline
   MissingNodes

@@ -82,12 +82,14 @@ using elevation::Holes;
 using elevation::Index;
 using elevation::Mesh;
 using elevation::Report;
+using elevation::Stages;
 
 /** Fills a block in memory. */
 FillResult FillBlock(
   FillOptions options, bool interpolates, double openEdgeLength, elevation::Block& block)
 {
   const elevation::Progress& progress = block.Progress;
+  Stages stages(progress, { 15, 25, 10, 5, 45 });
   vtkPolyData* const input = vtkPolyData::SafeDownCast(block.Input);
   Report(progress, 0.0);
   elevation::CheckOptions(options, openEdgeLength);
@@ -95,15 +97,16 @@ FillResult FillBlock(
   const elevation::DataSetPoints points = elevation::ViewPoints(input);
   const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
   Mesh mesh;
-  elevation::ToMesh(input, mesh, progress.Between(0.0, 0.15));
+  elevation::ToMesh(input, mesh, stages.Next());
   // Cells are named with their numbers among all cells of the input, vertices and lines included.
-  mesh.ConnectTwins(firstPolygon, progress.Between(0.15, 0.4));
-  Holes found = elevation::FindHoles(mesh, firstPolygon, progress.Between(0.4, 0.5));
+  mesh.ConnectTwins(firstPolygon, stages.Next());
+  Holes found = elevation::FindHoles(mesh, firstPolygon, stages.Next());
+  const elevation::Progress opening = stages.Next();
   Mesh opened;
   // The mesh without long triangles is the surface that is known; `mesh` keeps all triangles, as
   // those of regions that are not filled stay in the output.
   const bool isOpened = openEdgeLength > 0.0 &&
-    elevation::OpenLongTriangles(mesh, openEdgeLength, found, opened, progress.Between(0.5, 0.55));
+    elevation::OpenLongTriangles(mesh, openEdgeLength, found, opened, opening);
 
   if (interpolates)
   {
@@ -118,17 +121,16 @@ FillResult FillBlock(
       marks->GetPointer(0), marks->GetPointer(0) + marks->GetNumberOfTuples());
   }
   // Without a hole, filling takes no time.
-  const double filledAt = found.Count() > 0 ? 0.85 : 0.55;
-  const elevation::Progress filling = progress.Between(0.55, filledAt);
-  options.Monitor = filling;
+  Stages later =
+    found.Count() > 0 ? Stages(stages.Next(), { 66, 27, 7 }) : Stages(stages.Next(), { 0, 93, 7 });
+  options.Monitor = later.Next();
   FillResult patches =
     elevation::FillHoles(isOpened ? opened : mesh, points.View, std::move(found), options);
   // After filling: the kernel numbers holes from 0.
   patches.FirstNumber = elevation::NextHole(input);
 
-  MakeSurface(
-    input, mesh, patches, interpolates, progress.Between(filledAt, 0.97), block.Outputs[0]);
-  MakeReport(input, patches, progress.Between(0.97, 1.0), block.Outputs[1]);
+  MakeSurface(input, mesh, patches, interpolates, later.Next(), block.Outputs[0]);
+  MakeReport(input, patches, later.Next(), block.Outputs[1]);
   AddHoleCounts(patches, block.Outputs);
   block.Warnings = WarningsOf(patches);
   // Instead of others: there can be none. A filter before this one may have warned already.

@@ -81,18 +81,19 @@ using elevation::ConstraintLines;
 using elevation::Index;
 using elevation::Progress;
 using elevation::ReportStep;
+using elevation::Stages;
 
 /** The lines of a source, checked to be where the points are; @a own must outlive them. */
 ConstraintLines LinesOf(vtkPolyData* source, const elevation::DataSetPoints& own,
   const elevation::PointView& points, int threads, const Progress& progress,
   std::vector<elevation::Message>& warnings)
 {
-  const ConstraintLines lines =
-    elevation::ToConstraintLines(source, own, progress.Between(0.0, 0.5));
+  Stages stages(progress, { 50, 50 });
+  const ConstraintLines lines = elevation::ToConstraintLines(source, own, stages.Next());
   // By all finite points, not only those that become vertices.
   const elevation::Box box =
-    elevation::FindExtent(points, elevation::ResolveNumberOfThreads(threads),
-      progress.Between(0.5, 1.0), [](Index, const elevation::Point2&) {});
+    elevation::FindExtent(points, elevation::ResolveNumberOfThreads(threads), stages.Next(),
+      [](Index, const elevation::Point2&) {});
   elevation::CheckLines(lines, box, warnings);
   return lines;
 }
@@ -111,11 +112,12 @@ elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
     return unconstrained;
   }
   elevation::CheckPointArrays(source, "The constraints'");
+  Stages stages(progress, { 2, 98 });
   elevation::WarnOfLattice(options, warnings);
   const elevation::DataSetPoints own = elevation::ViewPoints(source);
   const ConstraintLines lines =
-    LinesOf(source, own, points, options.NumberOfThreads, progress.Between(0.0, 0.02), warnings);
-  options.Monitor = progress.Between(0.02, 1.0);
+    LinesOf(source, own, points, options.NumberOfThreads, stages.Next(), warnings);
+  options.Monitor = stages.Next();
   return elevation::TriangulateConstrained(points, lines, options);
 }
 
@@ -147,6 +149,7 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   elevation::DelaunayOptions options, const elevation::ConstrainedTriangulation& constrained,
   const Progress& progress, std::vector<elevation::Message>& warnings)
 {
+  Stages stages(progress, { 5, 65, 30 });
   const elevation::Triangulation& found = constrained.Result;
   if (!(options.MaximumEdgeLength > 0.0))
   {
@@ -157,8 +160,7 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   const std::size_t ids = points.Count + constrained.Added.size();
   elevation::LimitEffect effect;
   effect.Vertices = static_cast<vtkIdType>(ids - found.UnusedPoints.size());
-  effect.Missing =
-    effect.Vertices - CountInTriangles(found.Triangles, ids, progress.Between(0.0, 0.05));
+  effect.Missing = effect.Vertices - CountInTriangles(found.Triangles, ids, stages.Next());
   if (!effect.AreMostMissing())
   {
     return;
@@ -171,12 +173,12 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   // Warnings on the constraints, which have been given once.
   std::vector<elevation::Message> again;
   const elevation::ConstrainedTriangulation full =
-    TriangulateWith(source, points, options, progress.Between(0.05, 0.7), again);
+    TriangulateWith(source, points, options, stages.Next(), again);
   const auto placeOf = [&](Index id) {
     return id < points.Count ? points.At(id) : full.Added[id - points.Count].Position;
   };
   elevation::EdgeMeasures lengths =
-    elevation::MeasureEdges(full.Result.Triangles, ids, placeOf, progress.Between(0.7, 1.0));
+    elevation::MeasureEdges(full.Result.Triangles, ids, placeOf, stages.Next());
   std::vector<double>& limits = lengths.Limits;
   // Unused points, which no limit gives a triangle.
   limits.erase(std::remove(limits.begin(), limits.end(), std::numeric_limits<double>::infinity()),
@@ -213,11 +215,12 @@ void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
 vtkIdType Drape(vtkPolyData* lines, const elevation::PointView& points, int threads,
   const Progress& progress, std::vector<elevation::Message>& warnings, vtkPolyData* surface)
 {
+  Stages stages(progress, { 0, 100 });
   elevation::CheckPointArrays(lines, "The constraints'");
   // The same checks as for constraints that become edges; but what lies outside of the surface is
   // not draped, and that is another sentence.
   std::vector<elevation::Message> found;
-  LinesOf(lines, elevation::ViewPoints(lines), points, threads, progress.Between(0.0, 0.0), found);
+  LinesOf(lines, elevation::ViewPoints(lines), points, threads, stages.Next(), found);
   for (const elevation::Message& message : found)
   {
     const bool isOutside = message.GetCode() == elevation::sentences::LinesFarOutside.Code;
@@ -225,7 +228,7 @@ vtkIdType Drape(vtkPolyData* lines, const elevation::PointView& points, int thre
         ? elevation::MakeMessage<elevation::sentences::LinesNotDraped>("constraints")
         : message);
   }
-  return elevation::SplitSurface(surface, lines, threads, progress);
+  return elevation::SplitSurface(surface, lines, threads, stages.Next());
 }
 
 /** Triangulates a block in memory. @return the counts */
@@ -241,29 +244,29 @@ elevation::ConstrainedTriangulation TriangulateBlock(
   // Of the second input, one or the other.
   vtkPolyData* const draped = drapes ? block.Second : nullptr;
   vtkPolyData* const source = draped ? nullptr : block.Second;
-  const double split = draped ? 0.7 : 1.0;
-  const double advised = source ? 0.95 : split;
-  // Little, as a limit seldom needs advice.
-  const double triangulated = options.MaximumEdgeLength > 0.0 ? advised - 0.09 : advised;
-  elevation::ConstrainedTriangulation made = TriangulateWith(
-    source, points.View, options, progress.Between(0.0, triangulated), block.Warnings);
+  // Little for advice, as a limit seldom needs it.
+  const double advising = options.MaximumEdgeLength > 0.0 ? 9.0 : 0.0;
+  const double passing = source ? 5.0 : 0.0, draping = draped ? 30.0 : 0.0;
+  Stages stages(progress, { 100.0 - advising - passing - draping, advising, passing, draping, 0 });
+  elevation::ConstrainedTriangulation made =
+    TriangulateWith(source, points.View, options, stages.Next(), block.Warnings);
   // Before warnings, which count hidden points apart.
   elevation::NameHidden(elevation::GhostsOf(block.Input->GetPointData()), made.Result);
   elevation::WarnOfWall(elevation::SampleOf(points.View), block.Warnings);
-  WarnOfMissing(
-    source, points.View, options, made, progress.Between(triangulated, advised), block.Warnings);
-  elevation::PassPoints(block.Input, source, made.Added, progress.Between(advised, split), output);
+  WarnOfMissing(source, points.View, options, made, stages.Next(), block.Warnings);
+  elevation::PassPoints(block.Input, source, made.Added, stages.Next(), output);
   output->GetFieldData()->PassData(block.Input->GetFieldData());
   output->SetPolys(elevation::ToCellArray(
     std::move(made.Result.Triangles), elevation::ResolveNumberOfThreads(options.NumberOfThreads)));
+  const Progress ofDraping = stages.Next();
   if (draped)
   {
     // AddReport() looks at the number of points added alone; draped lines add theirs after the
     // kernel.
-    made.Added.resize(static_cast<std::size_t>(Drape(draped, points.View, options.NumberOfThreads,
-      progress.Between(split, 1.0), block.Warnings, output)));
+    made.Added.resize(static_cast<std::size_t>(
+      Drape(draped, points.View, options.NumberOfThreads, ofDraping, block.Warnings, output)));
   }
-  elevation::AddReport(made, progress.Between(1.0, 1.0), output->GetFieldData());
+  elevation::AddReport(made, stages.Next(), output->GetFieldData());
   if (options.MaximumElevationError > 0.0)
   {
     elevation::AddSimplification(made.Result, output->GetFieldData());

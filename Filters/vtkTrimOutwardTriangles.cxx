@@ -66,6 +66,7 @@ namespace
 using elevation::Index;
 using elevation::Progress;
 using elevation::Report;
+using elevation::Stages;
 using elevation::Trimmed;
 using elevation::TrimmedSide;
 
@@ -88,10 +89,12 @@ void PassSides(vtkPolyData* input, elevation::DataSetTriangles& triangles,
   const elevation::BoundaryLines* lines, const elevation::TrimOptions& options, Trimmed& trimmed,
   const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
 {
+  Stages stages(progress, { 25, 15, 30, 30 });
   const int threads = elevation::ResolveNumberOfThreads(options.NumberOfThreads);
   // Without an inserted point no triangle was cut.
-  const bool arePieces = !trimmed.Inserted.empty();
-  elevation::PassPoints(input, trimmed, progress.Between(0.0, 0.25), kept);
+  const bool areCut = !trimmed.Inserted.empty();
+  elevation::PassPoints(input, trimmed, stages.Next(), kept);
+  Report(stages.Next(), 0.0);
   if (lines)
   {
     elevation::PassBoundary(*lines, trimmed.OnBoundary, options, kept);
@@ -104,10 +107,9 @@ void PassSides(vtkPolyData* input, elevation::DataSetTriangles& triangles,
   kept->SetLines(input->GetLines());
   PassTriangles(input, triangles, trimmed.Kept, threads, kept);
   PassTriangles(input, triangles, trimmed.Outward, threads, outward);
-  elevation::PassCellData(input, elevation::FirstPolygon(input), trimmed.Kept, arePieces,
-    progress.Between(0.4, 0.7), kept);
   elevation::PassCellData(
-    input, 0, trimmed.Outward, arePieces, progress.Between(0.7, 1.0), outward);
+    input, elevation::FirstPolygon(input), trimmed.Kept, areCut, stages.Next(), kept);
+  elevation::PassCellData(input, 0, trimmed.Outward, areCut, stages.Next(), outward);
   kept->GetFieldData()->PassData(input->GetFieldData());
   outward->GetFieldData()->PassData(input->GetFieldData());
 }
@@ -117,6 +119,11 @@ elevation::TrimCounts TrimBlock(elevation::TrimOptions options, elevation::Block
 {
   const Progress& progress = block.Progress;
   vtkPolyData* const input = vtkPolyData::SafeDownCast(block.Input);
+  // Without cell data parents are not needed. Cell data take time to pass, all else is shared.
+  options.ReturnParents = input->GetCellData()->GetNumberOfArrays() > 0;
+  const double passing = options.ReturnParents ? 13.0 : 3.0;
+  Stages stages(progress, { 2, 96.0 - passing, passing, 2 });
+  const Progress reading = stages.Next();
   vtkPolyData* const given = block.Second;
   Report(progress, 0.0);
   elevation::CheckArrays(input);
@@ -131,12 +138,9 @@ elevation::TrimCounts TrimBlock(elevation::TrimOptions options, elevation::Block
   elevation::BoundaryLines lines;
   if (isGiven)
   {
-    lines = elevation::ToBoundaryLines(given, progress.Between(0.0, 0.02));
+    lines = elevation::ToBoundaryLines(given, reading);
   }
-  // Without cell data parents are not needed. Cell data take time to pass, all else is shared.
-  options.ReturnParents = input->GetCellData()->GetNumberOfArrays() > 0;
-  const double trimmedAt = options.ReturnParents ? 0.85 : 0.95;
-  options.Monitor = progress.Between(0.02, trimmedAt);
+  options.Monitor = stages.Next();
   Trimmed trimmed = elevation::Trim(triangles.View, given ? &lines : nullptr, options);
   if (triangles.View.Count == 0 && elevation::NeedsWarning(input))
   {
@@ -147,12 +151,11 @@ elevation::TrimCounts TrimBlock(elevation::TrimOptions options, elevation::Block
     block.Warnings.push_back(trimmed.Warning);
   }
 
-  PassSides(input, triangles, isGiven ? &lines : nullptr, options, trimmed,
-    progress.Between(trimmedAt, 0.98), block.Outputs[0], block.Outputs[1]);
+  PassSides(input, triangles, isGiven ? &lines : nullptr, options, trimmed, stages.Next(),
+    block.Outputs[0], block.Outputs[1]);
   // Also ids, which name the points of the boundary.
   block.Outputs[2]->GetPointData()->CopyAllOn();
-  elevation::PassRings(
-    trimmed.Boundary, isGiven ? given : input, progress.Between(0.98, 1.0), block.Outputs[2]);
+  elevation::PassRings(trimmed.Boundary, isGiven ? given : input, stages.Next(), block.Outputs[2]);
   const elevation::TrimCounts counts(trimmed);
   elevation::AddCounts(counts, block.Outputs);
   Report(progress, 1.0);
@@ -168,7 +171,8 @@ bool TrimSpread(const elevation::Ranks& ranks, elevation::TrimOptions options,
   elevation::Block& block, elevation::TrimCounts& counts)
 {
   const auto isFit = [](vtkPolyData*) { return true; };
-  options.Monitor = block.Progress.Between(0.0, 0.88);
+  Stages stages(block.Progress, { 88, 12 });
+  options.Monitor = stages.Next();
   return elevation::WorkOnParts(block, ranks, isFit, [&](const elevation::SurfaceParts& surface) {
     // In memory TrimParts counts the triangles itself.
     elevation::TrimParts parts(surface, 0, block.Second, options);
@@ -176,9 +180,8 @@ bool TrimSpread(const elevation::Ranks& ranks, elevation::TrimOptions options,
     {
       return false;
     }
-    const Progress writing = block.Progress.Between(0.88, 1.0);
     // At most one part on this rank. Where it has none, it has no outputs either.
-    surface.Crew.ForEach(writing, [&](int part, const Progress& progress) {
+    surface.Crew.ForEach(stages.Next(), [&](int part, const Progress& progress) {
       parts.Write(part, progress, block.Outputs[0], block.Outputs[1]);
       block.Outputs[2]->ShallowCopy(parts.Boundary());
       if (!parts.Warning().IsEmpty())

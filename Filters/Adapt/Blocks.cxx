@@ -73,9 +73,9 @@ unsigned int NumberOfChildren(vtkDataObjectTree* tree)
   {
     return blocks->GetNumberOfBlocks();
   }
-  if (auto* const pieces = vtkPartitionedDataSet::SafeDownCast(tree))
+  if (auto* const partitions = vtkPartitionedDataSet::SafeDownCast(tree))
   {
-    return pieces->GetNumberOfPartitions();
+    return partitions->GetNumberOfPartitions();
   }
   auto* const collection = vtkPartitionedDataSetCollection::SafeDownCast(tree);
   // Another kind of tree has no children here: its output is empty.
@@ -88,9 +88,9 @@ vtkDataObject* Child(vtkDataObjectTree* tree, unsigned int i)
   {
     return blocks->GetBlock(i);
   }
-  if (auto* const pieces = vtkPartitionedDataSet::SafeDownCast(tree))
+  if (auto* const partitions = vtkPartitionedDataSet::SafeDownCast(tree))
   {
-    return pieces->GetPartitionAsDataObject(i);
+    return partitions->GetPartitionAsDataObject(i);
   }
   return vtkPartitionedDataSetCollection::SafeDownCast(tree)->GetPartitionedDataSet(i);
 }
@@ -101,9 +101,9 @@ void SetChild(vtkDataObjectTree* tree, unsigned int i, vtkDataObject* child)
   {
     blocks->SetBlock(i, child);
   }
-  else if (auto* const pieces = vtkPartitionedDataSet::SafeDownCast(tree))
+  else if (auto* const partitions = vtkPartitionedDataSet::SafeDownCast(tree))
   {
-    pieces->SetPartition(i, child);
+    partitions->SetPartition(i, child);
   }
 }
 

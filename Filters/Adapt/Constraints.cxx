@@ -128,14 +128,15 @@ vtkIdType CopyGiven(vtkAbstractArray* given, const std::vector<AddedPoint>& adde
 void PassPoints(vtkPointSet* input, vtkPolyData* source, const std::vector<AddedPoint>& added,
   const Progress& progress, vtkPolyData* output)
 {
+  Stages stages(progress, { 40, 60 });
   const vtkIdType count = static_cast<vtkIdType>(added.size());
-  output->SetPoints(AppendPoints(
-    input->GetPoints(), count, progress.Between(0.0, 0.4), [&](vtkIdType i, double* xyz) {
+  output->SetPoints(
+    AppendPoints(input->GetPoints(), count, stages.Next(), [&](vtkIdType i, double* xyz) {
       xyz[0] = added[i].Position.X;
       xyz[1] = added[i].Position.Y;
       xyz[2] = added[i].Elevation;
     }));
-  PassExtended(input->GetPointData(), count, output->GetPointData(), progress.Between(0.4, 1.0),
+  PassExtended(input->GetPointData(), count, output->GetPointData(), stages.Next(),
     [&](vtkAbstractArray* before, vtkAbstractArray* after, const Progress& ofArray) {
       NewValues values;
       // Points of the constraints are done with then, also those without a value, which is NaN or

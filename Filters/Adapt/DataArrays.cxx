@@ -298,19 +298,19 @@ void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSet
   {
     vtkAbstractArray* before = input->GetAbstractArray(i);
     const double count = input->GetNumberOfArrays();
-    const Progress ofArray = progress.Between(i / count, (i + 1) / count);
+    Stages stages(progress.Between(i / count, (i + 1) / count), { 50, 20, 30 });
     // A new point is none of the first input.
     const bool areOriginalIds = IsOriginalIds(before);
-    const vtkSmartPointer<vtkAbstractArray> after = Extend(
-      before, numberOfNew, areOriginalIds || IsIdArray(input, before), ofArray.Between(0.0, 0.5));
+    const vtkSmartPointer<vtkAbstractArray> after =
+      Extend(before, numberOfNew, areOriginalIds || IsIdArray(input, before), stages.Next());
     const bool areGlobalIds =
       before == input->GetAbstractAttribute(vtkDataSetAttributes::GLOBALIDS) &&
       NumberNewTuples(before, numberOfNew, after);
     if (valuesOf && !areGlobalIds && !areOriginalIds && !IsGhostArray(before))
     {
-      const NewValues values = valuesOf(before, after, ofArray.Between(0.5, 0.7));
+      const NewValues values = valuesOf(before, after, stages.Next());
       const bool areNormals = before == input->GetAbstractAttribute(vtkDataSetAttributes::NORMALS);
-      SetNewTuples(before, values, areNormals, ofArray.Between(0.7, 1.0), after);
+      SetNewTuples(before, values, areNormals, stages.Next(), after);
     }
     const int index = output->AddArray(after);
     for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)

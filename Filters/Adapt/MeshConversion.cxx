@@ -322,9 +322,9 @@ vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads
   const Index count = static_cast<Index>(size / 3) + 1;
   begins.Resize(static_cast<std::size_t>(count));
   // A megabyte of offsets for each call.
-  constexpr Index pieceCells = 1 << 18;
-  ForEachPiece((count - 1) / pieceCells + 1, threads, [&](Index piece) {
-    const Index first = piece * pieceCells, last = first + std::min(pieceCells, count - first);
+  constexpr Index taskCells = 1 << 18;
+  ForEachTask((count - 1) / taskCells + 1, threads, [&](Index task) {
+    const Index first = task * taskCells, last = first + std::min(taskCells, count - first);
     for (Index i = first; i < last; ++i)
     {
       begins[i] = 3 * i;

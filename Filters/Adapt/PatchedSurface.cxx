@@ -114,13 +114,13 @@ namespace
 void PassPoints(vtkPolyData* input, const FillResult& patches, bool interpolate,
   const Progress& progress, vtkPolyData* output)
 {
-  output->SetPoints(
-    AppendPoints(input->GetPoints(), patches.NumberOfPoints(), progress.Between(0.0, 0.3),
-      [&](vtkIdType i, double* xyz) { std::copy_n(patches.Points.data() + 3 * i, 3, xyz); }));
+  Stages stages(progress, { 30, 70 });
+  output->SetPoints(AppendPoints(input->GetPoints(), patches.NumberOfPoints(), stages.Next(),
+    [&](vtkIdType i, double* xyz) { std::copy_n(patches.Points.data() + 3 * i, 3, xyz); }));
   vtkPointData* pointData = input->GetPointData();
   std::size_t next = 0; // of the attributes, which are in the order of the arrays
-  PassExtended(pointData, patches.NumberOfPoints(), output->GetPointData(),
-    progress.Between(0.3, 1.0), [&](vtkAbstractArray* array, vtkAbstractArray*, const Progress&) {
+  PassExtended(pointData, patches.NumberOfPoints(), output->GetPointData(), stages.Next(),
+    [&](vtkAbstractArray* array, vtkAbstractArray*, const Progress&) {
       NewValues values;
       // New points are on no boundary, and have no id of a point that was measured.
       if (!interpolate || IsIdArray(pointData, array) || array == BoundaryMarksOf(pointData))
@@ -160,6 +160,7 @@ std::vector<Index> ListKept(const Mesh& mesh, const FillResult& patches)
 void PassCells(vtkPolyData* input, const Mesh& mesh, const std::vector<Index>& kept,
   const FillResult& patches, const Progress& progress, vtkPolyData* output)
 {
+  Stages stages(progress, { 50, 50 });
   output->SetVerts(input->GetVerts());
   output->SetLines(input->GetLines());
   Buffer<Index> triangles;
@@ -175,18 +176,18 @@ void PassCells(vtkPolyData* input, const Mesh& mesh, const std::vector<Index>& k
   vtkCellData* cellData = input->GetCellData();
   vtkNew<vtkCellData> ofKept;
   const vtkIdType first = FirstPolygon(input);
+  const Progress copying = stages.Next();
   // Only where patches replace triangles do cell data have to be copied.
   if (static_cast<Index>(kept.size()) < mesh.NumberOfTriangles())
   {
     const auto sourceOf = [&](vtkIdType cell) {
       return cell < first ? cell : first + kept[cell - first];
     };
-    CopyTuples(cellData, first + static_cast<vtkIdType>(kept.size()), sourceOf,
-      progress.Between(0.0, 0.5), ofKept);
+    CopyTuples(cellData, first + static_cast<vtkIdType>(kept.size()), sourceOf, copying, ofKept);
     cellData = ofKept;
   }
-  PassExtended(cellData, patches.NumberOfTriangles(), output->GetCellData(),
-    progress.Between(0.5, 1.0), nullptr);
+  PassExtended(
+    cellData, patches.NumberOfTriangles(), output->GetCellData(), stages.Next(), nullptr);
 }
 } // namespace
 
@@ -267,8 +268,10 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   Report(progress, 0.0);
   // Without new points their arrays take no time.
   const bool isExtended = patches.NumberOfPoints() > 0;
-  PassPoints(input, patches, interpolate, progress.Between(0.0, isExtended ? 0.6 : 0.0), output);
-  Report(progress, isExtended ? 0.6 : 0.15);
+  Stages stages = isExtended ? Stages(progress, { 60, 2, 2, 6, 20, 10 })
+                             : Stages(progress, { 15, 15, 20, 20, 20, 10 });
+  PassPoints(input, patches, interpolate, stages.Next(), output);
+  Report(stages.Next(), 0.0);
   const vtkIdType before = input->GetNumberOfPoints();
   vtkNew<vtkUnsignedCharArray> isNew;
   isNew->SetName("FilledPoint");
@@ -279,13 +282,13 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   // An array of the input that it replaces may be the active scalars, say; this one is not.
   output->GetPointData()->RemoveArray(isNew->GetName());
   output->GetPointData()->AddArray(isNew);
-  Report(progress, isExtended ? 0.62 : 0.3);
+  Report(stages.Next(), 0.0);
   AddErrors(input, patches, output);
 
-  Report(progress, isExtended ? 0.64 : 0.5);
+  Report(stages.Next(), 0.0);
   const std::vector<Index> kept = ListKept(mesh, patches);
-  PassCells(input, mesh, kept, patches, progress.Between(0.7, 0.9), output);
-  Report(progress, 0.9);
+  PassCells(input, mesh, kept, patches, stages.Next(), output);
+  Report(stages.Next(), 0.0);
   vtkNew<vtkIdTypeArray> holeIds;
   holeIds->SetName(HoleIdName);
   const vtkIdType first = FirstPolygon(input);

@@ -31,8 +31,8 @@ void RemoveBlunders(std::vector<Sampled>& sample)
   Sampled low, high;
   for (int c = 0; c < 3; ++c)
   {
-    const auto quantile = [&](double part) {
-      const auto at = sample.begin() + static_cast<std::ptrdiff_t>(part * (sample.size() - 1));
+    const auto quantile = [&](double share) {
+      const auto at = sample.begin() + static_cast<std::ptrdiff_t>(share * (sample.size() - 1));
       std::nth_element(sample.begin(), at, sample.end(),
         [c](const Sampled& p, const Sampled& q) { return p[c] < q[c]; });
       return (*at)[c];
@@ -59,8 +59,8 @@ std::vector<Sampled> SampleOf(const PointView& points)
   std::vector<Sampled> sample;
   for (Index i = 0; i < count; ++i)
   {
-    const double part = golden * i - std::floor(golden * i);
-    const Index at = count == points.Count ? i : static_cast<Index>(part * points.Count);
+    const double share = golden * i - std::floor(golden * i);
+    const Index at = count == points.Count ? i : static_cast<Index>(share * points.Count);
     const Point2 p = points.At(at);
     const Sampled place = { p.X, p.Y, points.Elevation(at) };
     if (std::all_of(place.begin(), place.end(), [](double value) { return std::isfinite(value); }))

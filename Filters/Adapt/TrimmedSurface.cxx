@@ -83,22 +83,23 @@ BoundaryLines ToBoundaryLines(
 vtkIdType SplitSurface(
   vtkPolyData* surface, vtkPolyData* constraints, int threads, const Progress& progress)
 {
+  Stages stages(progress, { 5, 85, 10 });
   vtkNew<vtkPolyData> before;
   before->ShallowCopy(surface);
   const DataSetTriangles triangles = ViewTriangles(before);
+  const BoundaryLines lines = ToBoundaryLines(constraints, stages.Next(), "constraints");
   TrimOptions options;
   options.ReturnParents = false;
   options.NumberOfThreads = threads;
-  options.Monitor = progress.Between(0.05, 0.9);
-  Trimmed split = SplitAlong(triangles.View,
-    ToBoundaryLines(constraints, progress.Between(0.0, 0.05), "constraints"), options);
+  options.Monitor = stages.Next();
+  Trimmed split = SplitAlong(triangles.View, lines, options);
   // Else no line meets a triangle, and the surface stays as it is.
   if (!split.Kept.IsWholeList)
   {
     surface->SetPolys(ToCellArray(std::move(split.Kept.Corners), ResolveNumberOfThreads(threads)));
     // PassPoints() adds arrays to those that are there, of the old points.
     surface->GetPointData()->Initialize();
-    PassPoints(before, split, progress.Between(0.9, 1.0), surface);
+    PassPoints(before, split, stages.Next(), surface);
   }
   return static_cast<vtkIdType>(split.Inserted.size());
 }
@@ -106,10 +107,11 @@ vtkIdType SplitSurface(
 void PassPoints(
   vtkPolyData* input, const Trimmed& trimmed, const Progress& progress, vtkPolyData* output)
 {
+  Stages stages(progress, { 40, 60 });
   const std::vector<InsertedVertex>& inserted = trimmed.Inserted;
   const vtkIdType count = static_cast<vtkIdType>(inserted.size());
-  output->SetPoints(AppendPoints(
-    input->GetPoints(), count, progress.Between(0.0, 0.4), [&](vtkIdType i, double* xyz) {
+  output->SetPoints(
+    AppendPoints(input->GetPoints(), count, stages.Next(), [&](vtkIdType i, double* xyz) {
       xyz[0] = trimmed.Places[i].X;
       xyz[1] = trimmed.Places[i].Y;
       xyz[2] = 0.0;
@@ -118,7 +120,7 @@ void PassPoints(
         xyz[2] += inserted[i].Weights[k] * input->GetPoint(inserted[i].Corners[k])[2];
       }
     }));
-  PassExtended(input->GetPointData(), count, output->GetPointData(), progress.Between(0.4, 1.0),
+  PassExtended(input->GetPointData(), count, output->GetPointData(), stages.Next(),
     [&](vtkAbstractArray* array, vtkAbstractArray*, const Progress&) {
       NewValues values;
       values.Interpolated = [&inserted, numbers = vtkArrayDownCast<vtkDataArray>(array)](
@@ -272,8 +274,8 @@ void PassTrimmedPoints(
   }
 }
 
-// Vertices and lines go with the kept side (firstCells), pieces of a triangle with its values.
-void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool arePieces,
+// Vertices and lines go with the kept side (firstCells), what is cut of a triangle with its values.
+void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool areCut,
   const Progress& progress, vtkPolyData* output)
 {
   const vtkIdType count = firstCells + static_cast<vtkIdType>(side.Parents.size());
@@ -282,7 +284,7 @@ void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& s
     return cell < firstCells ? cell : firstTriangle + side.Parents[cell - firstCells];
   };
   CopyTuples(input->GetCellData(), count, sourceOf, progress, output->GetCellData());
-  if (arePieces)
+  if (areCut)
   {
     // Parts of a triangle have its values, which are no longer global ids then.
     output->GetCellData()->SetActiveAttribute(-1, vtkDataSetAttributes::GLOBALIDS);

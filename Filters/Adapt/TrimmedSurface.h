@@ -73,9 +73,9 @@ void PassTrimmedPoints(
 /**
  * The cell data of the input's first cells, and of the triangles of one side.
  * @param[in] firstCells  the number of first cells
- * @param[in] arePieces   whether triangles may be parts of the input's
+ * @param[in] areCut      whether triangles may be parts of the input's
  */
-void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool arePieces,
+void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool areCut,
   const Progress& progress, vtkPolyData* output);
 
 /** The counts that the filter reports. */

@@ -97,16 +97,17 @@ void BoundaryZone::JoinAll(const Progress& progress)
 // Along a given boundary. Whether the zone is proven is decided before anything is trimmed.
 bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& options)
 {
-  this->JoinAll(options.Monitor.Between(0.0, 0.3));
+  Stages stages(options.Monitor, { 30, 10, 50, 10 });
+  this->JoinAll(stages.Next());
   const TriangleList& list = this->Triangles.View;
-  if (!this->IsProven(list, boundary, options.Monitor.Between(0.3, 0.4)))
+  if (!this->IsProven(list, boundary, stages.Next()))
   {
     return false;
   }
   TrimOptions ofNear = options;
   // Split() needs the parents, whether or not there are cell data.
   ofNear.ReturnParents = true;
-  ofNear.Monitor = options.Monitor.Between(0.4, 0.9);
+  ofNear.Monitor = stages.Next();
   // Messages then name points as the user numbers them, inserted ones as they will be numbered.
   if (vtkDataArray* const ids = this->JoinedParts->GetPointData()->GetGlobalIds())
   {
@@ -115,7 +116,7 @@ bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& option
                         Index id) { return id < count ? IdAt(ids, id) : largest + 1 + id - count; };
   }
   this->Sides = TrimNear(list, boundary, this->Border, ofNear);
-  PassPoints(this->JoinedParts, this->Sides, options.Monitor.Between(0.9, 1.0), this->Points);
+  PassPoints(this->JoinedParts, this->Sides, stages.Next(), this->Points);
   return true;
 }
 
@@ -146,8 +147,9 @@ void BoundaryZone::AddKnown(
 bool BoundaryZone::TrimOutline(
   std::int64_t innerPoints, std::int64_t triangles, const TrimOptions& options)
 {
+  Stages stages(options.Monitor, { 30, 10, 55, 5 });
   this->IsOutline = true;
-  this->JoinAll(options.Monitor.Between(0.0, 0.3));
+  this->JoinAll(stages.Next());
   const TriangleList& list = this->Triangles.View;
   // What the parts know, put together by joined triangles and points. Triangles of the joined list
   // come part after part, and so do their states.
@@ -167,12 +169,11 @@ bool BoundaryZone::TrimOutline(
     {
       // At most one part knows the spacing of a point, that in which it is away from the border.
       const double spacing = ofPoints->GetComponent(i, 0);
-      double& joined = spacings[this->Common->Place(part, i)];
+      double& joined = spacings[this->Common->JoinedPoint(part, i)];
       joined = std::isnan(spacing) ? joined : spacing;
     }
   }
-  std::optional<std::vector<BorderEdge>> border =
-    this->ProvenBorder(list.Points, options.Monitor.Between(0.3, 0.4));
+  std::optional<std::vector<BorderEdge>> border = this->ProvenBorder(list.Points, stages.Next());
   // No sweep here: TrimNearOutline() makes one.
   if (!border || !this->AreSamePlaces())
   {
@@ -187,13 +188,13 @@ bool BoundaryZone::TrimOutline(
   }
   TrimOptions ofParts = options;
   ofParts.ReturnParents = true;
-  ofParts.Monitor = options.Monitor.Between(0.4, 0.95);
+  ofParts.Monitor = stages.Next();
   std::optional<Trimmed> trimmed = TrimNearOutline(list,
     { states, spacings, std::move(*border), innerPoints + atBorders.Count(), triangles }, ofParts);
   if (trimmed)
   {
     this->Sides = std::move(*trimmed);
-    PassPoints(this->JoinedParts, this->Sides, options.Monitor.Between(0.95, 1.0), this->Points);
+    PassPoints(this->JoinedParts, this->Sides, stages.Next(), this->Points);
   }
   return trimmed.has_value();
 }
@@ -201,17 +202,17 @@ bool BoundaryZone::TrimOutline(
 bool BoundaryZone::IsProven(
   const TriangleList& list, const BoundaryLines& boundary, const Progress& progress)
 {
+  Stages stages(progress, { 50, 50 });
   // Joined points may have other places than the points had.
   // What the sweep finds is not used: it shows that the joined triangles are counter-clockwise, and
   // fit together at their edges.
   if (!this->AreSamePlaces() ||
     !SweepAlongRings(
-      list, boundary.Points.Places, JoinLines(boundary), list.Count, 1, progress.Between(0.0, 0.5)))
+      list, boundary.Points.Places, JoinLines(boundary), list.Count, 1, stages.Next()))
   {
     return false;
   }
-  std::optional<std::vector<BorderEdge>> border =
-    this->ProvenBorder(list.Points, progress.Between(0.5, 1.0));
+  std::optional<std::vector<BorderEdge>> border = this->ProvenBorder(list.Points, stages.Next());
   this->Border = border ? std::move(*border) : std::vector<BorderEdge>();
   return border.has_value();
 }
@@ -224,7 +225,7 @@ bool BoundaryZone::AreSamePlaces() const
     {
       double p[3], q[3];
       this->GivenParts[part]->GetPoint(i, p);
-      this->JoinedParts->GetPoint(this->Common->Place(part, i), q);
+      this->JoinedParts->GetPoint(this->Common->JoinedPoint(part, i), q);
       const auto isSame = [](double a, double b) {
         return a == b || (std::isnan(a) && std::isnan(b)); // of an unused point
       };
@@ -254,11 +255,13 @@ std::vector<BorderEdge> BoundaryZone::PartBorders() const
 std::optional<std::vector<BorderEdge>> BoundaryZone::ProvenBorder(
   const PointView& points, const Progress& progress) const
 {
+  Stages stages(progress, { 40, 20, 40 });
   std::vector<BorderEdge> all = this->PartBorders(), border;
-  Sort(all.begin(), all.end(), std::less<BorderEdge>(), progress.Between(0.0, 0.4));
+  Sort(all.begin(), all.end(), std::less<BorderEdge>(), stages.Next());
+  const Progress cancelling = stages.Next();
   for (std::size_t i = 0; i < all.size(); ++i)
   {
-    ReportStep(progress, i, 2 * all.size());
+    ReportStep(cancelling, i, all.size());
     const BorderEdge twin{ all[i].Destination, all[i].Origin };
     // An edge from a point to itself, where points of one triangle were joined, is no better.
     if (twin.Origin == twin.Destination || (i > 0 && !(all[i - 1] < all[i])))
@@ -270,9 +273,8 @@ std::optional<std::vector<BorderEdge>> BoundaryZone::ProvenBorder(
       border.push_back(all[i]);
     }
   }
-  return CoversOnce(border, points, progress.Between(0.6, 1.0))
-    ? std::make_optional(std::move(border))
-    : std::nullopt;
+  return CoversOnce(border, points, stages.Next()) ? std::make_optional(std::move(border))
+                                                   : std::nullopt;
 }
 
 // First the triangles, by their parents; then who owns which point; last, corners by parts' places.
@@ -340,7 +342,7 @@ std::vector<Index> BoundaryZone::FindOwners(std::vector<TrimmedZone>& splits) co
       vtkUnsignedCharArray* const marks = GhostsOf(this->GivenParts[part]->GetPointData());
       for (vtkIdType i = 0; i < this->GivenParts[part]->GetNumberOfPoints(); ++i)
       {
-        std::size_t& owner = owners[this->Common->Place(part, i)];
+        std::size_t& owner = owners[this->Common->JoinedPoint(part, i)];
         const bool isMarked = IsCopy(marks, i);
         if (isLooking)
         {
@@ -378,7 +380,7 @@ void BoundaryZone::PlaceCorners(std::size_t part, std::vector<Index>& places,
   // Of points of the part that are one joined point, the first is left: it is written last.
   for (vtkIdType i = count - 1; i >= 0; --i)
   {
-    places[this->Common->Place(part, i)] = static_cast<Index>(i);
+    places[this->Common->JoinedPoint(part, i)] = static_cast<Index>(i);
   }
   std::vector<Index> added;
   const vtkIdType inserted = this->JoinedParts->GetNumberOfPoints();
@@ -412,7 +414,7 @@ void BoundaryZone::PlaceCorners(std::size_t part, std::vector<Index>& places,
   };
   for (vtkIdType i = 0; i < count; ++i)
   {
-    const Index point = static_cast<Index>(this->Common->Place(part, i));
+    const Index point = static_cast<Index>(this->Common->JoinedPoint(part, i));
     places[point] = None;
     if (isOnBoundary(point))
     {

@@ -9,8 +9,8 @@
  *     part 2: ...                    --/                       \--> ...
  *
  * All of this happens on one rank. A point has three numbers here: its place in a near part, that
- * in the joined parts (CommonPoints::Place), and, if trimming has inserted it, one after all joined
- * ones.
+ * in the joined parts (CommonPoints::JoinedPoint), and, if trimming has inserted it, one after all
+ * joined ones.
  *
  * Cost: n log n in the near triangles and the borders of all parts, which are in memory at once.
  */

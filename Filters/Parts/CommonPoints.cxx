@@ -35,7 +35,7 @@ CommonPoints::CommonPoints(const Parts& parts, PartKind kind, const Progress& pr
   const std::size_t count = static_cast<std::size_t>(this->Offsets.back());
   this->First.resize(count);
   std::iota(this->First.begin(), this->First.end(), 0);
-  this->Places.resize(count);
+  this->Joined.resize(count);
   this->ReadMarks(parts);
   const bool haveIds = std::all_of(parts.begin(), parts.end(),
     [](const auto& part) { return part->GetPointData()->GetGlobalIds() != nullptr; });
@@ -61,13 +61,13 @@ CommonPoints::CommonPoints(const Parts& parts, PartKind kind, const Progress& pr
   {
     if (this->First[i] == i)
     {
-      this->Places[i] = this->NumberOfJoined++;
+      this->Joined[i] = this->NumberOfJoined++;
     }
   }
   // One step leads to the end: First of a First is itself.
   for (std::size_t i = 0; i < count; ++i)
   {
-    this->Places[i] = this->Places[this->First[i]];
+    this->Joined[i] = this->Joined[this->First[i]];
   }
 }
 
@@ -160,7 +160,7 @@ std::vector<JoinedRows> CommonPoints::Sources() const
     {
       if (this->First[i] == i)
       {
-        sources[part].Add(i - this->Offsets[part], this->Places[i]);
+        sources[part].Add(i - this->Offsets[part], this->Joined[i]);
       }
     }
   }

@@ -57,9 +57,9 @@ public:
 
   vtkIdType Count() const { return this->NumberOfJoined; }
   /** Of a point of a part: its joined point. */
-  vtkIdType Place(std::size_t part, vtkIdType point) const
+  vtkIdType JoinedPoint(std::size_t part, vtkIdType point) const
   {
-    return this->Places[this->Offsets[part] + point];
+    return this->Joined[this->Offsets[part] + point];
   }
   /** Of each part, the points whose values the joined ones have. */
   std::vector<JoinedRows> Sources() const;
@@ -76,7 +76,7 @@ private:
   std::vector<char> IsMarked;     // as another rank's; empty if none is
   std::vector<PointKey> Keys;
   std::vector<vtkIdType> First; // of the points that are the same
-  std::vector<vtkIdType> Places;
+  std::vector<vtkIdType> Joined;
   vtkIdType NumberOfJoined = 0;
 };
 

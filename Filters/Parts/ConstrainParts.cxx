@@ -30,37 +30,35 @@ namespace elevation
 namespace
 {
 /** A point of some part: how a number of the two lists above becomes a number of all points. */
-struct PlaceInPart
+struct PointInPart
 {
   int Part;
-  vtkIdType Place; // in OwnPoints
+  vtkIdType Point; // in OwnPoints
 };
 
 /** Step 1; the functions are what it does, in their order. */
 class AddedLines
 {
 public:
-  AddedLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
-    const DelaunayOptions& options, const Progress& progress)
+  AddedLines(
+    PartStore& store, vtkPolyData* source, const Cuts& plane, const DelaunayOptions& options)
     : Store(store)
     , AllRanks(store.Crew.AllRanks())
     , Source(source)
     , Plane(plane)
     , Options(options)
-    , Monitor(progress)
     , Near(store.Part.Kinds)
   {
   }
 
   void Read();
-  void ListNear(std::vector<Message>& warnings);
+  void ListNear(const Progress& progress, std::vector<Message>& warnings);
   void ShareNear();
-  void Cut();
-  void AddPoints();
+  void Cut(const Progress& progress);
+  void AddPoints(const Progress& progress);
   SharedLines Result() const;
 
 private:
-  Progress Fraction(double begin, double end) const { return this->Monitor.Between(begin, end); }
   void PassNear(vtkPolyData* points) const;
 
   PartStore& Store;
@@ -68,11 +66,10 @@ private:
   vtkPolyData* const Source;
   const Cuts& Plane;
   const DelaunayOptions& Options;
-  const Progress& Monitor;
   DataSetPoints SourcePoints;
   ConstraintLines Lines;
   PointTable Near; // those of this rank; then of all ranks, by their ids
-  std::vector<PlaceInPart> NearPlaces, AddedPlaces;
+  std::vector<PointInPart> NearPlaces, AddedPlaces;
   vtkIdType LargestId = -1;
   LinePieces Pieces;
 };
@@ -88,13 +85,13 @@ void AddedLines::Read()
 }
 
 /** Looks at each part once: where points are, and which are near lines. */
-void AddedLines::ListNear(std::vector<Message>& warnings)
+void AddedLines::ListNear(const Progress& progress, std::vector<Message>& warnings)
 {
   // Of all points of this rank; lines that are nowhere near are an error, or a warning.
   Box box;
-  this->Store.Crew.ForEach(this->Fraction(0.0, 0.5), [&](int part, const Progress& ofPart) {
-    const Progress reading = ofPart.Between(0.0, 0.5);
-    this->Store.WithOwn(part, reading, [&](const SurfacePart& own) {
+  this->Store.Crew.ForEach(progress, [&](int part, const Progress& ofPart) {
+    Stages stages(ofPart, { 50, 50 });
+    this->Store.WithOwn(part, stages.Next(), [&](const SurfacePart& own) {
       const PointTable& rows = own.OwnPoints;
       for (std::size_t i = 0; i < rows.Count(); ++i)
       {
@@ -104,14 +101,13 @@ void AddedLines::ListNear(std::vector<Message>& warnings)
         }
         this->LargestId = std::max(this->LargestId, rows.Ids[i]);
       }
-      const std::vector<Index> near =
-        ListNearLines(ViewOf(rows).View, this->Lines, ofPart.Between(0.5, 1.0));
+      const std::vector<Index> near = ListNearLines(ViewOf(rows).View, this->Lines, stages.Next());
       // By packing and unpacking, as rows of a part that is read go with it.
       const Bytes packed = rows.Pack(std::vector<vtkIdType>(near.begin(), near.end()));
       this->Near.Unpack(&packed, 1);
       std::transform(
         near.begin(), near.end(), std::back_inserter(this->NearPlaces), [part](Index place) {
-          return PlaceInPart{ part, place };
+          return PointInPart{ part, place };
         });
     });
   });
@@ -129,9 +125,9 @@ void AddedLines::ShareNear()
     std::iota(all.begin(), all.end(), vtkIdType(0));
     // The same to each rank, this one included.
     std::generate(packed.begin(), packed.end(), [&]() { return this->Near.Pack(all); });
-    for (const PlaceInPart& at : this->NearPlaces)
+    for (const PointInPart& at : this->NearPlaces)
     {
-      places.insert(places.end(), { at.Part, at.Place });
+      places.insert(places.end(), { at.Part, at.Point });
     }
   });
   packed = this->AllRanks.Exchange(std::move(packed));
@@ -156,12 +152,12 @@ void AddedLines::ShareNear()
   });
 }
 
-void AddedLines::Cut()
+void AddedLines::Cut(const Progress& progress)
 {
   // Each rank does the same work, and so has the same pieces without a message.
   this->AllRanks.Agree([&]() {
     this->Pieces = CutLines(ViewOf(this->Near).View, this->Lines, this->Options.Duplicates,
-      this->AllRanks.Watched(this->Fraction(0.5, 0.9)));
+      this->AllRanks.Watched(progress));
   });
 }
 
@@ -188,12 +184,12 @@ void AddedLines::PassNear(vtkPolyData* output) const
 }
 
 /** Each point that is added follows those of its part, with an id after the largest. */
-void AddedLines::AddPoints()
+void AddedLines::AddPoints(const Progress& progress)
 {
   SurfacePart& common = this->Store.Part;
   Engine& crew = this->Store.Crew;
   this->AllRanks.Agree([&]() {
-    const Progress watched = this->AllRanks.Watched(this->Fraction(0.9, 1.0));
+    const Progress watched = this->AllRanks.Watched(progress);
     vtkNew<vtkPolyData> near, extended;
     // Values at crossings are interpolated between points near lines, and points added before.
     this->PassNear(near);
@@ -237,8 +233,8 @@ SharedLines AddedLines::Result() const
   const Index near = static_cast<Index>(this->Near.Count());
   const DataSetPoints places = ViewOf(this->Near);
   const auto numberOf = [&](Index id) {
-    const PlaceInPart& at = id < near ? this->NearPlaces[id] : this->AddedPlaces[id - near];
-    return this->Store.FirstOf(at.Part) + at.Place;
+    const PointInPart& at = id < near ? this->NearPlaces[id] : this->AddedPlaces[id - near];
+    return this->Store.FirstOf(at.Part) + at.Point;
   };
   const auto placeOf = [&](Index id) {
     return id < near ? places.View.At(id) : this->Pieces.Added[id - near].Position;
@@ -258,7 +254,7 @@ SharedLines AddedLines::Result() const
 struct SentTriangle
 {
   int Part;          // that has it
-  std::size_t Place; // among its own
+  std::size_t Triangle; // among its own
   GlobalTriangle Corners;
   std::array<Point2, 3> Places;
 };
@@ -301,8 +297,9 @@ std::vector<std::size_t> ListMissing(
   });
   store.Crew.ForEach(progress, [&](int part, const Progress& ofPart) {
     Box& extent = extents[part];
-    store.WithWhole(part, ofPart.Between(0.0, 0.5), [&](const SurfacePart& whole) {
-      ForEachTriangle(whole, store.FirstOf(part), ofPart.Between(0.5, 1.0),
+    Stages stages(ofPart, { 50, 50 });
+    store.WithWhole(part, stages.Next(), [&](const SurfacePart& whole) {
+      ForEachTriangle(whole, store.FirstOf(part), stages.Next(),
         [&](std::size_t, const Index* corners, const GlobalTriangle& triangle) {
           for (int k = 0; k < 3; ++k)
           {
@@ -339,12 +336,13 @@ std::vector<std::size_t> ListMissing(
 void SendMeeting(
   PartStore& store, int part, const std::vector<Ends>& pieces, const Progress& progress)
 {
+  Stages stages(progress, { 50, 50 });
   const CellGrid grid = GridOf(pieces);
-  store.WithWhole(part, progress.Between(0.0, 0.5), [&](const SurfacePart& whole) {
+  store.WithWhole(part, stages.Next(), [&](const SurfacePart& whole) {
     const Index ownCount = static_cast<Index>(whole.OwnPoints.Count());
     Bytes bytes;
     std::vector<vtkIdType> corners; // own ones
-    ForEachTriangle(whole, store.FirstOf(part), progress.Between(0.5, 1.0),
+    ForEachTriangle(whole, store.FirstOf(part), stages.Next(),
       [&](std::size_t t, const Index* c, const GlobalTriangle& triangle) {
         // With the coordinates, as the first part has not these points.
         const SentTriangle sent{ part, t, triangle,
@@ -414,7 +412,7 @@ ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
   for (std::size_t t = 0; t < sent.size(); ++t)
   {
     const auto corners = mesh.Triangles.begin() + 3 * static_cast<std::ptrdiff_t>(t);
-    ChangedTriangle now{ sent[t].Place, {} };
+    ChangedTriangle now{ sent[t].Triangle, {} };
     const auto setCorners = [&]() {
       std::transform(
         corners, corners + 3, now.Corners.begin(), [&](Index corner) { return numbers[corner]; });
@@ -438,13 +436,14 @@ ValuesForParts<ChangedTriangle> Recover(const std::vector<SentTriangle>& sent,
 SharedLines AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
   const DelaunayOptions& options, const Progress& progress, std::vector<Message>& warnings)
 {
+  Stages stages(progress, { 50, 40, 10 });
   // Its lists are only needed until the pieces have numbers of all points.
-  AddedLines lines(store, source, plane, options, progress);
+  AddedLines lines(store, source, plane, options);
   lines.Read();
-  lines.ListNear(warnings);
+  lines.ListNear(stages.Next(), warnings);
   lines.ShareNear();
-  lines.Cut();
-  lines.AddPoints();
+  lines.Cut(stages.Next());
+  lines.AddPoints(stages.Next());
   SharedLines result;
   store.Crew.AllRanks().Agree([&]() { result = lines.Result(); });
   return result;
@@ -452,10 +451,10 @@ SharedLines AddLines(PartStore& store, vtkPolyData* source, const Cuts& plane,
 
 bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& progress)
 {
+  Stages stages(progress, { 40, 20, 40 });
   Engine& crew = store.Crew;
   std::map<int, Box> extents;
-  const std::vector<std::size_t> missing =
-    ListMissing(store, lines, progress.Between(0.0, 0.4), extents);
+  const std::vector<std::size_t> missing = ListMissing(store, lines, stages.Next(), extents);
   if (missing.empty())
   {
     return false;
@@ -468,7 +467,7 @@ bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& pr
       pieces.push_back(lines.Places[i]);
     }
   });
-  crew.ForEach(progress.Between(0.4, 0.6), [&](int part, const Progress& ofPart) {
+  crew.ForEach(stages.Next(), [&](int part, const Progress& ofPart) {
     const Box& extent = extents[part];
     // A part that no piece comes near is not read again.
     const auto isThere = [&extent](const Ends& piece) {
@@ -483,7 +482,7 @@ bool RecoverLines(PartStore& store, const SharedLines& lines, const Progress& pr
     }
   });
   crew.Deliver();
-  crew.ForEach(progress.Between(0.6, 1.0), [&](int part, const Progress& ofPart) {
+  crew.ForEach(stages.Next(), [&](int part, const Progress& ofPart) {
     // One part alone recovers: pieces run through several parts, and are few.
     if (part == 0)
     {

@@ -42,6 +42,7 @@ FillParts::FillParts(const SurfaceParts& surface, const FillOptions& options, bo
   , Crew(surface.Crew.AllRanks(), surface.Crew.EndOwn() - surface.Crew.FirstOwn(),
       { "patches", "rims" }, surface.Crew.Folder())
   , AllRanks(surface.Crew.AllRanks())
+  , Passes(options.Monitor, { 20, 80 })
 {
   this->AllHoles.Options = options;
   this->AllHoles.Interpolate = interpolate;
@@ -56,6 +57,8 @@ FillParts::FillParts(const SurfaceParts& surface, const FillOptions& options, bo
 template <typename Visit>
 void FillParts::WithPart(int part, const Progress& progress, const Visit& visit)
 {
+  Stages stages(progress, { 50, 50 });
+  const Progress making = stages.Next();
   FilledPart made;
   FilledPart& one = this->Crew.IsInFiles() ? made : this->InMemory;
   // In files one is new each time. In memory this is so at the first visit alone, but where Make()
@@ -63,11 +66,11 @@ void FillParts::WithPart(int part, const Progress& progress, const Visit& visit)
   if (!one.Input)
   {
     one.Number = part;
-    one.Input = this->Make(part, progress.Between(0.0, 0.5));
+    one.Input = this->Make(part, making);
   }
   if (one.Input)
   {
-    visit(one, progress.Between(0.5, 1.0));
+    visit(one, stages.Next());
   }
 }
 
@@ -77,7 +80,7 @@ FillParts::KnownPart FillParts::Describe(int part, const FilledPart& one)
   KnownPart known;
   for (const Index corner : one.OwnMesh.Triangles)
   {
-    known.Place.Add(one.OwnMesh.PointOf(corner));
+    known.Extent.Add(one.OwnMesh.PointOf(corner));
   }
   known.Triangles = one.OwnMesh.NumberOfTriangles();
   known.Points = one.Input->GetNumberOfPoints();
@@ -102,11 +105,12 @@ FillParts::KnownPart FillParts::Describe(int part, const FilledPart& one)
  */
 void FillParts::FindHoles(int rimsPart)
 {
+  Stages stages(this->Passes.Next(), { 90, 10 });
   this->RimsPart = rimsPart;
   std::vector<KnownPart> own(this->Crew.EndOwn() - this->Crew.FirstOwn());
   PartEdges edges;
   Parts borders;
-  this->Crew.ForEach(this->Fraction(0.0, 0.18), [&](int part, const Progress& progress) {
+  this->Crew.ForEach(stages.Next(), [&](int part, const Progress& progress) {
     this->WithPart(part, progress, [&](FilledPart& one, const Progress& reading) {
       one.Read(this->AllHoles.ByIds, this->AllHoles.LongestEdge, reading);
       AppendBorder(one.OwnMesh, one.Shared, one.RegionOf, part, edges);
@@ -134,8 +138,8 @@ void FillParts::FindHoles(int rimsPart)
   }
   this->AllHoles.Border = CollectBorder(this->AllRanks, std::move(edges));
   this->SendRims(std::move(borders));
-  this->AllRanks.Agree([this]() {
-    if (!this->AllHoles.Find(this->AllRanks.Watched(this->Fraction(0.18, 0.2))))
+  this->AllRanks.Agree([&]() {
+    if (!this->AllHoles.Find(this->AllRanks.Watched(stages.Next())))
     {
       throw Error("Borders of the surface touch, so that it cannot be filled in pieces; fill the "
                   "surface in memory.");
@@ -167,7 +171,7 @@ void FillParts::FindReaches()
       const double reach = 0.5 * known.LargestHeight;
       const Box within{ { rim.Low.X - reach, rim.Low.Y - reach },
         { rim.High.X + reach, rim.High.Y + reach } };
-      if (within.Intersects(known.Place))
+      if (within.Intersects(known.Extent))
       {
         this->AllHoles.Reach[hole] = std::max(this->AllHoles.Reach[hole], reach);
       }
@@ -210,12 +214,14 @@ void FillParts::SendRims(Parts&& borders)
 
 void FillParts::Fill()
 {
+  Stages stages(this->Passes.Next(), { 38, 62 });
+  const Progress finding = stages.Next();
   if (this->AllHoles.NeedLattice())
   {
-    this->FindLattice();
+    this->FindLattice(finding);
   }
   this->GroupHoles();
-  this->FillAll();
+  this->FillAll(stages.Next());
   // Each rank knows the reports of its own groups alone. From DropRegionsWithoutRoom() on, holes
   // have other numbers; so all that is shared by the old ones is shared before.
   this->ShareHoleValues(this->AllHoles.Result.Reports);
@@ -247,10 +253,11 @@ void FillParts::Fill()
 }
 
 /** That of all points, each counted once. A part is a slice. */
-void FillParts::FindLattice()
+void FillParts::FindLattice(const Progress& progress)
 {
-  const auto forEach = [this](const auto& visit) {
-    const Progress making = this->AllRanks.Watched(this->Fraction(0.2, 0.2));
+  Stages stages(progress, { 0, 100 });
+  const Progress making = this->AllRanks.Watched(stages.Next());
+  const auto forEach = [&](const auto& visit) {
     for (int part = this->Crew.FirstOwn(); part < this->Crew.EndOwn(); ++part)
     {
       this->WithPart(part, making, [&visit](FilledPart& one, const Progress&) {
@@ -260,8 +267,7 @@ void FillParts::FindLattice()
       });
     }
   };
-  this->AllHoles.FindLattice(
-    this->AllRanks, { this->RankPoints, forEach }, this->Fraction(0.2, 0.5));
+  this->AllHoles.FindLattice(this->AllRanks, { this->RankPoints, forEach }, stages.Next());
 }
 
 /**
@@ -309,7 +315,7 @@ double FillParts::PointsAround(Index hole, const KnownPart& part) const
   const HoleExtent& extent = this->AllHoles.Extents[hole];
   const Box box = this->AllHoles.BoxOf(hole);
   const double area = box.Width() * box.Height();
-  const Box& all = part.Place;
+  const Box& all = part.Extent;
   return std::max(area / (extent.MeanEdge * extent.MeanEdge),
     0.5 * part.Triangles * area / (all.Width() * all.Height()));
 }
@@ -366,7 +372,7 @@ void FillParts::Surround(const std::vector<char>& areWaiting, const Progress& pr
       for (std::size_t i = 0; i < this->Groups[group].Holes.size() && areWaiting[group]; ++i)
       {
         const Box box = this->AllHoles.BoxOf(this->Groups[group].Holes[i]);
-        if (box.Intersects(this->KnownParts[part].Place))
+        if (box.Intersects(this->KnownParts[part].Extent))
         {
           boxes[static_cast<int>(group)].push_back(box);
         }
@@ -457,8 +463,9 @@ void FillParts::FindQuotas(const Progress& progress)
   // Holes that the limits refuse are in no group, and keep a need that is NaN.
   std::vector<HoleNeed> needs(this->AllHoles.Extents.size());
   this->GroupCrew->ForEach(progress, [&](int group, const Progress& ofGroup) {
-    SurroundedHoles& holes = this->HolesOf(group, ofGroup.Between(0.0, 0.5));
-    const std::vector<HoleNeed> found = holes.Needs(this->AllHoles, ofGroup.Between(0.5, 1.0));
+    Stages stages(ofGroup, { 50, 50 });
+    SurroundedHoles& holes = this->HolesOf(group, stages.Next());
+    const std::vector<HoleNeed> found = holes.Needs(this->AllHoles, stages.Next());
     for (std::size_t i = 0; i < found.size(); ++i)
     {
       needs[holes.Numbers[i]] = found[i];
@@ -473,8 +480,9 @@ void FillParts::FindQuotas(const Progress& progress)
 // Fills a group. What is done leaves memory, and the box, when the next one is worked on.
 bool FillParts::FillGroup(int group, const Progress& progress, std::vector<vtkIdType>& beyond)
 {
-  SurroundedHoles& holes = this->HolesOf(group, progress.Between(0.0, 0.1));
-  const std::vector<Index> found = holes.Fill(this->AllHoles, progress.Between(0.1, 1.0));
+  Stages stages(progress, { 10, 90 });
+  SurroundedHoles& holes = this->HolesOf(group, stages.Next());
+  const std::vector<Index> found = holes.Fill(this->AllHoles, stages.Next());
   beyond.insert(beyond.end(), found.begin(), found.end());
   for (const Index hole : this->Groups[group].Holes)
   {
@@ -500,30 +508,33 @@ bool FillParts::FillGroup(int group, const Progress& progress, std::vector<vtkId
 }
 
 /** Until no hole needs more of the surface around it; of a group, all holes are filled again. */
-void FillParts::FillAll()
+void FillParts::FillAll(const Progress& progress)
 {
+  // Few holes need more than their first box: so the first round takes nearly all of the progress.
+  Stages stages(progress, { 16, 4, 60, 0, 20 });
+  Progress surrounding = stages.Next();
+  const Progress counting = stages.Next();
+  Progress filling = stages.Next();
+  const Progress surroundingMore = stages.Next(), fillingMore = stages.Next();
   std::vector<char> areWaiting(this->Groups.size(), 1);
   while (std::count(areWaiting.begin(), areWaiting.end(), 1) > 0)
   {
-    // Few holes need more than their first box: so the first round takes nearly all of the
-    // progress.
-    // Quotas are found once, in the first round.
-    const bool isFirst = this->AllHoles.Quotas.empty();
-    const double begin = isFirst ? 0.5 : 0.9;
-    this->Surround(areWaiting, this->Fraction(begin, isFirst ? 0.58 : 0.9));
-    if (isFirst)
+    this->Surround(areWaiting, surrounding);
+    // Once, in the first round.
+    if (this->AllHoles.Quotas.empty())
     {
-      this->FindQuotas(this->Fraction(0.58, 0.6));
+      this->FindQuotas(counting);
     }
     // Numbers as vtkIdType, so that one kind of Collect() is enough.
     std::vector<vtkIdType> beyond, waiting; // holes, and their groups
-    const Progress filling = isFirst ? this->Fraction(0.6, 0.9) : this->Fraction(0.9, 1.0);
-    this->GroupCrew->ForEach(filling, [&](int group, const Progress& progress) {
-      if (areWaiting[group] && !this->FillGroup(group, progress, beyond))
+    this->GroupCrew->ForEach(filling, [&](int group, const Progress& ofGroup) {
+      if (areWaiting[group] && !this->FillGroup(group, ofGroup, beyond))
       {
         waiting.push_back(group);
       }
     });
+    surrounding = surroundingMore;
+    filling = fillingMore;
     // On all ranks, as each of them sends by BoxOf(), which is larger then.
     for (const vtkIdType hole : this->AllRanks.Collect(beyond))
     {
@@ -560,12 +571,14 @@ void FillParts::TakePatches(int part, FilledPart& one)
 void FillParts::Pass(int part, const Progress& progress, vtkPolyData* output)
 {
   this->WithPart(part, progress, [&](FilledPart& one, const Progress& ofPart) {
+    Stages stages(ofPart, { 30, 70 });
+    const Progress reading = stages.Next();
     if (this->Crew.IsInFiles())
     {
-      one.Read(this->AllHoles.ByIds, this->AllHoles.LongestEdge, ofPart.Between(0.0, 0.3));
+      one.Read(this->AllHoles.ByIds, this->AllHoles.LongestEdge, reading);
       this->TakePatches(part, one);
     }
-    one.Write(this->AllHoles, this->AreMarked, this->LargestId, ofPart.Between(0.3, 1.0), output);
+    one.Write(this->AllHoles, this->AreMarked, this->LargestId, stages.Next(), output);
   });
 }
 
@@ -619,8 +632,9 @@ bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolat
     {
       return false;
     }
+    Stages stages(block.Progress, { 82, 18 });
     FillOptions filling = options;
-    filling.Monitor = block.Progress.Between(0.0, 0.82);
+    filling.Monitor = stages.Next();
     FillParts fill(surface, filling, interpolate, longest, sums[3] == 0);
     // The part that gets the outlines: that of the first rank with outputs.
     constexpr int first = 0;
@@ -638,11 +652,12 @@ bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolat
       return false;
     }
     fill.Fill();
-    surface.Crew.ForEach(block.Progress, [&](int part, const Progress& progress) {
-      fill.Pass(part, progress.Between(0.82, 0.97), block.Outputs[0]);
+    surface.Crew.ForEach(stages.Next(), [&](int part, const Progress& progress) {
+      Stages ofPart(progress, { 83, 17 });
+      fill.Pass(part, ofPart.Next(), block.Outputs[0]);
       if (part == first)
       {
-        fill.PassRims(progress.Between(0.97, 1.0), block.Outputs[1]);
+        fill.PassRims(ofPart.Next(), block.Outputs[1]);
       }
     });
     patches = fill.Result();

@@ -93,7 +93,7 @@ private:
   /** What all ranks know of a part. */
   struct KnownPart
   {
-    Box Place; ///< of its triangles
+    Box Extent; ///< of its triangles
     double Triangles = 0.0;
     vtkIdType Points = 0, OwnPoints = 0; ///< with those that other parts count, and without
     vtkIdType LargestId = -1;
@@ -107,10 +107,6 @@ private:
     std::vector<Index> Holes;
   };
 
-  Progress Fraction(double begin, double end) const
-  {
-    return this->AllHoles.Options.Monitor.Between(begin, end);
-  }
   template <typename Visit>
   void WithPart(int part, const Progress& progress, const Visit& visit);
   // Pass 1:
@@ -118,7 +114,7 @@ private:
   void FindReaches();
   KnownPart Describe(int part, const FilledPart& one);
   // Pass 2:
-  void FindLattice();
+  void FindLattice(const Progress& progress);
   // Pass 3:
   std::vector<int> HoleParts() const;
   double PointsAround(Index hole, const KnownPart& part) const;
@@ -130,13 +126,14 @@ private:
   void ShareHoleValues(std::vector<Value>& values) const;
   void FindQuotas(const Progress& progress);
   bool FillGroup(int group, const Progress& progress, std::vector<vtkIdType>& beyond);
-  void FillAll();
+  void FillAll(const Progress& progress);
   // Pass 6:
   void TakePatches(int part, FilledPart& one);
 
   const SurfaceParts::MakePart Make;
   Engine Crew; // of the parts
   const Ranks& AllRanks;
+  Stages Passes; // FindHoles(), and Fill()
   int RimsPart = 0;
   Parts OwnRims;       // if this rank has that part: points of its parts
   FilledPart InMemory; // the part of this rank, in memory

@@ -33,11 +33,12 @@ namespace elevation
 // Ghost cells and other cells than triangles have been refused, or are none in files.
 void FilledPart::Read(bool byIds, double longest, const Progress& progress)
 {
-  ToMesh(this->Input, this->OwnMesh, progress.Between(0.0, 0.4));
-  this->OwnMesh.ConnectTwins(0, progress.Between(0.4, 0.9));
+  Stages stages(progress, { 40, 50, 10 });
+  ToMesh(this->Input, this->OwnMesh, stages.Next());
+  this->OwnMesh.ConnectTwins(0, stages.Next());
   if (longest > 0.0)
   {
-    this->RegionOf = NumberRegions(this->OwnMesh, longest, progress.Between(0.9, 1.0));
+    this->RegionOf = NumberRegions(this->OwnMesh, longest, stages.Next());
   }
   this->ListShared(byIds);
 }
@@ -293,10 +294,10 @@ void FilledPart::NumberNewPoints(
 void FilledPart::Write(const SharedHoles& all, bool areMarked, vtkIdType largestId,
   const Progress& progress, vtkPolyData* output) const
 {
-  const vtkSmartPointer<vtkPolyData> input =
-    this->WithCorners(areMarked, progress.Between(0.0, 0.2));
-  MakeSurface(input, this->OwnMesh, this->PlacedPatches(all, input), all.Interpolate,
-    progress.Between(0.2, 1.0), output);
+  Stages stages(progress, { 20, 80 });
+  const vtkSmartPointer<vtkPolyData> input = this->WithCorners(areMarked, stages.Next());
+  MakeSurface(
+    input, this->OwnMesh, this->PlacedPatches(all, input), all.Interpolate, stages.Next(), output);
   this->NumberNewPoints(all, largestId, output->GetPointData());
 }
 

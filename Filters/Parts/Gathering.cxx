@@ -76,10 +76,12 @@ vtkSmartPointer<vtkPolyData> Checked(vtkPointSet* part, PartKind kind)
 vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, PartKind kind, int home,
   const Ranks& ranks, const Progress& progress, std::vector<Message>& warnings)
 {
+  Stages stages(progress, { 50, 50 });
+  const Progress sending = stages.Next(), joining = stages.Next();
   Parts own;
   std::vector<std::vector<Bytes>> packed(ranks.Count());
   ranks.Agree([&] {
-    Report(progress, 0.0);
+    Report(sending, 0.0);
     try
     {
       for (vtkPointSet* part : parts)
@@ -101,7 +103,7 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
   packed = ranks.ExchangeLists(std::move(packed));
   vtkSmartPointer<vtkPolyData> joined;
   ranks.Agree([&] {
-    Report(progress, 0.5);
+    Report(joining, 0.0);
     Parts all;
     // In the order of ranks, with the own parts in their place: the order decides ids and ties.
     for (int rank = 0; rank < ranks.Count() && ranks.OwnRank() == home; ++rank)
@@ -119,7 +121,7 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
     }
     if (ranks.OwnRank() == home)
     {
-      joined = Join(all, kind, progress.Between(0.5, 1.0), warnings);
+      joined = Join(all, kind, joining, warnings);
     }
   });
   return joined;

@@ -113,10 +113,10 @@ public:
       if (box.Intersects(all))
       {
         const Range range = this->RangeOf(box);
-        ++marks[Place(range.I0, range.J0)];
-        --marks[Place(range.I1 + 1, range.J0)];
-        --marks[Place(range.I0, range.J1 + 1)];
-        ++marks[Place(range.I1 + 1, range.J1 + 1)];
+        ++marks[IndexOf(range.I0, range.J0)];
+        --marks[IndexOf(range.I1 + 1, range.J0)];
+        --marks[IndexOf(range.I0, range.J1 + 1)];
+        ++marks[IndexOf(range.I1 + 1, range.J1 + 1)];
       }
     }
     for (int j = 0; j <= Side; ++j)
@@ -124,10 +124,10 @@ public:
       for (int i = 0; i <= Side; ++i)
       {
         const auto at = [&](std::vector<Index>& from, int di, int dj) {
-          return i >= di && j >= dj ? from[Place(i - di, j - dj)] : 0;
+          return i >= di && j >= dj ? from[IndexOf(i - di, j - dj)] : 0;
         };
         // Then each is the number of boxes over the cell.
-        marks[Place(i, j)] += at(marks, 1, 0) + at(marks, 0, 1) - at(marks, 1, 1);
+        marks[IndexOf(i, j)] += at(marks, 1, 0) + at(marks, 0, 1) - at(marks, 1, 1);
       }
     }
     for (int j = 0; j < Side; ++j)
@@ -135,8 +135,9 @@ public:
       for (int i = 0; i < Side; ++i)
       {
         // Each marked cell counts once, however many boxes touch it.
-        this->Counts[Place(i + 1, j + 1)] = (marks[Place(i, j)] > 0 ? 1 : 0) +
-          this->Counts[Place(i, j + 1)] + this->Counts[Place(i + 1, j)] - this->Counts[Place(i, j)];
+        this->Counts[IndexOf(i + 1, j + 1)] = (marks[IndexOf(i, j)] > 0 ? 1 : 0) +
+          this->Counts[IndexOf(i, j + 1)] + this->Counts[IndexOf(i + 1, j)] -
+          this->Counts[IndexOf(i, j)];
       }
     }
   }
@@ -144,8 +145,8 @@ public:
   bool Meet(const Box& box) const
   {
     const Range r = this->RangeOf(box);
-    return this->Counts[Place(r.I1 + 1, r.J1 + 1)] - this->Counts[Place(r.I0, r.J1 + 1)] -
-      this->Counts[Place(r.I1 + 1, r.J0)] + this->Counts[Place(r.I0, r.J0)] >
+    return this->Counts[IndexOf(r.I1 + 1, r.J1 + 1)] - this->Counts[IndexOf(r.I0, r.J1 + 1)] -
+      this->Counts[IndexOf(r.I1 + 1, r.J0)] + this->Counts[IndexOf(r.I0, r.J0)] >
       0;
   }
 
@@ -156,7 +157,7 @@ private:
     int I0, I1, J0, J1;
   };
 
-  static std::size_t Place(int i, int j)
+  static std::size_t IndexOf(int i, int j)
   {
     return static_cast<std::size_t>(j) * (Side + 1) + static_cast<std::size_t>(i);
   }

@@ -198,7 +198,7 @@ vtkSmartPointer<vtkCellArray> JoinCells(const Parts& parts, const std::vector<vt
       corners.clear();
       for (vtkIdType i = 0; i < size; ++i)
       {
-        corners.push_back(points.Place(part, ids[i]));
+        corners.push_back(points.JoinedPoint(part, ids[i]));
       }
       cells->InsertNextCell(size, corners.data());
       // From the cell of the part to the next of the joined ones, which are counted over all kinds.
@@ -236,7 +236,8 @@ void JoinFieldData(const Parts& parts, const CommonPoints& points, vtkFieldData*
       const double id = ids->GetComponent(i, 0);
       if (id >= 0.0 && id < static_cast<double>(parts[part]->GetNumberOfPoints()))
       {
-        unused.emplace(points.Place(part, static_cast<vtkIdType>(id)), reasons->GetComponent(i, 0));
+        unused.emplace(
+          points.JoinedPoint(part, static_cast<vtkIdType>(id)), reasons->GetComponent(i, 0));
       }
     }
   }

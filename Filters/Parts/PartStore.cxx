@@ -199,8 +199,9 @@ Bytes PartStore::PackForOthers(const RowsForOthers& rows, std::vector<vtkIdType>
 
 SurfacePart PartStore::ReadWhole(int part, const Progress& progress) const
 {
-  SurfacePart read = this->ReadOwn(part, progress.Between(0.0, 0.3));
-  Report(progress, 0.3);
+  Stages stages(progress, { 30, 30, 40 });
+  SurfacePart read = this->ReadOwn(part, stages.Next());
+  Report(stages.Next(), 0.0);
   bool isFirst = true;
   this->Crew.At(part, Settled).ForEach([&](const Bytes& bytes) {
     const char* from = bytes.data();
@@ -217,7 +218,7 @@ SurfacePart PartStore::ReadWhole(int part, const Progress& progress) const
     TakeList(from, result.UnusedPoints);
     TakeList(from, result.UnusedReasons);
   });
-  this->PutTogether(part, progress.Between(0.6, 1.0), read);
+  this->PutTogether(part, stages.Next(), read);
   return read;
 }
 
@@ -255,7 +256,7 @@ void PartStore::PutTogether(int part, const Progress& progress, SurfacePart& who
   for (const ChangedTriangle& changed : ValuesIn<ChangedTriangle>(this->Crew.At(part, Changed)))
   {
     std::transform(changed.Corners.begin(), changed.Corners.end(),
-      whole.Result.Triangles.data() + 3 * changed.Place,
+      whole.Result.Triangles.data() + 3 * changed.Triangle,
       [&](GlobalId number) { return static_cast<Index>(whole.PlaceOf(number, first)); });
   }
 }

@@ -63,7 +63,7 @@ enum BoxOfPart
 /** What has become of a triangle of a part. */
 struct ChangedTriangle
 {
-  std::size_t Place; ///< among those of the cell, followed by those from seams
+  std::size_t Triangle; ///< among those of the cell, followed by those from seams
   GlobalTriangle Corners;
 };
 

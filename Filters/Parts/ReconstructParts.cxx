@@ -317,19 +317,21 @@ void ReconstructParts::Check() const
 /** Step 3. What there is to warn of is reported on the first rank. */
 void ReconstructParts::WorkOnAll(const Progress& progress)
 {
-  const double filling = this->Set.FillHoles ? 0.7 : 1.0; // where it begins
-  const double trimming = this->IsTrimmed() ? 0.6 * filling : filling;
+  const bool isTrimmed = this->IsTrimmed();
+  Stages stages(progress,
+    { isTrimmed ? 42.0 : 70.0, isTrimmed ? 28.0 : 0.0, this->Set.FillHoles ? 30.0 : 0.0 });
   this->Source->SetProgressText("triangulating");
-  this->Triangulate(progress.Between(0.0, trimming));
-  if (this->IsTrimmed())
+  this->Triangulate(stages.Next());
+  const Progress trimming = stages.Next();
+  if (isTrimmed)
   {
     this->Source->SetProgressText("trimming");
-    this->Trim(progress.Between(trimming, filling));
+    this->Trim(trimming);
   }
   if (this->Set.FillHoles)
   {
     this->Source->SetProgressText("filling holes");
-    this->Fill(progress.Between(filling, 1.0));
+    this->Fill(stages.Next());
   }
 }
 
@@ -487,15 +489,16 @@ int ReconstructParts::RequestData(vtkInformation* request, vtkInformationVector*
     {
       throw Error("Properties were changed after the first piece; that needs Reset().");
     }
-    const Progress progress = ProgressOf(this->Source);
+    Stages stages(ProgressOf(this->Source), { 90, 10 });
+    const Progress working = stages.Next();
     isReporting = false; // unless it is this rank's
     if (isFirst)
     {
       this->Set = settings;
       this->Begin(count);
-      this->WorkOnAll(progress.Between(0.0, 0.9));
+      this->WorkOnAll(working);
     }
-    this->Pass(part, progress.Between(0.9, 1.0), output, rims);
+    this->Pass(part, stages.Next(), output, rims);
     // A part can then be passed on once, and its files make room for what is written.
     if (!settings.KeepFiles)
     {

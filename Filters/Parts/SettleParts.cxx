@@ -79,22 +79,22 @@ public:
     , Plane(plane)
     , Options(options)
   {
+    Stages stages(options.Monitor, { 7, 77, 16 });
+    this->Searching = stages.Next();
+    this->InCells = stages.Next();
+    this->Joining = stages.Next();
   }
 
   SettledParts SettleAll();
 
 private:
-  Progress Fraction(double begin, double end) const
-  {
-    return this->Options.Monitor.Between(begin, end);
-  }
   DelaunayOptions OptionsWith(const Progress& progress) const
   {
     DelaunayOptions options = this->Options;
     options.Monitor = progress;
     return options;
   }
-  void SettleOnGiven(const Progress& progress);
+  void SettleOnGiven();
   bool SettleOn(const SharedLattice* lattice);
   bool IsByChance(const SharedLattice& lattice) const;
   bool IsOffAnywhere(const SharedLattice* lattice) const;
@@ -110,6 +110,8 @@ private:
   const Ranks& AllRanks;
   const Cuts& Plane;
   const DelaunayOptions& Options;
+  // Of the lattice, of cells, of the seams that ranks join. What is done again reports again.
+  Progress Searching, InCells, Joining;
   // Of the nodes that wait for their other half.
   std::map<int, Piece> Seams; // of nodes, by their first parts
   bool IsOffLattice = false;  // a point of this rank is
@@ -124,17 +126,14 @@ private:
 SettledParts Settling::SettleAll()
 {
   SharedLattice lattice;
-  // Of the whole: up to 0.15 points are brought to their parts, up to 0.2 the lattice is found, up
-  // to 0.78 cells are triangulated, up to 0.9 the seams that ranks join. What is done again reports
-  // again.
-  const Progress searching = this->Fraction(0.15, 0.2);
   const bool isAsked = this->Options.UseLattice == LatticeMode::Automatic;
   if (isAsked && this->Options.GivenLattice.IsSet())
   {
-    this->SettleOnGiven(searching);
+    this->SettleOnGiven();
   }
   else if (isAsked &&
-    FindLatticeOnRanks(this->AllRanks, this->Store.Slices(), this->Options, searching, lattice) &&
+    FindLatticeOnRanks(
+      this->AllRanks, this->Store.Slices(), this->Options, this->Searching, lattice) &&
     this->SettleOn(&lattice) && !this->IsByChance(lattice))
   {
     this->Found.LatticeFound = true;
@@ -155,13 +154,13 @@ SettledParts Settling::SettleAll()
 }
 
 /** The same on the lattice that is given. */
-void Settling::SettleOnGiven(const Progress& progress)
+void Settling::SettleOnGiven()
 {
   SharedLattice lattice;
   const PointSlices points = this->Store.Slices();
   const bool hasPoints = TakeGivenLattice(
     this->AllRanks, points, [this](const auto& visit) { this->Store.ForEachRows(visit); },
-    this->Options, progress, lattice);
+    this->Options, this->Searching, lattice);
   if (!this->SettleOn(hasPoints ? &lattice : nullptr))
   {
     throw GivenLatticeUnfit();
@@ -196,7 +195,7 @@ bool Settling::SettleOn(const SharedLattice* lattice)
   this->Seams.clear();
   this->Found = SettledParts();
   this->IsOffLattice = false;
-  this->Crew.ForEach(this->Fraction(0.2, 0.78), [&](int part, const Progress& progress) {
+  this->Crew.ForEach(this->InCells, [&](int part, const Progress& progress) {
     this->WatchLattice([&]() { this->SettlePart(part, lattice, progress); });
   });
   // A rank that is off the lattice goes on without work, so that all meet here.
@@ -232,11 +231,11 @@ void Settling::WatchLattice(const Step& step)
  */
 void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress& progress)
 {
-  // Reports of reading hear an abort, but do not move.
-  const Progress reading = progress.Between(0.0, 0.0);
-  this->Store.WithOwn(part, reading, [&](const SurfacePart& own) {
+  // Reports of reading hear an abort, but do not move; so do those of larger cells.
+  Stages stages(progress, { 0, 100, 0 });
+  this->Store.WithOwn(part, stages.Next(), [&](const SurfacePart& own) {
     SettledCell settled = SettleCell(ViewOf(own.OwnPoints).View, this->Store.FirstOf(part),
-      this->Plane.CellOf(part, part + 1), this->OptionsWith(progress), lattice);
+      this->Plane.CellOf(part, part + 1), this->OptionsWith(stages.Next()), lattice);
     // To the kernel they were points that are not finite.
     NameHidden(own.OwnPoints.Marks(), settled.Result);
     this->Found.Triangles += static_cast<vtkIdType>(settled.Result.Triangles.size() / 3);
@@ -248,7 +247,7 @@ void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress
     this->Seams[part] = std::move(settled.Seam);
   });
   const int count = this->Crew.PartCount();
-  const Progress last = progress.Between(1.0, 1.0);
+  const Progress last = stages.Next();
   // From the smallest node that ends with this part; the seam of its lower half is there, as its
   // parts came before.
   for (int level = Node::Levels(count) - 1; level >= 0; --level)
@@ -308,9 +307,9 @@ bool Settling::JoinSeams(const SharedLattice* lattice)
       this->Crew.Deliver();
     }
     // Of a level, this rank works on one cell at most: the one that goes on beyond its last part.
-    const double step = 0.12 / levels, begin = 0.78 + step * (levels - 1 - level);
+    const double step = 1.0 / levels, begin = step * (levels - 1 - level);
     this->Crew.ForEach(
-      this->Fraction(begin, begin + step), [&](int part, const Progress& progress) {
+      this->Joining.Between(begin, begin + step), [&](int part, const Progress& progress) {
         const Node node = Node::Of(part, level, count);
         if (isJoined(node) && part == node.Begin)
         {

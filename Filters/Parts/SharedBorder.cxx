@@ -47,12 +47,12 @@ std::uint64_t BitsOf(const PointKey& key)
   return bits;
 }
 
-/** A point, where all ranks' points with its key meet. Rank and place say where the answer goes. */
+/** A point, where all ranks' points with its key meet. Rank and point say where the answer goes. */
 struct MetPoint
 {
   PointKey Key;
   vtkIdType IsMarked; // as another rank's
-  vtkIdType Rank, Place;
+  vtkIdType Rank, Point;
 };
 
 template <typename Value>
@@ -127,7 +127,7 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
     std::vector<MetPoint> met = Unpacked<MetPoint>(packed);
     packed = std::vector<Bytes>(ranks.Count());
     const auto keyOf = [](const MetPoint& p) {
-      return std::make_tuple(p.Key, p.IsMarked, p.Rank, p.Place);
+      return std::make_tuple(p.Key, p.IsMarked, p.Rank, p.Point);
     };
     // Of one key: first who is not marked, then by rank.
     std::sort(met.begin(), met.end(),
@@ -149,7 +149,7 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
         ++different;
         continue;
       }
-      AppendTo(packed[met[i].Rank], &met[i].Place, 1);
+      AppendTo(packed[met[i].Rank], &met[i].Point, 1);
     }
   });
   packed = ranks.Exchange(std::move(packed));

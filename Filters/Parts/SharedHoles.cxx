@@ -125,15 +125,16 @@ void SharedHoles::NumberNewPoints()
  */
 void SurroundedHoles::Surround(const Parts& parts, const SharedHoles& all, const Progress& progress)
 {
+  Stages stages(progress, { 40, 30, 20, 10 });
   std::vector<Message> warnings; // none: all have the same arrays
   this->Near = Mesh();
-  this->Surrounding = elevation::Join(parts, PartKind::Mesh, progress.Between(0.0, 0.4), warnings);
+  this->Surrounding = elevation::Join(parts, PartKind::Mesh, stages.Next(), warnings);
   this->Keys = KeysOf(this->Surrounding, all.ByIds, nullptr);
-  ToMesh(this->Surrounding, this->Near, progress.Between(0.4, 0.7));
-  this->Near.ConnectTwins(0, progress.Between(0.7, 0.9));
+  ToMesh(this->Surrounding, this->Near, stages.Next());
+  this->Near.ConnectTwins(0, stages.Next());
   Mesh rest;
   if (all.LongestEdge > 0.0 &&
-    OpenLongTriangles(this->Near, all.LongestEdge, this->Regions, rest, progress.Between(0.9, 1.0)))
+    OpenLongTriangles(this->Near, all.LongestEdge, this->Regions, rest, stages.Next()))
   {
     this->Near = std::move(rest);
   }

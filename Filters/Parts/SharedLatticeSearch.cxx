@@ -138,6 +138,7 @@ PointSlices InOneSlice(const PointView& points)
 bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tolerance, int threads,
   const Progress& progress, LatticeSample& all, Lattice& steps)
 {
+  Stages stages(progress, { 57, 43, 0 });
   std::vector<vtkIdType> count = { static_cast<vtkIdType>(points.Count) };
   ranks.Sum(count);
   all.CloudSize = static_cast<double>(count[0]);
@@ -145,7 +146,7 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
   std::vector<double> reals;
   ranks.Agree([&]() {
     LatticeSample own;
-    const Progress sampling = ranks.Watched(progress.Between(0.0, 0.4));
+    const Progress sampling = ranks.Watched(stages.Next());
     ForEachSlice(points, sampling, [&](const PointView& slice, const Progress& ofSlice) {
       notFinite.emplace_back();
       // The hash chooses by the size of the whole cloud, so parts of a sample add up to that of
@@ -168,7 +169,7 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
     const Box place = FullestPlace(all);
     // Slices come again in the same order (PointSlices).
     auto ofSlice = notFinite.begin();
-    const Progress looking = ranks.Watched(progress.Between(0.4, 0.7));
+    const Progress looking = ranks.Watched(stages.Next());
     ForEachSlice(points, looking, [&](const PointView& slice, const Progress& part) {
       const std::vector<Point2> some = DistinctPointsIn(place, slice, *ofSlice++, threads, part);
       there.insert(there.end(), some.begin(), some.end());
@@ -177,7 +178,7 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
   there = CollectPoints(ranks, there);
   bool isFound = false;
   ranks.Agree([&]() {
-    isFound = FitLattice(all, std::move(there), tolerance, ranks.Watched(progress), steps);
+    isFound = FitLattice(all, std::move(there), tolerance, ranks.Watched(stages.Next()), steps);
   });
   return isFound;
 }
@@ -186,15 +187,16 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
 bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
   const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice)
 {
+  Stages stages(progress, { 70, 30 });
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
   const double tolerance = options.LatticeTolerance;
   LatticeSample all;
   Lattice steps;
-  if (!FitLatticeOnRanks(ranks, points, tolerance, threads, progress, all, steps))
+  if (!FitLatticeOnRanks(ranks, points, tolerance, threads, stages.Next(), all, steps))
   {
     return false;
   }
-  const NodeBox nodes = AllNodes(ranks, points, all, steps, progress.Between(0.7, 1.0));
+  const NodeBox nodes = AllNodes(ranks, points, all, steps, stages.Next());
   return lattice.Set(steps, all, nodes, tolerance) && nodes.IsFilledEnough(all.Count);
 }
 
@@ -202,6 +204,7 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
   const std::function<void(const std::function<void(const PointTable&)>&)>& forEachRows,
   const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice)
 {
+  Stages stages(progress, { 0, 100 });
   // CheckOptions() refuses other values; this is for whoever calls without it.
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
@@ -211,7 +214,7 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
   Point2 place;                  // of that of this one
   ranks.Agree([&]() {
     steps = CheckedSteps(options.GivenLattice);
-    const Progress looking = ranks.Watched(progress.Between(0.0, 0.0));
+    const Progress looking = ranks.Watched(stages.Next());
     forEachRows([&](const PointTable& rows) {
       const DataSetPoints points = ViewOf(rows);
       const PointView& view = points.View;
@@ -240,7 +243,7 @@ bool TakeGivenLattice(const Ranks& ranks, const PointSlices& points,
   {
     return false;
   }
-  const NodeBox nodes = AllNodes(ranks, points, box, steps, progress.Between(0.7, 1.0));
+  const NodeBox nodes = AllNodes(ranks, points, box, steps, stages.Next());
   if (!lattice.Set(steps, box, nodes, tolerance))
   {
     throw GivenLatticeTooLarge();

@@ -61,52 +61,54 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
   const DelaunayOptions& options, std::vector<Message>& warnings)
 {
   this->Options = options;
+  Stages stages(options.Monitor, { 10, 4, 1, 75, 0, 5, 5 });
   // Pass 1
   this->Crew = std::make_unique<Engine>(this->AllRanks, ownParts, BoxNames(), this->Folder);
   this->Store = std::make_unique<PartStore>(*this->Crew);
   std::vector<vtkIdType> counts;
-  this->Plane = std::make_unique<Cuts>(this->Distributor.Distribute(
-    *this->Crew, OwnPoints, this->Fraction(0.0, 0.1), this->Store->Part, counts));
-  this->Store->Number(
-    std::move(counts), this->Distributor.AreIdsGiven(), this->Fraction(0.1, 0.15));
+  this->Plane = std::make_unique<Cuts>(
+    this->Distributor.Distribute(*this->Crew, OwnPoints, stages.Next(), this->Store->Part, counts));
+  this->Store->Number(std::move(counts), this->Distributor.AreIdsGiven(), stages.Next());
   // Before anything is triangulated: a part with too many points is an error that more parts would
   // cure.
   this->Store->CheckCounts();
   this->Total.Points = this->Store->Part.Bases.back();
   // Lines keep to no lattice.
   SharedLines lines;
+  const Progress adding = stages.Next();
   if (constraints)
   {
     WarnOfLattice(this->Options, warnings);
-    lines = AddLines(
-      *this->Store, constraints, *this->Plane, this->Options, this->Fraction(0.14, 0.15), warnings);
+    lines = AddLines(*this->Store, constraints, *this->Plane, this->Options, adding, warnings);
     this->Options.UseLattice = LatticeMode::Off;
     this->Total.Crossings = lines.NumberOfCrossings;
     this->Total.AddedPoints = this->Store->Part.Bases.back() - this->Total.Points;
     this->Store->CheckCounts();
   }
   // Passes 2 to 5
-  this->SendTriangles(this->Settle());
-  this->FetchOthers();
+  this->SendTriangles(this->Settle(stages.Next()));
+  const Progress fetching = stages.Next(), recovering = stages.Next();
+  this->FetchOthers(fetching);
   // Pass 6
   // Without a triangle there is no mesh in which lines could be recovered.
-  if (constraints && this->Total.Settled > 0 &&
-    RecoverLines(*this->Store, lines, this->Fraction(0.9, 0.95)))
+  if (constraints && this->Total.Settled > 0 && RecoverLines(*this->Store, lines, recovering))
   {
-    this->FetchOthers();
+    this->FetchOthers(fetching);
   }
   if (this->Options.MaximumEdgeLength > 0.0)
   {
-    this->LimitEdges(this->Fraction(0.95, 1.0));
+    this->LimitEdges(stages.Next());
   }
   // The last chance of an abort: after it, all ranks have the result.
   this->AllRanks.Agree([&]() { Report(this->AllRanks.Watched(this->Options.Monitor), 1.0); });
 }
 
 /** Passes 2 and 3. @return the triangles that this rank has settled for several parts */
-std::vector<GlobalTriangle> TriangulateParts::Settle()
+std::vector<GlobalTriangle> TriangulateParts::Settle(const Progress& progress)
 {
-  SettledParts settled = SettleParts(*this->Store, *this->Plane, this->Options);
+  DelaunayOptions options = this->Options;
+  options.Monitor = progress;
+  SettledParts settled = SettleParts(*this->Store, *this->Plane, options);
   this->Total.Duplicates = settled.Duplicates;
   this->Total.NotFinite = settled.NotFinite;
   this->Total.Hidden = settled.Hidden;
@@ -140,7 +142,7 @@ void TriangulateParts::SendTriangles(std::vector<GlobalTriangle>&& ofSeams)
  * Corners that are points of other parts come with their values: each part asks those that own them
  * by places, and gets rows in the order of numbers, as parts answer in their order.
  */
-void TriangulateParts::FetchOthers()
+void TriangulateParts::FetchOthers(const Progress& progress)
 {
   // Each part asks.
   this->Crew->ForEach(Progress(), [this](int part, const Progress&) {
@@ -161,8 +163,8 @@ void TriangulateParts::FetchOthers()
   });
   this->Crew->Deliver();
   // Each is answered by rows. What has been asked stays known, for the limit of edges.
-  this->Crew->ForEach(this->Fraction(0.9, 0.9), [this](int part, const Progress& progress) {
-    Report(progress, 0.0);
+  this->Crew->ForEach(progress, [this](int part, const Progress& ofPart) {
+    Report(ofPart, 0.0);
     const Inbox& requests = this->Crew->At(part, Requests);
     if (requests.IsEmpty())
     {
@@ -203,10 +205,9 @@ void TriangulateParts::LimitEdges(const Progress& progress)
   std::map<int, std::vector<vtkIdType>> open; // places without a triangle yet, of each part
   std::vector<vtkIdType> sums(2, 0);          // triangles, and vertices without one
   this->Crew->ForEach(progress, [&](int part, const Progress& ofPart) {
-    const Progress reading = ofPart.Between(0.0, 0.5);
-    this->Store->WithWhole(part, reading, [&](const SurfacePart& whole) {
-      const Buffer<Index> kept =
-        WithinLimit(this->Options.MaximumEdgeLength, whole, ofPart.Between(0.5, 1.0));
+    Stages stages(ofPart, { 50, 50 });
+    this->Store->WithWhole(part, stages.Next(), [&](const SurfacePart& whole) {
+      const Buffer<Index> kept = WithinLimit(this->Options.MaximumEdgeLength, whole, stages.Next());
       const std::size_t ownCount = whole.OwnPoints.Count();
       // Unused points are no vertices, and so are not missing.
       std::vector<char> areMissing(ownCount + whole.Others.Count(), 1);
@@ -279,11 +280,11 @@ void TriangulateParts::WarnOfMissing(std::vector<Message>& warnings) const
 // others that only long triangles had go with these (KeepCorners).
 SurfacePart TriangulateParts::Take(int part, const Progress& progress)
 {
-  SurfacePart taken = this->Store->TakeWhole(part, progress.Between(0.0, 0.7));
+  Stages stages(progress, { 70, 30 });
+  SurfacePart taken = this->Store->TakeWhole(part, stages.Next());
   if (this->Options.MaximumEdgeLength > 0.0)
   {
-    taken.Result.Triangles =
-      WithinLimit(this->Options.MaximumEdgeLength, taken, progress.Between(0.7, 1.0));
+    taken.Result.Triangles = WithinLimit(this->Options.MaximumEdgeLength, taken, stages.Next());
   }
   KeepCorners(taken);
   taken.Result.LatticeFound = this->Total.LatticeFound;

@@ -123,14 +123,10 @@ public:
   void Forget(int part) { this->Store->Forget(part); }
 
 private:
-  Progress Fraction(double begin, double end) const
-  {
-    return this->Options.Monitor.Between(begin, end);
-  }
-  std::vector<GlobalTriangle> Settle();
+  std::vector<GlobalTriangle> Settle(const Progress& progress);
   void SendTriangles(std::vector<GlobalTriangle>&& ofSeams);
   /** Pass 5. It may be done again, and then asks for all points anew. */
-  void FetchOthers();
+  void FetchOthers(const Progress& progress);
   std::vector<vtkIdType> RequestedPlaces(int part) const;
   /**
    * The end of pass 6: counts what MaximumEdgeLength leaves. Nothing is written; Take() applies it.

@@ -37,7 +37,6 @@ TrimParts::TrimParts(const SurfaceParts& surface, vtkIdType triangles, vtkPolyDa
   , BoundaryData(boundary)
   , Options(options)
   // Where pass 1 ends: in files it makes each part, too, and takes most of the time.
-  , SweepEnd(this->Crew.IsInFiles() ? 0.8 : 0.4)
   , NumberOfAll(triangles)
 {
 }
@@ -70,10 +69,13 @@ void TrimParts::TrimAll()
   {
     throw MakeError<sentences::InwardNormalNotInPieces>();
   }
-  this->Read();
-  const auto isTrimmedWith = [this](int margin) {
-    this->FindNear(margin);
-    return this->TrimNear();
+  const double ofSweep = this->Crew.IsInFiles() ? 78.0 : 38.0;
+  Stages stages(this->Options.Monitor, { 2, ofSweep, 95.0 - ofSweep, 3 });
+  this->Read(stages.Next());
+  const Progress finding = stages.Next(), trimming = stages.Next();
+  const auto isTrimmedWith = [&](int margin) {
+    this->FindNear(margin, finding);
+    return this->TrimNear(trimming);
   };
   // A boundary needs no margin, and most outlines a small one.
   // In edges. The 6th nearest vertex is seldom more than four edges away, and at the end of a line
@@ -83,7 +85,7 @@ void TrimParts::TrimAll()
   {
     throw this->Refusal();
   }
-  this->AddUp();
+  this->AddUp(stages.Next());
 }
 
 CodedError TrimParts::Refusal() const
@@ -132,21 +134,21 @@ void TrimParts::Sweep(TrimmedPart& part, const Progress& progress)
 }
 
 /** The boundary, and how many triangles there are. */
-void TrimParts::Read()
+void TrimParts::Read(const Progress& progress)
 {
   const bool isInFiles = this->Crew.IsInFiles();
-  this->Crew.ForEach(this->Fraction(0.0, 0.02), [&](int part, const Progress& progress) {
-    Report(progress, 0.0);
+  this->Crew.ForEach(progress, [&](int part, const Progress& ofPart) {
+    Report(ofPart, 0.0);
     // The same on all ranks; so is its error.
     if (this->BoundaryData && part == this->Crew.FirstOwn())
     {
       CheckArrays(this->BoundaryData, "The boundary's");
-      this->Lines = ToBoundaryLines(this->BoundaryData, progress);
+      this->Lines = ToBoundaryLines(this->BoundaryData, ofPart);
     }
     if (!isInFiles)
     {
       this->WithPart(
-        part, progress, [this](TrimmedPart& own) { this->Triangles = own.TriangleCount(); });
+        part, ofPart, [this](TrimmedPart& own) { this->Triangles = own.TriangleCount(); });
     }
   });
   if (!isInFiles)
@@ -165,7 +167,7 @@ void TrimParts::Read()
  * Pass 1, with a margin of an outline. The near triangles wait here until all ranks know which part
  * has most of them.
  */
-void TrimParts::FindNear(int margin)
+void TrimParts::FindNear(int margin, const Progress& progress)
 {
   this->Margin = margin;
   this->RankCounts = TrimCounts();
@@ -173,12 +175,13 @@ void TrimParts::FindNear(int margin)
   this->NearParts.clear();
   std::vector<vtkIdType> near, sums(2, 0);
   Box extent;
-  this->Crew.ForEach(this->Fraction(0.02, this->SweepEnd), [&](int part, const Progress& progress) {
+  this->Crew.ForEach(progress, [&](int part, const Progress& ofPart) {
+    Stages stages(ofPart, { 50, 50 });
     // Until the part has been found to have points: SendBack() skips those without.
     near.push_back(-1);
     this->NearParts.emplace_back();
-    this->WithPart(part, progress.Between(0.0, 0.5), [&](TrimmedPart& own) {
-      this->Sweep(own, progress.Between(0.5, 1.0));
+    this->WithPart(part, stages.Next(), [&](TrimmedPart& own) {
+      this->Sweep(own, stages.Next());
       // The 1 prefers a part with triangles as the home, even if none is near.
       near.back() = own.NearCount() + (own.TriangleCount() > 0 ? 1 : 0);
       // Packed at once, as the part in files goes; near triangles and borders of all own parts are
@@ -206,14 +209,16 @@ void TrimParts::FindNear(int margin)
 }
 
 /** Pass 2. @return false on all ranks if the near triangles do not decide what to keep */
-bool TrimParts::TrimNear()
+bool TrimParts::TrimNear(const Progress& progress)
 {
+  Stages stages(progress, { 0, 95, 5, 0 });
   const Ranks& all = this->Crew.AllRanks();
   for (Bytes& bytes : this->NearParts)
   {
     this->Crew.Send(this->Home, NearTriangles, std::move(bytes));
   }
-  this->Crew.Deliver(this->Fraction(this->SweepEnd, this->SweepEnd));
+  this->Crew.Deliver(stages.Next());
+  const Progress trimming = stages.Next(), sending = stages.Next();
   bool isTrimmed = false;
   // Other ranks wait at the end of the step, or stop with it.
   all.Agree([&]() {
@@ -228,29 +233,28 @@ bool TrimParts::TrimNear()
       bytes = Bytes();
     }
     TrimOptions options = this->Options;
-    options.Monitor = all.Watched(this->Fraction(this->SweepEnd, 0.95));
+    options.Monitor = all.Watched(trimming);
     BoundaryZone zone(std::move(parts));
     isTrimmed = this->BoundaryData
       ? zone.Trim(this->Lines, options)
       : zone.TrimOutline(this->InnerPoints, this->NumberOfAll, options);
     if (isTrimmed)
     {
-      this->SendBack(zone);
+      this->SendBack(zone, all.Watched(sending));
     }
   });
-  this->Crew.Deliver(this->Fraction(0.97, 0.97));
+  this->Crew.Deliver(stages.Next());
   return IsOnAny(all, isTrimmed);
 }
 
 // Pass 3, the half of the rank that has trimmed. The other half is Write(), at the part's own time.
-void TrimParts::SendBack(const BoundaryZone& zone)
+void TrimParts::SendBack(const BoundaryZone& zone, const Progress& progress)
 {
   const Trimmed& result = zone.Result();
   if (this->BoundaryData && this->Kept == 0 && result.Kept.Parents.empty())
   {
     throw CodedError(NothingEnclosed(this->Extent, this->Lines.Points, JoinLines(this->Lines)));
   }
-  const Progress progress = this->Crew.AllRanks().Watched(this->Fraction(0.95, 0.97));
   std::vector<TrimmedZone> backs = zone.Split(progress);
   // Parts without points have sent none, and get none.
   auto back = backs.begin();
@@ -273,12 +277,12 @@ void TrimParts::SendBack(const BoundaryZone& zone)
 }
 
 /** What there is of all parts. */
-void TrimParts::AddUp()
+void TrimParts::AddUp(const Progress& progress)
 {
   const Ranks& all = this->Crew.AllRanks();
   vtkIdType kept = 0, marked = 0;
-  this->Crew.ForEach(this->Fraction(0.97, 1.0), [&](int part, const Progress& progress) {
-    Report(progress, 0.0);
+  this->Crew.ForEach(progress, [&](int part, const Progress& ofPart) {
+    Report(ofPart, 0.0);
     this->Crew.At(part, Back).ForEach([&](const Bytes& bytes) {
       // Unpacked for its counts alone; Write() takes it.
       const TrimmedZone back(bytes);
@@ -309,18 +313,19 @@ void TrimParts::AddUp()
 
 void TrimParts::Write(int part, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
 {
-  this->WithPart(part, progress.Between(0.0, 0.3), [&](TrimmedPart& own) {
+  Stages stages(progress, { 30, 20, 10, 40 });
+  this->WithPart(part, stages.Next(), [&](TrimmedPart& own) {
+    const Progress sweeping = stages.Next(), taking = stages.Next();
     if (this->Crew.IsInFiles())
     {
-      this->Sweep(own, progress.Between(0.3, 0.5));
+      this->Sweep(own, sweeping);
       own.ListNearPoints();
     }
     this->Crew.At(part, Back).ForEach([&](const Bytes& bytes) {
-      own.Take(TrimmedZone(bytes), progress.Between(0.5, 0.6));
+      own.Take(TrimmedZone(bytes), taking);
     });
     own.Write(this->TotalCounts.InsertedPoints > 0, this->AreMarked,
-      this->BoundaryData ? &this->Lines : nullptr, this->Options, progress.Between(0.6, 1.0), kept,
-      outward);
+      this->BoundaryData ? &this->Lines : nullptr, this->Options, stages.Next(), kept, outward);
   });
 }
 

@@ -93,10 +93,6 @@ public:
   vtkIdType NearCount() const { return this->Near; }     ///< of them
 
 private:
-  Progress Fraction(double begin, double end) const
-  {
-    return this->Options.Monitor.Between(begin, end);
-  }
   template <typename Step>
   void WithPart(int part, const Progress& progress, const Step& step);
   /** Pass 1 for one part. @throws Error if the sweep cannot prove its triangles */
@@ -107,18 +103,17 @@ private:
    */
   CodedError Refusal() const;
   /** Before the passes: the boundary, and the number of triangles. */
-  void Read();
-  void FindNear(int margin);
-  bool TrimNear();
-  void SendBack(const BoundaryZone& zone);
+  void Read(const Progress& progress);
+  void FindNear(int margin, const Progress& progress);
+  bool TrimNear(const Progress& progress);
+  void SendBack(const BoundaryZone& zone, const Progress& progress);
   /** After pass 3: the counts of all ranks, and whether any point is marked. */
-  void AddUp();
+  void AddUp(const Progress& progress);
 
   const SurfaceParts Surface;
   Engine Crew;
   vtkPolyData* const BoundaryData;
   const TrimOptions Options;
-  const double SweepEnd; // of the progress
   BoundaryLines Lines;
   elevation::Rings Joined; // of the lines, once a part is swept
   vtkIdType NumberOfAll; // triangles

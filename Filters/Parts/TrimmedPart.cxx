@@ -282,8 +282,9 @@ TrimmedSide TrimmedPart::SideOf(int side, const Progress& progress) const
 void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* boundary,
   const TrimOptions& options, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
 {
+  Stages stages(progress, { 20, 40, 40 });
   this->Points.AreMarked = areMarked;
-  PassTrimmedPoints(this->Input, this->Points, progress.Between(0.0, 0.2), kept);
+  PassTrimmedPoints(this->Input, this->Points, stages.Next(), kept);
   if (boundary)
   {
     // The owner's points that only ghosts elsewhere have shown to be on the boundary, then all
@@ -309,9 +310,10 @@ void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* b
   {
     if (vtkPolyData* const output = side == 0 ? kept : outward)
     {
-      TrimmedSide written = this->SideOf(side, progress.Between(0.2, 0.6));
+      Stages ofSide(stages.Next(), { 50, 50 });
+      TrimmedSide written = this->SideOf(side, ofSide.Next());
       PassCellData(this->Input, side == 0 ? FirstPolygon(this->Input) : 0, written, areInserted,
-        progress.Between(0.6, 1.0), output);
+        ofSide.Next(), output);
       output->SetPolys(
         ToCellArray(std::move(written.Corners), ResolveNumberOfThreads(options.NumberOfThreads)));
       output->GetFieldData()->PassData(this->Input->GetFieldData());

@@ -81,7 +81,7 @@ struct Extent : Box
   std::vector<Index> NotFinite; ///< ids of points with a non-finite coordinate, increasing
 };
 
-/** The points of one range: a piece of work for one thread. */
+/** The points of one range: a task of one thread. */
 constexpr Index PointsPerRange = 1 << 16;
 
 inline Index NumberOfRanges(Index count, Index size = PointsPerRange)
@@ -91,18 +91,18 @@ inline Index NumberOfRanges(Index count, Index size = PointsPerRange)
 }
 
 /**
- * Cuts [0, count) into ranges of @a size ids and calls work(piece, begin, end) for each, on several
+ * Cuts [0, count) into ranges of @a size ids and calls work(range, begin, end) for each, on several
  * threads, reporting in between. The ranges depend on count and size alone, so results can be kept
- * by piece without locks.
+ * by range without locks.
  */
 template <typename Work>
 void ForEachRange(
   Index count, int threads, const Progress& progress, Work&& work, Index size = PointsPerRange)
 {
-  ForEachPiece(NumberOfRanges(count, size), threads, progress, [&](Index piece) {
-    const Index begin = piece * size, here = std::min(size, count - begin);
+  ForEachTask(NumberOfRanges(count, size), threads, progress, [&](Index range) {
+    const Index begin = range * size, here = std::min(size, count - begin);
     CountWork(static_cast<std::size_t>(here));
-    work(piece, begin, begin + here);
+    work(range, begin, begin + here);
   });
 }
 
@@ -165,14 +165,14 @@ void AddToExtent(const T* points, Index begin, Index end, Extent& extent, Visit&
   extent.Join(here);
 }
 
-/** The extent of points. Calls visit(piece, point) for each finite one, as ForEachRange() would. */
+/** The extent of points. Calls visit(range, point) for each finite one, as ForEachRange() would. */
 template <typename Visit>
 Extent FindExtent(const PointView& points, int threads, const Progress& progress, Visit&& visit)
 {
-  std::vector<Extent> pieces(NumberOfRanges(points.Count));
-  ForEachRange(points.Count, threads, progress, [&](Index piece, Index begin, Index end) {
+  std::vector<Extent> extents(NumberOfRanges(points.Count));
+  ForEachRange(points.Count, threads, progress, [&](Index range, Index begin, Index end) {
     Extent here; // local, against false sharing
-    const auto visitHere = [&](const Point2& p) { visit(piece, p); };
+    const auto visitHere = [&](const Point2& p) { visit(range, p); };
     if (points.Double)
     {
       AddToExtent(points.Double, begin, end, here, visitHere);
@@ -181,25 +181,25 @@ Extent FindExtent(const PointView& points, int threads, const Progress& progress
     {
       AddToExtent(points.Float, begin, end, here, visitHere);
     }
-    pieces[piece] = std::move(here);
+    extents[range] = std::move(here);
   });
   // Ranges are joined in their order, so the ids of non-finite points increase without sorting.
   Extent extent;
   std::size_t notFinite = 0;
-  for (const Extent& piece : pieces)
+  for (const Extent& one : extents)
   {
-    extent.Join(piece);
-    notFinite += piece.NotFinite.size();
+    extent.Join(one);
+    notFinite += one.NotFinite.size();
   }
   extent.NotFinite.reserve(notFinite);
-  for (const Extent& piece : pieces)
+  for (const Extent& one : extents)
   {
-    if (!piece.NotFinite.empty())
+    if (!one.NotFinite.empty())
     {
       // Such lists are long only where a cloud is full of NaN.
       Report(progress, 1.0);
     }
-    extent.NotFinite.insert(extent.NotFinite.end(), piece.NotFinite.begin(), piece.NotFinite.end());
+    extent.NotFinite.insert(extent.NotFinite.end(), one.NotFinite.begin(), one.NotFinite.end());
   }
   return extent;
 }

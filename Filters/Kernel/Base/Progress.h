@@ -11,11 +11,13 @@
 #include "Work.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <exception>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -42,7 +44,7 @@ public:
 
 /**
  * Where a computation reports the fraction done, which rises in [0, 1], and learns that it has to
- * stop. Cheap to copy; copies and those of steps share the observer, and keep it alive. Report() and
+ * stop. Cheap to copy; copies and stages share the observer, and keep it alive. Report() and
  * ReportStep() call it. Only the thread that has begun the computation does so, and often enough
  * that an abort takes effect within half a second.
  */
@@ -65,23 +67,58 @@ public:
   /** Only where there is an observer. @return false to stop */
   bool operator()(double fraction) const
   {
-    // Rounding must not pass the end, where the next part begins.
+    // Rounding must not pass the end, where the next stage begins.
     return (*this->Observed)(
       std::min(this->End, this->Begin + fraction * (this->End - this->Begin)));
   }
 
-  /** The progress of a step that takes the whole from @a begin to @a end. */
+  /** The progress of what takes the whole from @a begin to @a end, where a loop computes both. */
   Progress Between(double begin, double end) const
   {
-    Progress step = *this;
-    step.Begin = std::min(this->End, this->Begin + begin * (this->End - this->Begin));
-    step.End = std::min(this->End, this->Begin + end * (this->End - this->Begin));
-    return step;
+    Progress stage = *this;
+    stage.Begin = std::min(this->End, this->Begin + begin * (this->End - this->Begin));
+    stage.End = std::min(this->End, this->Begin + end * (this->End - this->Begin));
+    return stage;
   }
 
 private:
   std::shared_ptr<const std::function<bool(double)>> Observed;
   double Begin = 0.0, End = 1.0;
+};
+
+/**
+ * The stages of a computation, one after another. A function states once, at its top, which share
+ * of the whole each takes, and gives Next() to each; never two in one call, as arguments have no
+ * order. A stage that may be left out takes its Next() all the same, or has a share of 0; one whose
+ * work is not foreseen has 0 always.
+ */
+class Stages
+{
+public:
+  /** @param[in] shares  mostly in percent; they are divided by their sum */
+  template <std::size_t Count>
+  Stages(const Progress& whole, const double (&shares)[Count])
+    : Whole(whole)
+    , Last(Count)
+  {
+    static_assert(Count <= Most);
+    std::partial_sum(shares, shares + Count, this->Ends + 1);
+    assert(this->Ends[Count] > 0.0);
+  }
+
+  Progress Next()
+  {
+    assert(this->Done < this->Last);
+    const double begin = this->Ends[this->Done], sum = this->Ends[this->Last];
+    this->Done = std::min(this->Done + 1, this->Last);
+    return this->Whole.Between(begin / sum, this->Ends[this->Done] / sum);
+  }
+
+private:
+  static constexpr std::size_t Most = 12;
+  Progress Whole;
+  std::size_t Done = 0, Last;
+  double Ends[Most + 1] = {};
 };
 
 /** Reports to an optional progress callback, and throws Aborted when it asks to stop. */
@@ -120,7 +157,7 @@ public:
     this->Steps = count;
     ReportStep(this->Monitor, done, count, 1024);
   }
-  /** A small piece of work is done. */
+  /** A little work is done. */
   void Tick()
   {
     this->Ticks.Add();

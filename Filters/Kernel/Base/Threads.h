@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Independent pieces of work on several threads. Where the threads come from is for the one who
+ * Independent tasks on several threads. Where the threads come from is for the one who
  * links the kernel to say.
  */
 #ifndef elevation_Base_Threads_h
@@ -49,11 +49,11 @@ void CallOnThreads(Index count, int threads, const std::function<void(Index)>& c
 
 /**
  * Calls work(0) to work(count - 1) on up to @a threads threads; with one, in order on the calling
- * thread. Results must not depend on which thread does a piece.
- * @throws what the failed piece of the lowest number threw, after all have ended
+ * thread. Results must not depend on which thread does a task.
+ * @throws what the failed task of the lowest number threw, after all have ended
  */
 template <typename Work>
-void ForEachPiece(Index count, int threads, Work&& work)
+void ForEachTask(Index count, int threads, Work&& work)
 {
   if (threads <= 1 || count <= 1)
   {
@@ -63,8 +63,8 @@ void ForEachPiece(Index count, int threads, Work&& work)
     }
     return;
   }
-  // One place for each piece, so threads write without a lock, and which failure is thrown does not
-  // depend on which thread is faster. After a failure the other pieces run all the same.
+  // One place for each task, so threads write without a lock, and which failure is thrown does not
+  // depend on which thread is faster. After a failure the other tasks run all the same.
   std::vector<std::exception_ptr> failures(count);
   CallOnThreads(count, ThreadsAtOnce(threads), [&](Index i) {
     try
@@ -125,7 +125,7 @@ void InRounds(int threads, const Progress& progress, Fraction&& fraction, Work&&
     // Between rounds all threads have joined: only here may Aborted be thrown. A round of 30 ms is
     // short enough for an abort, and long compared with the start of the threads.
     const Round::Clock::time_point end = Round::Clock::now() + std::chrono::milliseconds(30);
-    ForEachPiece(used, used, [&](Index thread) {
+    ForEachTask(used, used, [&](Index thread) {
       if (work(thread, Round(end, used == 1)))
       {
         isMoreLeft = true;
@@ -135,11 +135,11 @@ void InRounds(int threads, const Progress& progress, Fraction&& fraction, Work&&
 }
 
 /**
- * ForEachPiece() for pieces of about a millisecond or less: each thread takes the next one when
+ * ForEachTask() for tasks of about a millisecond or less: each thread takes the next one when
  * it is done. The calling thread reports progress.
  */
 template <typename Work>
-void ForEachPiece(Index count, int threads, const Progress& progress, Work&& work)
+void ForEachTask(Index count, int threads, const Progress& progress, Work&& work)
 {
   const auto fractionOf = [count](Index done) {
     return std::min(1.0, static_cast<double>(done) / std::max(count, 1));
@@ -154,7 +154,7 @@ void ForEachPiece(Index count, int threads, const Progress& progress, Work&& wor
     return;
   }
   std::atomic<Index> next{ 0 };
-  // All pieces before a failed one have been taken by then, and run to the end.
+  // All tasks before a failed one have been taken by then, and run to the end.
   std::mutex failing;
   Index failed = count;
   std::exception_ptr failure;
@@ -175,7 +175,7 @@ void ForEachPiece(Index count, int threads, const Progress& progress, Work&& wor
         catch (...)
         {
           const std::lock_guard<std::mutex> lock(failing);
-          // The other threads finish the piece they are at, and end.
+          // The other threads finish the task they are at, and end.
           next = count;
           if (i < failed)
           {

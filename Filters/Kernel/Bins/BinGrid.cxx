@@ -16,14 +16,14 @@ namespace
 {
 using Node = BoxTree::Node;
 
-// Three divisions of the points meet here, so the words mean here: a piece is a stretch of the
+// Three divisions of the points meet here, so the words mean here: a range is a stretch of the
 // input; a group is eight rows or more; a block is some consecutive groups with about as many
-// points as a core's cache holds. Pieces are read in parallel, blocks are filled in parallel.
+// points as a core's cache holds. Ranges are read in parallel, blocks are filled in parallel.
 
 // The mean: with fewer, searches visit many empty bins; with more, they look at points in vain.
 constexpr double PointsPerBin = 1.0;
-// The input is read in pieces of this many points, each by one thread.
-constexpr Index PiecePoints = 1 << 17;
+// The input is read in ranges of this many points, each by one thread.
+constexpr Index RangePoints = 1 << 17;
 // Blocks consist of groups of rows, at most this many in all.
 constexpr Index MaximumGroups = 4096;
 
@@ -71,16 +71,15 @@ public:
       this->Grid.Starts.Append(0);
       return;
     }
+    Stages stages(progress, { 9, 17, 61, 0, 13 });
     this->Lay(extent);
-    const Progress filling = progress.Between(0.0, 0.875);
-    this->CountInGroups(filling.Between(0.0, 0.1));
+    this->CountInGroups(stages.Next());
     // From counts: blocks are known before a point is moved.
     this->MakeBlocks();
-    this->SortIntoBlocks(filling.Between(0.1, 0.3));
-    this->FillBlocks(filling.Between(0.3, 1.0));
-    const Progress joining = progress.Between(0.875, 1.0);
-    this->CloseGaps(joining.Between(0.0, 0.0));
-    this->Join(joining);
+    this->SortIntoBlocks(stages.Next());
+    this->FillBlocks(stages.Next());
+    this->CloseGaps(stages.Next());
+    this->Join(stages.Next());
   }
 
 private:
@@ -133,30 +132,30 @@ private:
     }
   }
 
-  /** Counts the points of each piece of the input in each group of rows. */
+  /** Counts the points of each range of the input in each group of rows. */
   void CountInGroups(const Progress& progress)
   {
     const BinGrid::Layout& bins = this->Grid.Bins;
     this->Shift = 3; // the tree's lowest nodes are of eight rows
-    // So that the table of counts, piece by group, stays small.
+    // So that the table of counts, range by group, stays small.
     while (bins.Rows >> this->Shift > MaximumGroups)
     {
       ++this->Shift;
     }
     const int shift = this->Shift;
     this->Groups = ((bins.Rows - 1) >> shift) + 1;
-    this->Pieces = NumberOfRanges(this->Points.Count, PiecePoints);
-    this->InGroup.assign(this->Pieces * this->Groups, 0);
+    this->Ranges = NumberOfRanges(this->Points.Count, RangePoints);
+    this->InGroup.assign(this->Ranges * this->Groups, 0);
     this->Memory.Resize(this->Count);
     ForEachRange(
       this->Points.Count, this->Threads, progress,
-      [&](Index piece, Index begin, Index end) {
-        Index* const counts = this->InGroup.data() + static_cast<std::size_t>(piece) * this->Groups;
+      [&](Index range, Index begin, Index end) {
+        Index* const counts = this->InGroup.data() + static_cast<std::size_t>(range) * this->Groups;
         // Only rows matter here: blocks are of whole rows.
         this->ForEach(begin, end, [&](Index, double, double y) { ++counts[bins.Row(y) >> shift]; });
         TouchPages(this->Memory, begin, end);
       },
-      PiecePoints);
+      RangePoints);
   }
 
   /** Joins groups to blocks of about equal numbers of points. */
@@ -183,9 +182,9 @@ private:
       }
       GridBlock& block = this->Blocks.back();
       block.EndRow = std::min((group + 1) << this->Shift, bins.Rows);
-      for (std::size_t piece = 0; piece < this->Pieces; ++piece)
+      for (std::size_t range = 0; range < this->Ranges; ++range)
       {
-        block.Count += this->InGroup[piece * this->Groups + group];
+        block.Count += this->InGroup[range * this->Groups + group];
       }
       sum = block.Begin + block.Count;
       this->BlockOf[group] = static_cast<Index>(this->Blocks.size()) - 1;
@@ -193,20 +192,20 @@ private:
   }
 
   /**
-   * Where the points of each (piece, block) begin, block by block for each piece. As of a counting
-   * sort with the pieces as threads: within a block, the points of earlier pieces come first, so
+   * Where the points of each (range, block) begin, block by block for each range. As of a counting
+   * sort with the ranges as threads: within a block, the points of earlier ranges come first, so
    * they stay in the order of ids.
    */
   std::vector<Index> BeginsInBlocks() const
   {
     const std::size_t blocks = this->Blocks.size();
-    std::vector<Index> begins(this->Pieces * blocks, 0);
-    for (std::size_t piece = 0; piece < this->Pieces; ++piece)
+    std::vector<Index> begins(this->Ranges * blocks, 0);
+    for (std::size_t range = 0; range < this->Ranges; ++range)
     {
       for (Index group = 0; group < this->Groups; ++group)
       {
-        begins[piece * blocks + this->BlockOf[group]] +=
-          this->InGroup[piece * this->Groups + group];
+        begins[range * blocks + this->BlockOf[group]] +=
+          this->InGroup[range * this->Groups + group];
       }
     }
     for (std::size_t i = 0; i < blocks; ++i)
@@ -228,18 +227,18 @@ private:
     std::vector<Index> next = this->BeginsInBlocks();
     ForEachRange(
       this->Points.Count, this->Threads, progress,
-      [&](Index piece, Index begin, Index end) {
-        Index* const to = next.data() + static_cast<std::size_t>(piece) * blocks.size();
+      [&](Index range, Index begin, Index end) {
+        Index* const to = next.data() + static_cast<std::size_t>(range) * blocks.size();
         this->ForEach(begin, end, [&](Index id, double x, double y) {
           const Index row = bins.Row(y);
-          // Each piece of the input writes its own stretch of each block, so threads need no locks.
+          // Each range of the input writes its own stretch of each block, so threads need no locks.
           const Index block = this->BlockOf[row >> this->Shift];
           const Index bin = (row - blocks[block].FirstRow) * bins.Columns + bins.Column(x);
           // With the bin, so that it is not computed again.
           this->Memory[to[block]++] = { x, y, id, bin };
         });
       },
-      PiecePoints);
+      RangePoints);
   }
 
   /** Fills the blocks in parallel, each into its slots of the grid. */
@@ -257,15 +256,15 @@ private:
 
     // The few large blocks come last, and report their own progress. Where density is uneven, a
     // block may hold most of the points: one row cannot be divided.
-    const auto isLarge = [&bins](const GridBlock& block) { return block.Pieces(bins) > 1; };
+    const auto isLarge = [&bins](const GridBlock& block) { return block.Tasks(bins) > 1; };
     const double large = std::accumulate(this->Blocks.begin(), this->Blocks.end(), 0.0,
       [&](double points, const GridBlock& block) { return points + isLarge(block) * block.Count; });
     double done = 1.0 - large / count;
     const auto fill = [&](GridBlock& block, const Progress& inBlock) {
       block.Fill(this->Points, this->Policy, inBlock, this->Grid);
     };
-    ForEachPiece(static_cast<Index>(this->Blocks.size()), this->Threads,
-      progress.Between(0.0, done), [&](Index i) {
+    ForEachTask(static_cast<Index>(this->Blocks.size()), this->Threads, progress.Between(0.0, done),
+      [&](Index i) {
         if (!isLarge(this->Blocks[i]))
         {
           fill(this->Blocks[i], Progress());
@@ -329,7 +328,7 @@ private:
   /** Joins the starts, order and trees of the blocks to those of the grid. */
   void Join(const Progress& progress)
   {
-    std::vector<Index> firstNodes, pieces(1, 0); // a large block has several pieces
+    std::vector<Index> firstNodes, tasks(1, 0); // a large block has several tasks
     std::vector<BoxTree::Child> roots;
     Index nodes = 0;
     for (const GridBlock& block : this->Blocks)
@@ -342,26 +341,25 @@ private:
       }
       firstNodes.push_back(nodes);
       nodes += static_cast<Index>(block.Nodes.size());
-      pieces.push_back(pieces.back() + block.Pieces(this->Grid.Bins));
+      tasks.push_back(tasks.back() + block.Tasks(this->Grid.Bins));
     }
     this->Grid.Tree.Nodes.Reserve(nodes + this->Blocks.size());
     this->Grid.Tree.Nodes.Resize(nodes);
-    ForEachPiece(pieces.back(), this->Threads, progress, [&](Index piece) {
-      const std::size_t i =
-        std::upper_bound(pieces.begin(), pieces.end(), piece) - pieces.begin() - 1;
-      this->JoinPiece(this->Blocks[i], firstNodes[i], piece - pieces[i], pieces[i + 1] - pieces[i]);
+    ForEachTask(tasks.back(), this->Threads, progress, [&](Index task) {
+      const std::size_t i = std::upper_bound(tasks.begin(), tasks.end(), task) - tasks.begin() - 1;
+      this->JoinTask(this->Blocks[i], firstNodes[i], task - tasks[i], tasks[i + 1] - tasks[i]);
     });
     this->Grid.Tree.Join(std::move(roots), this->Grid.NumberOfPoints(), progress);
   }
 
   /**
-   * One of several shares of a block's bins, slots and nodes: only large blocks have more than one.
+   * One of several tasks for a block's bins, slots and nodes: only large blocks have more than one.
    */
-  void JoinPiece(GridBlock& block, Index firstNode, std::size_t part, std::size_t parts)
+  void JoinTask(GridBlock& block, Index firstNode, std::size_t task, std::size_t tasks)
   {
     const auto forEach = [&](std::size_t count, auto&& work) {
-      const std::size_t end = count * (part + 1) / parts;
-      std::size_t k = count * part / parts;
+      const std::size_t end = count * (task + 1) / tasks;
+      std::size_t k = count * task / tasks;
       CountWork(end - k);
       for (; k < end; ++k)
       {
@@ -386,7 +384,7 @@ private:
         }
       }
     });
-    if (parts == 1)
+    if (tasks == 1)
     {
       block.Nodes = Buffer<Node>();
     }
@@ -399,8 +397,8 @@ private:
   const Index Count; ///< of the finite points
   int Shift = 0;     ///< a group is 1 << Shift rows
   Index Groups = 0;
-  std::size_t Pieces = 0;     ///< of the input
-  std::vector<Index> InGroup; ///< piece by piece, the number of points in each group
+  std::size_t Ranges = 0;     ///< of the input
+  std::vector<Index> InGroup; ///< range by range, the number of points in each group
   std::vector<Index> BlockOf; ///< one per group
   Buffer<BoxTree::Placed> Memory; ///< the points, block by block
   std::vector<GridBlock> Blocks;
@@ -410,13 +408,15 @@ private:
 BinGrid::BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress,
   int threads, Extent* known)
 {
+  Stages stages(progress, { 20, 80 });
+  const Progress looking = stages.Next();
   // A search for a lattice has found the extent already.
   const auto look = [&]() {
-    return FindExtent(points, threads, progress.Between(0.0, 0.2), [](Index, const Point2&) {});
+    return FindExtent(points, threads, looking, [](Index, const Point2&) {});
   };
   Extent extent = known ? std::move(*known) : look();
   this->NotFinite = std::move(extent.NotFinite);
-  GridBuilder(*this, points, policy, threads).Run(extent, progress.Between(0.2, 1.0));
+  GridBuilder(*this, points, policy, threads).Run(extent, stages.Next());
 }
 
 } // namespace elevation

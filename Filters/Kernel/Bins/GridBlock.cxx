@@ -20,10 +20,9 @@ using Node = BoxTree::Node;
 class BlockFiller
 {
 public:
-  BlockFiller(BinGrid& grid, GridBlock& block, const Progress& progress)
+  BlockFiller(BinGrid& grid, GridBlock& block)
     : Grid(grid)
     , Filled(block)
-    , Monitor(progress)
     , Rows(block.EndRow - block.FirstRow)
     , Bins(static_cast<std::size_t>(this->Rows) * grid.Bins.Columns)
     , Order(grid.Order.data() + block.Begin)
@@ -32,36 +31,36 @@ public:
   {
   }
 
-  void Run(const PointView& points, DuplicatePolicy policy)
+  void Run(const PointView& points, DuplicatePolicy policy, const Progress& progress)
   {
-    this->SortIntoBins();
-    if (this->Filled.Pieces(this->Grid.Bins) > 1)
+    Stages stages(progress, { 10, 50, 30, 5, 5, 0 });
+    this->SortIntoBins(stages.Next());
+    if (this->Filled.Tasks(this->Grid.Bins) > 1)
     {
       // Room for a node for each 48 points; if there are more, the buffer grows.
       this->Filled.Nodes.Reserve(this->Filled.Count / 48); // growing it takes long
     }
-    this->Filled.Root = BoxTree::Build(this->Local, this->Rows, this->Filled.Points,
-      this->Filled.Nodes, this->Monitor.Between(0.1, 0.6));
-    this->SortRows();
-    this->SetDuplicatesAside(points, policy);
+    this->Filled.Root = BoxTree::Build(
+      this->Local, this->Rows, this->Filled.Points, this->Filled.Nodes, stages.Next());
+    this->SortRows(stages.Next());
+    this->SetDuplicatesAside(points, policy, stages.Next());
+    const Progress closing = stages.Next();
     if (!this->Filled.Duplicates.empty())
     {
-      this->CloseGaps();
+      this->CloseGaps(closing);
     }
     const Index* const starts = this->Local.Starts.data();
     Index* const to = this->Grid.Starts.data() +
       static_cast<std::size_t>(this->Filled.FirstRow) * this->Grid.Bins.Columns;
-    this->ForEach(this->Bins, 1.0, 1.0, [&](Index bin) { to[bin] = starts[bin]; });
+    this->ForEach(this->Bins, stages.Next(), [&](Index bin) { to[bin] = starts[bin]; });
   }
 
 private:
-  /** Calls visit(0) to visit(count - 1), and reports fractions between from and to. */
+  /** Calls visit(0) to visit(count - 1), with reports. */
   template <typename Visit>
-  void ForEach(std::size_t count, double from, double to, Visit&& visit) const
+  void ForEach(std::size_t count, const Progress& progress, Visit&& visit) const
   {
-    const auto report = [&](double fraction) {
-      Report(this->Monitor, from + fraction * (to - from));
-    };
+    const auto report = [&](double fraction) { Report(progress, fraction); };
     report(0.0);
     ForEachReporting(0, static_cast<Index>(count), report, visit);
   }
@@ -70,23 +69,24 @@ private:
    * Counting sort. While filling, starts[b + 1] runs from the first slot of bin b to its end, which
    * is the first slot of the next bin.
    */
-  void SortIntoBins()
+  void SortIntoBins(const Progress& progress)
   {
+    Stages stages(progress, { 0, 50, 0, 50 });
     const BoxTree::Placed* const placed = this->Filled.Points;
     const Index begin = this->Filled.Begin, count = this->Filled.Count;
     this->Local.Starts.Resize(this->Bins + 1);
     Index* const starts = this->Local.Starts.data();
-    this->ForEach(this->Bins + 1, 0.0, 0.0, [&](Index bin) { starts[bin] = 0; });
-    this->ForEach(count, 0.0, 0.05, [&](Index i) { ++starts[placed[i].Bin + 1]; });
+    this->ForEach(this->Bins + 1, stages.Next(), [&](Index bin) { starts[bin] = 0; });
+    this->ForEach(count, stages.Next(), [&](Index i) { ++starts[placed[i].Bin + 1]; });
     Index sum = 0;
+    const Progress between = stages.Next();
     this->ForEach(
-      this->Bins, 0.05, 0.05, [&](Index bin) { sum += std::exchange(starts[bin + 1], sum); });
-    const Progress here = this->Monitor.Between(0.05, 0.05);
+      this->Bins, between, [&](Index bin) { sum += std::exchange(starts[bin + 1], sum); });
     // The writes below jump from bin to bin; see TouchPages().
-    TouchPages(this->Grid.X, begin, begin + count, here);
-    TouchPages(this->Grid.Y, begin, begin + count, here);
-    TouchPages(this->Grid.Ids, begin, begin + count, here);
-    this->ForEach(count, 0.05, 0.1, [&](Index i) {
+    TouchPages(this->Grid.X, begin, begin + count, between);
+    TouchPages(this->Grid.Y, begin, begin + count, between);
+    TouchPages(this->Grid.Ids, begin, begin + count, between);
+    this->ForEach(count, stages.Next(), [&](Index i) {
       const Index slot = starts[placed[i].Bin + 1]++;
       this->Local.X[slot] = placed[i].X;
       this->Local.Y[slot] = placed[i].Y;
@@ -95,7 +95,7 @@ private:
   }
 
   /** Sets the order of each row by (y, x), and the range of its y. */
-  void SortRows()
+  void SortRows(const Progress& progress)
   {
     const BinGrid::Layout& bins = this->Grid.Bins;
     Progress inSort;
@@ -107,8 +107,8 @@ private:
       double& highest = this->Grid.RowHigh[this->Filled.FirstRow + row] = -DBL_MAX;
       if (slots.first < slots.second)
       {
-        const double done = 0.6 + 0.3 * row / this->Rows;
-        inSort = this->Monitor.Between(done, done);
+        const double done = static_cast<double>(row) / this->Rows;
+        inSort = progress.Between(done, done);
         // About the row's range: a point rounded into the row from beyond is only sorted more
         // slowly.
         const double low = bins.OriginY + (this->Filled.FirstRow + row) * bins.BinHeight;
@@ -123,11 +123,11 @@ private:
    * In the order of rows, equal points are adjacent. The slot that stays is the first one; the id
    * that the policy prefers moves there.
    */
-  void SetDuplicatesAside(const PointView& points, DuplicatePolicy policy)
+  void SetDuplicatesAside(const PointView& points, DuplicatePolicy policy, const Progress& progress)
   {
     const BoxTree::Rows& local = this->Local;
     Index kept = 0;
-    this->ForEach(this->Filled.Count, 0.9, 0.95, [&](Index i) {
+    this->ForEach(this->Filled.Count, progress, [&](Index i) {
       // Compared with the last one that is kept, so any number of equal points become one.
       const Index first = this->Order[kept], slot = this->Order[i];
       if (local.Y[first] != local.Y[slot] || local.X[first] != local.X[slot])
@@ -151,14 +151,15 @@ private:
   /**
    * Moves slots together where duplicates have been set aside, and changes all that names slots.
    */
-  void CloseGaps()
+  void CloseGaps(const Progress& progress)
   {
+    Stages stages(progress, { 40, 60, 0 });
     // Slots move down by the number of gaps before them; so do starts, order and leaves, which name
     // slots.
     Buffer<Index> moved; // the number of slots kept before each
     moved.Resize(static_cast<std::size_t>(this->Filled.Count) + 1);
     Index kept = 0;
-    this->ForEach(this->Filled.Count, 0.95, 0.97, [&](Index slot) {
+    this->ForEach(this->Filled.Count, stages.Next(), [&](Index slot) {
       moved[slot] = kept;
       if (!this->IsAside[slot])
       {
@@ -170,14 +171,15 @@ private:
     });
     moved[this->Filled.Count] = kept;
     Index ordered = 0;
-    this->ForEach(this->Filled.Count, 0.97, 1.0, [&](Index i) {
+    this->ForEach(this->Filled.Count, stages.Next(), [&](Index i) {
       if (!this->IsAside[this->Order[i]])
       {
         this->Order[ordered++] = moved[this->Order[i]];
       }
     });
     Index* const starts = this->Local.Starts.data();
-    this->ForEach(this->Bins + 1, 1.0, 1.0, [&](Index bin) { starts[bin] = moved[starts[bin]]; });
+    this->ForEach(
+      this->Bins + 1, stages.Next(), [&](Index bin) { starts[bin] = moved[starts[bin]]; });
     const auto move = [&](Index& first, Index& count) {
       if (count > 0)
       {
@@ -199,7 +201,6 @@ private:
 
   BinGrid& Grid;
   GridBlock& Filled;
-  const Progress& Monitor;
   const Index Rows;
   const std::size_t Bins;
   Index* const Order;
@@ -211,7 +212,7 @@ private:
 void GridBlock::Fill(
   const PointView& points, DuplicatePolicy policy, const Progress& progress, BinGrid& grid)
 {
-  BlockFiller(grid, *this, progress).Run(points, policy);
+  BlockFiller(grid, *this).Run(points, policy, progress);
 }
 
 } // namespace elevation

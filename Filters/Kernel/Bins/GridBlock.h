@@ -32,8 +32,8 @@ struct GridBlock
   Buffer<BoxTree::Node> Nodes; ///< children and slots counted from the block's first
   Buffer<Index> Duplicates;
 
-  /** The number of pieces for work on all bins or points, so that reports come soon enough. */
-  Index Pieces(const BinGrid::Layout& layout) const
+  /** The number of tasks for work on all bins or points, so that reports come soon enough. */
+  Index Tasks(const BinGrid::Layout& layout) const
   {
     // A block has more bins than points where some of its rows are sparse.
     const Index bins = (this->EndRow - this->FirstRow) * layout.Columns; // at most as all points

@@ -68,11 +68,12 @@ bool ComesBefore(const std::vector<Point2>& points, const Corners& p, const Corn
  */
 void SortInChanged(const Mesh& mesh, Buffer<Index>& triangles, const Progress& progress)
 {
+  Stages stages(progress, { 30, 30, 40 });
   Corners* const all = reinterpret_cast<Corners*>(triangles.data());
   Corners* kept = all; // the end of those that have not changed
   std::vector<Corners> changed;
   const Index count = mesh.NumberOfTriangles();
-  ForEachStretch(count, progress.Between(0.0, 0.3), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       Corners corners{ mesh.Triangles[3 * t], mesh.Triangles[3 * t + 1],
@@ -94,10 +95,9 @@ void SortInChanged(const Mesh& mesh, Buffer<Index>& triangles, const Progress& p
   const auto comesBefore = [&](const Corners& p, const Corners& q) {
     return ComesBefore(mesh.Points, p, q);
   };
-  Sort(changed.begin(), changed.end(), comesBefore, progress.Between(0.3, 0.6));
+  Sort(changed.begin(), changed.end(), comesBefore, stages.Next());
   std::copy(changed.begin(), changed.end(), kept);
-  const Progress merging = progress.Between(0.6, 1.0);
-  WorkReporter work(merging);
+  WorkReporter work(stages.Next());
   std::inplace_merge(all, kept, all + count, [&](const Corners& p, const Corners& q) {
     work.Tick();
     return comesBefore(p, q);
@@ -112,16 +112,16 @@ ConstrainedTriangulation TriangulateConstrained(
   ConstrainedTriangulation constrained;
   Triangulation& result = constrained.Result;
   const Progress& progress = asked.Monitor;
+  Stages stages(progress, { 17, 3, 80 });
   // By the input points; the vertices that lines add get ids behind theirs.
-  static_cast<LinePieces&>(constrained) =
-    CutLines(points, lines, asked.Duplicates, progress.Between(0.0, 0.17));
+  static_cast<LinePieces&>(constrained) = CutLines(points, lines, asked.Duplicates, stages.Next());
   if (constrained.AreNone)
   {
     result = Triangulate(points, asked);
     return constrained;
   }
   // Doubles, also where the input is float: crossings are rounded to doubles.
-  const Buffer<double> joined = JoinPoints(points, constrained.Added, progress.Between(0.17, 0.2));
+  const Buffer<double> joined = JoinPoints(points, constrained.Added, stages.Next());
   PointView all = points;
   if (!joined.empty())
   {
@@ -131,17 +131,18 @@ ConstrainedTriangulation TriangulateConstrained(
   }
 
   DelaunayOptions options = asked;
-  options.Monitor = progress.Between(0.2, 0.6);
+  options.Monitor = stages.Next();
   // The points of lines are on no nodes.
   options.UseLattice = LatticeMode::Off;
   options.MaximumEdgeLength = 0.0; // recovery needs all triangles
   if (options.MaximumElevationError > 0.0)
   {
-    options.Monitor = progress.Between(0.2, 1.0);
     // Which makes the edges itself, as it chooses the points. A limit on edges is not set then.
     result = TriangulateFew(all, options, constrained.Pieces);
     return constrained;
   }
+  Stages later(options.Monitor, { 50, 2, 23, 19, 5, 1 });
+  options.Monitor = later.Next();
   result = Triangulate(all, options);
   if (result.Triangles.empty())
   {
@@ -149,23 +150,23 @@ ConstrainedTriangulation TriangulateConstrained(
   }
   Mesh mesh;
   mesh.Points.resize(all.Count);
-  ForEachStretch(all.Count, progress.Between(0.6, 0.62), [&](Index begin, Index end) {
+  ForEachStretch(all.Count, later.Next(), [&](Index begin, Index end) {
     for (Index id = begin; id < end; ++id)
     {
       mesh.Points[id] = all.At(id);
     }
   });
   mesh.Triangles.assign(result.Triangles.begin(), result.Triangles.end());
-  mesh.ConnectTwins(0, progress.Between(0.62, 0.8));
+  mesh.ConnectTwins(0, later.Next());
   std::vector<char> flags;
   // Most pieces are edges already, where lines follow the points.
-  const Index missing =
-    RecoverSegments(mesh, constrained.Pieces, flags, progress.Between(0.8, 0.95));
+  const Index missing = RecoverSegments(mesh, constrained.Pieces, flags, later.Next());
+  const Progress sorting = later.Next();
   if (missing > 0)
   {
-    SortInChanged(mesh, result.Triangles, progress.Between(0.95, 0.99));
+    SortInChanged(mesh, result.Triangles, sorting);
   }
-  LeaveOutLong(all, asked.MaximumEdgeLength, result.Triangles, progress.Between(0.99, 1.0));
+  LeaveOutLong(all, asked.MaximumEdgeLength, result.Triangles, later.Next());
   Report(progress, 1.0);
   return constrained;
 }

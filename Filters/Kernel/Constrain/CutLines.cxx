@@ -27,11 +27,12 @@ public:
     , Lines(lines)
     , Duplicates(duplicates)
   {
-    this->Collect(lines, progress.Between(0.0, 0.1));
+    Stages stages(progress, { 10, 80, 10 });
+    this->Collect(lines, stages.Next());
     if (!this->Pieces.empty())
     {
-      this->Split(progress.Between(0.1, 0.9));
-      this->Match(progress.Between(0.9, 1.0));
+      this->Split(stages.Next());
+      this->Match(stages.Next());
     }
   }
 
@@ -100,22 +101,23 @@ private:
   /** Pass 2. */
   void Split(const Progress& progress)
   {
+    Stages stages(progress, { 50, 40, 10 });
     // Exact cuts first: they move no piece, and input points on lines must not be missed because of
     // pieces that rounding has moved.
-    this->CutAtPoints(progress.Between(0.0, 0.5));
+    this->CutAtPoints(stages.Next());
     // Up to here, pieces follow the lines exactly; the next steps move them by rounding.
     const std::vector<SegmentPiece> pieces = this->Pieces;
     const std::size_t count = this->Vertices.size();
     // Two units cover the rounding of an end and of a crossing. A reach of 0 is for lines no longer
     // than a few units: the doubles between them are finite in number, so that it ends. This
     // second try begins from the exact pieces again.
-    if (this->Settle(2.0, true, progress.Between(0.5, 0.9)))
+    if (this->Settle(2.0, true, stages.Next()))
     {
       return;
     }
     this->Pieces = pieces;
     this->Vertices.resize(count);
-    if (!this->Settle(0.0, false, progress.Between(0.9, 1.0)))
+    if (!this->Settle(0.0, false, stages.Next()))
     {
       const Segment &one = this->Segments[this->Unsettled[0]],
                     &other = this->Segments[this->Unsettled[1]];
@@ -142,12 +144,14 @@ private:
       // Each round gets half of the remaining progress.
       const Progress ofRound =
         progress.Between(1.0 - std::ldexp(1.0, -round), 1.0 - std::ldexp(1.0, -round - 1));
-      this->EnterInGrid(ofRound.Between(0.0, 0.2));
+      Stages stages(ofRound, { 20, 20, 30, 20, 10 });
+      this->EnterInGrid(stages.Next());
       std::vector<PieceCut> cuts;
-      this->CutAtVertices(cuts, Everything, ofRound.Between(0.2, 0.4));
+      this->CutAtVertices(cuts, Everything, stages.Next());
+      const Progress finding = stages.Next(), cutting = stages.Next();
       if (cuts.empty())
       {
-        const std::vector<Crossing> crossings = FindCrossings(*this, ofRound.Between(0.4, 0.7));
+        const std::vector<Crossing> crossings = FindCrossings(*this, finding);
         if (crossings.empty())
         {
           return true;
@@ -157,12 +161,12 @@ private:
           this->CountCrossings(crossings);
           haveCounted = true;
         }
-        CutAtCrossings(*this, crossings, reach, cuts, ofRound.Between(0.7, 0.9));
+        CutAtCrossings(*this, crossings, reach, cuts, cutting);
         // For the message, if this round does not help either.
         const auto [p, q] = crossings[0];
         this->Unsettled = { this->Pieces[p].Rank, this->Pieces[q].Rank };
       }
-      this->Apply(cuts, ofRound.Between(0.9, 1.0));
+      this->Apply(cuts, stages.Next());
     }
     return false;
   }
@@ -170,12 +174,15 @@ private:
   /** Cuts at vertices and input points that lie exactly on the lines. */
   void CutAtPoints(const Progress& progress)
   {
-    this->EnterInGrid(progress.Between(0.0, 0.2));
+    Stages stages(progress, { 20, 10, 15, 45, 4, 6 });
+    this->EnterInGrid(stages.Next());
     std::vector<PieceCut> cuts;
     std::vector<Passage> passages;
     // With so many, lines overlap or run along each other.
     const std::size_t many = 64 * (this->Vertices.size() + this->Pieces.size());
-    if (!this->CutAtVertices(cuts, many, progress.Between(0.2, 0.3)))
+    const bool areAllFound = this->CutAtVertices(cuts, many, stages.Next());
+    Stages again(stages.Next(), { 33, 33, 34 });
+    if (!areAllFound)
     {
       std::vector<Point2> places(this->Vertices.size());
       // Long overlaps have many vertices on many pieces: joined first, each stretch is one piece.
@@ -183,21 +190,21 @@ private:
       {
         places[v] = this->Vertices[v].Position;
       }
-      passages = JoinOverlaps(this->Pieces, places, progress.Between(0.3, 0.35));
-      this->EnterInGrid(progress.Between(0.35, 0.4));
+      passages = JoinOverlaps(this->Pieces, places, again.Next());
+      this->EnterInGrid(again.Next());
       cuts.clear();
-      this->CutAtVertices(cuts, Everything, progress.Between(0.4, 0.45));
+      this->CutAtVertices(cuts, Everything, again.Next());
     }
     // A pass over all points, so it comes once; input points enter as vertices, and later rounds
     // know them.
-    this->CutAtInputPoints(cuts, progress.Between(0.45, 0.9));
+    this->CutAtInputPoints(cuts, stages.Next());
     for (const PieceCut& cut : cuts)
     {
       const SegmentPiece& piece = this->Pieces[cut.Piece];
       passages.push_back({ cut.Vertex, piece.B, piece.Count });
     }
-    this->CountCrossingsAtVertices(passages, progress.Between(0.9, 0.94));
-    this->Apply(cuts, progress.Between(0.94, 1.0));
+    this->CountCrossingsAtVertices(passages, stages.Next());
+    this->Apply(cuts, stages.Next());
   }
 
   /**
@@ -206,9 +213,10 @@ private:
    */
   void CutAtInputPoints(std::vector<PieceCut>& cuts, const Progress& progress)
   {
+    Stages stages(progress, { 80, 20 });
     std::vector<PieceCut> found; // with input points for vertices
     ForEachStretch(
-      this->Points.Count, progress.Between(0.0, 0.8), [&](Index begin, Index end) {
+      this->Points.Count, stages.Next(), [&](Index begin, Index end) {
         for (Index id = begin; id < end; ++id)
         {
           const Point2 p = this->Points.At(id);
@@ -245,7 +253,7 @@ private:
         const Point2 at = this->Points.At(p.Vertex), other = this->Points.At(q.Vertex);
         return at != other ? IsLower(at, other) : p.Piece < q.Piece;
       },
-      progress.Between(0.8, 1.0));
+      stages.Next());
     const std::size_t first = this->Vertices.size(), firstCut = cuts.size();
     for (const PieceCut& cut : found)
     {
@@ -303,6 +311,7 @@ private:
    */
   void CountCrossingsAtVertices(std::vector<Passage>& passages, const Progress& progress)
   {
+    Stages stages(progress, { 80, 20 });
     Sort(
       passages.begin(), passages.end(),
       [&](const Passage& p, const Passage& q) {
@@ -311,8 +320,8 @@ private:
           ? p.Vertex < q.Vertex
           : Orientation(this->At(p.Vertex), this->At(p.Toward), this->At(q.Toward)) == Positive;
       },
-      progress.Between(0.0, 0.8));
-    const Progress counting = progress.Between(0.8, 1.0);
+      stages.Next());
+    const Progress counting = stages.Next();
     std::int64_t around = 0, alike = 0; // earlier segments at this vertex; in this direction
     for (const std::size_t i : Counted(std::size_t(1), passages.size()))
     {
@@ -340,12 +349,12 @@ private:
   /** Replaces pieces by their parts from cut to cut. */
   void Apply(std::vector<PieceCut>& cuts, const Progress& progress)
   {
+    Stages stages(progress, { 50, 20, 30 });
     SortAlong(
       cuts, [&](Index piece) -> const Ends& { return this->PieceEnds[piece]; },
-      [&](Index vertex) { return this->At(vertex); }, progress.Between(0.0, 0.5));
+      [&](Index vertex) { return this->At(vertex); }, stages.Next());
     std::vector<SegmentPiece> pieces;
-    const Progress cutting = progress.Between(0.5, 0.7);
-    WorkReporter work(cutting);
+    WorkReporter work(stages.Next());
     auto cut = cuts.begin();
     for (std::size_t i = 0; i < this->Pieces.size(); ++i)
     {
@@ -378,12 +387,13 @@ private:
     }
     this->Pieces = std::move(pieces);
     // Bent pieces may have become equal.
-    this->JoinEqualPieces(progress.Between(0.7, 1.0));
+    this->JoinEqualPieces(stages.Next());
   }
 
   /** Pass 3: the input points at crossings. All others have been found when cutting. */
   void Match(const Progress& progress)
   {
+    Stages stages(progress, { 10, 90 });
     // Few, compared with points: they are in the grid, and one pass looks up all points.
     std::vector<Index> crossings;
     for (std::size_t v = 0; v < this->Vertices.size(); ++v)
@@ -400,9 +410,9 @@ private:
     const CellGrid grid(
       crossings.size(),
       [&](std::size_t i) { return std::array<Point2, 1>{ { this->At(crossings[i]) } }; },
-      progress.Between(0.0, 0.1));
+      stages.Next());
     ForEachStretch(
-      this->Points.Count, progress.Between(0.1, 1.0), [&](Index begin, Index end) {
+      this->Points.Count, stages.Next(), [&](Index begin, Index end) {
         for (Index id = begin; id < end; ++id)
         {
           const Point2 p = this->Points.At(id);
@@ -440,8 +450,9 @@ private:
 LinePieces CutLines(const PointView& points, const ConstraintLines& lines,
   DuplicatePolicy duplicates, const Progress& progress)
 {
-  return LineCutting(points, lines, duplicates, progress.Between(0.0, 0.9))
-    .Result(progress.Between(0.9, 1.0));
+  Stages stages(progress, { 90, 10 });
+  const LineCutting cutting(points, lines, duplicates, stages.Next());
+  return cutting.Result(stages.Next());
 }
 
 } // namespace elevation

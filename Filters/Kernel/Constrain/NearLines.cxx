@@ -32,6 +32,7 @@ bool IsWithin(const Ends& segment, const Point2& p, double distance)
 std::vector<Index> ListNearLines(
   const PointView& points, const ConstraintLines& lines, const Progress& progress)
 {
+  Stages stages(progress, { 20, 80 });
   // Pieces and crossings stay within some hundred units in the last place of their lines.
   constexpr double reach = 1e-9;
   std::vector<Ends> segments;
@@ -49,8 +50,8 @@ std::vector<Index> ListNearLines(
     }
   }
   // Only the points are many: the lines are in the grid.
-  const CellGrid grid = GridOf(segments, progress.Between(0.0, 0.2));
-  const Progress looking = progress.Between(0.2, 1.0);
+  const CellGrid grid = GridOf(segments, stages.Next());
+  const Progress looking = stages.Next();
   std::vector<Index> near;
   for (const Index id : Counted(points.Count))
   {

@@ -29,43 +29,46 @@ public:
 
   void Run(const std::vector<Crossing>& crossings, const Progress& progress)
   {
-    // First all crossings with an end in reach, which need no place; the others are sorted by their
-    // place.
-    std::vector<Place> places;
+    Stages stages(progress, { 50, 20, 30 });
+    const Progress placing = stages.Next();
+    // First all crossings with an end in reach, which need no point of their own; the others are
+    // sorted by position.
+    std::vector<CrossingPoint> points;
     for (const std::size_t i : Counted(crossings.size()))
     {
-      ReportStep(progress, i, 2 * crossings.size(), 1024);
+      ReportStep(placing, i, crossings.size(), 1024);
       // An end so near the other piece would leave a stub of some units: the other is bent to it.
       if (!this->CutAtEnds(crossings[i]))
       {
         const Ends &s = this->Network.PieceEnds[crossings[i].first],
                    &t = this->Network.PieceEnds[crossings[i].second];
-        places.push_back({ RoundedCrossing(s[0], s[1], t[0], t[1]), crossings[i], None });
+        points.push_back({ RoundedCrossing(s[0], s[1], t[0], t[1]), crossings[i], None });
       }
     }
     Sort(
-      places.begin(), places.end(),
-      [](const Place& p, const Place& q) { return IsLower(p.Position, q.Position); },
-      progress.Between(0.5, 0.7));
+      points.begin(), points.end(),
+      [](
+        const CrossingPoint& p, const CrossingPoint& q) { return IsLower(p.Position, q.Position); },
+      stages.Next());
 
-    const Progress naming = progress.Between(0.7, 1.0);
+    const Progress naming = stages.Next();
     StepCount steps;
     // Crossings that round to one place are cut at one vertex.
-    for (std::size_t i = 0, end = 0; i < places.size(); i = end)
+    for (std::size_t i = 0, end = 0; i < points.size(); i = end)
     {
       steps.Add();
-      ReportStep(naming, i, places.size());
-      for (; end < places.size() && places[end].Position == places[i].Position; ++end)
+      ReportStep(naming, i, points.size());
+      for (; end < points.size() && points[end].Position == points[i].Position; ++end)
       {
-        places[end].Vertex = this->FindVertexInReach(places[i].Position, places[end].Pieces);
+        points[end].Vertex = this->FindVertexInReach(points[i].Position, points[end].Pieces);
       }
-      this->CutAtPlace(&places[i], &places[0] + end);
+      this->CutAtPoint(&points[i], &points[0] + end);
     }
   }
 
 private:
   /** Where two pieces cross, and the vertex at which they are cut. */
-  struct Place
+  struct CrossingPoint
   {
     Point2 Position;
     Crossing Pieces;
@@ -96,24 +99,24 @@ private:
   }
 
   /** Cuts pieces that cross at one place: at a vertex in reach, otherwise at a new one. */
-  void CutAtPlace(const Place* begin, const Place* end)
+  void CutAtPoint(const CrossingPoint* begin, const CrossingPoint* end)
   {
     Index vertex = None, first = None; // the new vertex, and the first piece through it
-    for (const Place* place = begin; place < end; ++place)
+    for (const CrossingPoint* point = begin; point < end; ++point)
     {
-      if (place->Vertex == None && vertex == None)
+      if (point->Vertex == None && vertex == None)
       {
-        vertex = this->Network.AddVertex(place->Position);
+        vertex = this->Network.AddVertex(point->Position);
         std::size_t cell = 0;
         // Succeeds: it is in the box of two pieces.
-        this->Network.Grid.FindCell(place->Position, cell);
+        this->Network.Grid.FindCell(point->Position, cell);
         this->NewVertices[cell].push_back(vertex);
       }
-      for (const Index piece : { place->Pieces.first, place->Pieces.second })
+      for (const Index piece : { point->Pieces.first, point->Pieces.second })
       {
-        this->Cuts.push_back({ piece, place->Vertex == None ? vertex : place->Vertex });
+        this->Cuts.push_back({ piece, point->Vertex == None ? vertex : point->Vertex });
         // The first segment in the order of lines: it gives the crossing its elevation.
-        if (place->Vertex == None &&
+        if (point->Vertex == None &&
           (first == None || this->Network.Pieces[piece].Rank < this->Network.Pieces[first].Rank))
         {
           first = piece;
@@ -185,13 +188,13 @@ private:
 
 std::vector<Crossing> FindCrossings(const SegmentNetwork& network, const Progress& progress)
 {
+  Stages stages(progress, { 80, 20 });
   std::vector<Crossing> crossings;
-  VisitCrossings(
-    network.PieceEnds, network.Grid, progress.Between(0.0, 0.8), [&](std::size_t i, std::size_t j) {
-      crossings.push_back({ static_cast<Index>(i), static_cast<Index>(j) });
-    });
+  VisitCrossings(network.PieceEnds, network.Grid, stages.Next(), [&](std::size_t i, std::size_t j) {
+    crossings.push_back({ static_cast<Index>(i), static_cast<Index>(j) });
+  });
   // A pair may be found in every cell that both are in.
-  Sort(crossings.begin(), crossings.end(), std::less<Crossing>(), progress.Between(0.8, 1.0));
+  Sort(crossings.begin(), crossings.end(), std::less<Crossing>(), stages.Next());
   crossings.erase(std::unique(crossings.begin(), crossings.end()), crossings.end());
   return crossings;
 }

@@ -22,13 +22,15 @@ namespace
 std::vector<Index> CollectPoints(
   const ConstraintLines& lines, const Progress& progress, std::vector<LineVertex>& vertices)
 {
+  Stages stages(progress, { 50, 50 });
   const PointView& own = lines.Points;
+  const Progress listing = stages.Next();
   std::vector<Index> used;
   for (Index line = 0; line < lines.Count(); ++line)
   {
     for (const Index k : Counted(lines.Offsets[line], lines.Offsets[line + 1]))
     {
-      ReportStep(progress, k, 2 * lines.Vertices.size());
+      ReportStep(listing, k, lines.Vertices.size());
       used.push_back(LinePoint(lines, line, k));
     }
   }
@@ -39,7 +41,7 @@ std::vector<Index> CollectPoints(
       const Point2 at = own.At(p), other = own.At(q);
       return at != other ? IsLower(at, other) : p < q;
     },
-    progress.Between(0.5, 1.0));
+    stages.Next());
   std::vector<Index> vertexOf(own.Count, None); // at first, the source
   for (std::size_t i = 0, first = 0; i < used.size(); ++i)
   {
@@ -80,8 +82,9 @@ Index LinePoint(const ConstraintLines& lines, Index line, Index k)
 
 void SegmentNetwork::Collect(const ConstraintLines& lines, const Progress& progress)
 {
-  const std::vector<Index> vertexOf =
-    CollectPoints(lines, progress.Between(0.0, 0.5), this->Vertices);
+  Stages stages(progress, { 50, 10, 40 });
+  const std::vector<Index> vertexOf = CollectPoints(lines, stages.Next(), this->Vertices);
+  Report(stages.Next(), 0.0);
   std::vector<char> hasSegment(this->Vertices.size(), 0);
   // From the lower end up, so that segments in both directions are the same.
   lines.VisitSegments([&](Index line, Index k, Index next) {
@@ -100,7 +103,7 @@ void SegmentNetwork::Collect(const ConstraintLines& lines, const Progress& progr
       hasSegment[p] = hasSegment[q] = 1;
     }
   });
-  this->JoinEqualPieces(progress.Between(0.6, 1.0));
+  this->JoinEqualPieces(stages.Next());
   for (SegmentPiece& piece : this->Pieces)
   {
     piece.Count = 1; // equal segments of several lines count as one
@@ -119,13 +122,14 @@ void SegmentNetwork::Collect(const ConstraintLines& lines, const Progress& progr
 // The one of the lowest rank stays, as it comes first.
 void SegmentNetwork::JoinEqualPieces(const Progress& progress)
 {
+  Stages stages(progress, { 90, 10 });
   Sort(
     this->Pieces.begin(), this->Pieces.end(),
     [](const SegmentPiece& p, const SegmentPiece& q) {
       return p.A != q.A ? p.A < q.A : (p.B != q.B ? p.B < q.B : p.Rank < q.Rank);
     },
-    progress.Between(0.0, 0.9));
-  const Progress joining = progress.Between(0.9, 1.0);
+    stages.Next());
+  const Progress joining = stages.Next();
   std::size_t kept = 0, done = 0;
   for (const SegmentPiece& piece : Counted(this->Pieces))
   {

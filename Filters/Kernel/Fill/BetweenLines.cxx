@@ -180,17 +180,18 @@ private:
 
   void Run(double longest, const Progress& progress)
   {
+    Stages stages(progress, { 15, 5, 25, 40, 15 }); // the last one reports nothing
     std::vector<Index> all(this->Count);
     for (std::size_t i = 0; i < this->Count; ++i)
     {
       all[i] = static_cast<Index>(i);
     }
-    this->All = this->Connect(std::move(all), progress.Between(0.0, 0.15));
+    this->All = this->Connect(std::move(all), stages.Next());
     if (this->All.Triangles.Triangles.empty())
     {
       return;
     }
-    this->Lines = FindTracks(this->All.Triangles, longest, progress.Between(0.15, 0.2));
+    this->Lines = FindTracks(this->All.Triangles, longest, stages.Next());
     if (this->Lines.Count() < LeastTracks)
     {
       return;
@@ -216,15 +217,17 @@ private:
     }
     this->Noise = this->Roughness().NoiseAlong(this->All);
     const std::vector<int> colors = ColorTracks(this->Lines, this->All.Triangles);
-    std::vector<Trial> trials = this->LeaveOut(this->All, colors, progress.Between(0.2, 0.45));
+    std::vector<Trial> trials = this->LeaveOut(this->All, colors, stages.Next());
     this->SplineShare = this->BestShare(trials);
     const std::vector<double> missed = this->ErrorsAtKnown(trials);
-    double done = 0.45;
+    const Progress widening = stages.Next();
+    double done = 0.0;
     for (const Trial& trial : trials)
     {
       const bool isWider = trial.Gap >= LeastWidening * this->Gap;
-      const Progress one = progress.Between(done, done + 0.4 / static_cast<double>(trials.size()));
-      done += 0.4 / static_cast<double>(trials.size());
+      const double next = done + 1.0 / static_cast<double>(trials.size());
+      const Progress one = widening.Between(done, next);
+      done = next;
       std::vector<double> nested = missed;
       if (isWider)
       {
@@ -250,6 +253,7 @@ private:
   /** Triangulates known points, and prepares the spline. */
   KnownPoints Connect(std::vector<Index> numbers, const Progress& progress) const
   {
+    Stages stages(progress, { 40, 10, 20, 30 }); // the last one reports nothing
     KnownPoints result;
     result.Numbers = std::move(numbers);
     result.VertexOf.assign(this->Count, None);
@@ -265,7 +269,7 @@ private:
     view.Double = xyz.data();
     view.Count = static_cast<Index>(result.Numbers.size());
     DelaunayOptions options;
-    options.Monitor = progress.Between(0.0, 0.4);
+    options.Monitor = stages.Next();
     const Triangulation triangulation = Triangulate(view, options);
     result.Triangles.Triangles.assign(
       triangulation.Triangles.begin(), triangulation.Triangles.end());
@@ -273,8 +277,8 @@ private:
     {
       return result;
     }
-    result.Triangles.ConnectTwins(0, progress.Between(0.4, 0.5));
-    this->ChooseCenters(result, progress.Between(0.5, 0.7));
+    result.Triangles.ConnectTwins(0, stages.Next());
+    this->ChooseCenters(result, stages.Next());
     std::vector<Point2> centers;
     for (const Index number : result.Centers)
     {
@@ -368,6 +372,7 @@ private:
   std::vector<double> Bending(const KnownPoints& known, const std::vector<Spot>& spots,
     const std::vector<double>& values, const Progress& progress) const
   {
+    Stages stages(progress, { 30, 70 });
     std::vector<double> result(spots.size(), 0.0);
     if (!known.Plate)
     {
@@ -402,7 +407,7 @@ private:
     {
       points.push_back(this->Normalized(this->Patch.At(number)));
     }
-    const std::vector<double> there = evaluate(points, progress.Between(0.0, 0.3));
+    const std::vector<double> there = evaluate(points, stages.Next());
     std::vector<double> atKnown(this->Count, 0.0);
     for (std::size_t k = 0; k < known.Numbers.size(); ++k)
     {
@@ -419,7 +424,7 @@ private:
       }
       points.push_back(p);
     }
-    const std::vector<double> sums = evaluate(points, progress.Between(0.3, 1.0));
+    const std::vector<double> sums = evaluate(points, stages.Next());
     for (std::size_t i = 0; i < spots.size(); ++i)
     {
       result[i] = spots[i].IsInside ? unit * (sums[i] - Linear(spots[i], atKnown)) : 0.0;
@@ -466,6 +471,7 @@ private:
   bool Try(const KnownPoints& from, const std::vector<int>& colors, int color,
     const Progress& progress, Trial& trial) const
   {
+    Stages stages(progress, { 50, 50 });
     // A point where lines cross is left out if all of them are.
     std::vector<int> left(this->Count, 0);
     std::size_t count = 0;
@@ -486,7 +492,7 @@ private:
         rest.push_back(number);
       }
     }
-    trial.Rest = this->Connect(std::move(rest), progress.Between(0.0, 0.5));
+    trial.Rest = this->Connect(std::move(rest), stages.Next());
     if (trial.Rest.Triangles.Triangles.empty())
     {
       return false;
@@ -512,8 +518,7 @@ private:
     {
       return false;
     }
-    trial.Bending =
-      this->Bending(trial.Rest, trial.Spots, this->Elevations, progress.Between(0.5, 1.0));
+    trial.Bending = this->Bending(trial.Rest, trial.Spots, this->Elevations, stages.Next());
     for (std::size_t i = 0; i < trial.Probes.size(); ++i)
     {
       const Spot& spot = trial.Spots[i];

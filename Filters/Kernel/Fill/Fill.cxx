@@ -50,7 +50,7 @@ constexpr double MostPointsPerPoint = 10.0;
 constexpr double BytesPerPoint = 500.0; // of memory, while and after it is inserted
 
 /** What a thread takes at a time: patches of about this many points in all, or a larger one. */
-constexpr double PointsPerPiece = 250.0;
+constexpr double PointsPerTask = 250.0;
 
 /**
  * Distance between neighbouring numbers near x, in the precision of the points. It limits how small
@@ -140,16 +140,17 @@ bool ElevateBetweenLines(const Mesh& mesh, const VertexStars* stars, double long
   const Values& elevation, const FillOptions& options, const Progress& progress, FilledHole& filled,
   HoleReport& report)
 {
+  Stages stages(progress, { 75, 25 });
   Patch& patch = filled.Triangles;
-  const BetweenLines lines(patch, longest, elevation, progress.Between(0.0, 0.6));
+  const BetweenLines lines(patch, longest, elevation, stages.Next());
   if (!lines.AreFound())
   {
     return false;
   }
-  SetElevations(lines.Apply(elevation, progress.Between(0.6, 0.8)), patch);
+  SetElevations(lines.Apply(elevation, stages.Next()), patch);
   for (const Values& values : options.Attributes)
   {
-    filled.Attributes.push_back(lines.Apply(values, progress.Between(0.8, 0.8)));
+    filled.Attributes.push_back(lines.Apply(values, progress.Between(1.0, 1.0)));
     if (filled.Attributes.back().empty())
     {
       filled.Attributes.back() =
@@ -166,12 +167,13 @@ bool ElevateBetweenLines(const Mesh& mesh, const VertexStars* stars, double long
 void Elevate(const Mesh& mesh, const VertexStars* stars, const Values& elevation,
   const FillOptions& options, const Progress& progress, FilledHole& filled, HoleReport& report)
 {
+  Stages stages(progress, { 50, 50 });
   Patch& patch = filled.Triangles;
   // The first values are the elevations, by which Adaptive chooses; attributes follow the same
   // choice.
-  const Heights heights(mesh, stars, patch, options.Method, elevation, progress.Between(0.0, 0.5));
+  const Heights heights(mesh, stars, patch, options.Method, elevation, stages.Next());
   const std::size_t count = options.Attributes.size() + 1;
-  const Progress applying = progress.Between(0.5, 1.0);
+  const Progress applying = stages.Next();
   for (std::size_t i = 0; i < count; ++i)
   {
     const Progress one = applying.Between(double(i) / double(count), double(i + 1) / double(count));
@@ -256,18 +258,20 @@ public:
 
   FillResult Run()
   {
-    const Progress& monitor = this->Options.Monitor;
+    Stages stages(this->Options.Monitor, { 2, 98 });
     // The neighbours' mean looks at the patch alone; all other methods are tried around the hole.
     const bool needsStars = this->Options.Method != Interpolation::NeighborMean;
     this->Least = needsStars ? PointsPerTrial : PointsPerPatch;
-    this->PlanAll();
+    this->PlanAll(stages.Next());
     this->GrantPoints();
     // On a lattice they are there already, for the plans.
-    if (this->AllWork > 0.0 && needsStars && !this->Stars)
+    const bool makesStars = this->AllWork > 0.0 && needsStars && !this->Stars;
+    Stages later(stages.Next(), { makesStars ? 4.0 : 0.0, 94 });
+    const Progress connecting = later.Next(), filling = later.Next();
+    if (makesStars)
     {
-      this->Stars = std::make_unique<VertexStars>(this->Surface, monitor.Between(0.02, 0.06));
+      this->Stars = std::make_unique<VertexStars>(this->Surface, connecting);
     }
-    const Progress filling = monitor.Between(this->Stars ? 0.06 : 0.02, 1.0);
     this->Result.Attributes.resize(this->Options.Attributes.size());
     const double all = this->AllWork > 0.0 ? this->AllWork : 1.0;
     double done = 0.0;
@@ -283,14 +287,14 @@ public:
       begin = end;
     }
     this->DropRegionsWithoutRoom();
-    Report(monitor, 1.0);
+    Report(this->Options.Monitor, 1.0);
     return std::move(this->Result);
   }
 
   /** See FindHoleNeeds(). */
   std::vector<HoleNeed> PlanAndReturnNeeds()
   {
-    this->PlanAll();
+    this->PlanAll(this->Options.Monitor);
     return this->Needs();
   }
 
@@ -316,7 +320,7 @@ private:
    * Checks all holes before the first is filled, so that whether one is filled does not depend on
    * the outcome of others.
    */
-  void PlanAll()
+  void PlanAll(const Progress& progress)
   {
     const FillOptions& options = this->Options;
     // Lattice nodes are used only if the user sets no spacing.
@@ -324,21 +328,20 @@ private:
     if (options.UseLattice == LatticeMode::Automatic && !(options.Spacing > 0.0) &&
       this->GivenHoles.Count() > 0)
     {
-      lattice = this->Context.FoundLattice ? *this->Context.FoundLattice
-                                           : FindLattice(this->Points, LatticeTolerance,
-                                               this->Threads, options.Monitor.Between(0.0, 0.02));
+      lattice = this->Context.FoundLattice
+        ? *this->Context.FoundLattice
+        : FindLattice(this->Points, LatticeTolerance, this->Threads, progress);
     }
     if (lattice.Found)
     {
-      this->Stars =
-        std::make_unique<VertexStars>(this->Surface, options.Monitor.Between(0.02, 0.02));
+      this->Stars = std::make_unique<VertexStars>(this->Surface, progress.Between(1.0, 1.0));
     }
     this->Result.Reports.reserve(this->GivenHoles.Count());
     for (Index hole = 0; hole < this->GivenHoles.Count(); ++hole)
     {
       if (hole % 4096 == 0)
       {
-        Report(options.Monitor, 0.02);
+        Report(progress, 1.0);
       }
       this->Result.Reports.push_back(MeasureHole(this->Surface, this->GivenHoles, hole, options));
       HoleReport& report = this->Result.Reports.back();
@@ -423,11 +426,11 @@ private:
     return end;
   }
 
-  /** Holes of a batch, and the pieces that a thread takes at a time. */
+  /** Holes of a batch, and the tasks that a thread takes at a time. */
   struct Batch
   {
     std::vector<std::pair<double, Index>> Order; ///< (negative work, hole): most work first
-    std::vector<std::size_t> Pieces{ 0 };
+    std::vector<std::size_t> Tasks{ 0 };
   };
 
   /** The largest holes come first, so that threads finish at about the same time. */
@@ -442,14 +445,14 @@ private:
       }
     }
     std::sort(batch.Order.begin(), batch.Order.end());
-    double ofPiece = 0.0;
+    double ofTask = 0.0;
     for (std::size_t k = 0; k < batch.Order.size(); ++k)
     {
-      ofPiece -= batch.Order[k].first;
-      if (ofPiece > PointsPerPiece || k + 1 == batch.Order.size())
+      ofTask -= batch.Order[k].first;
+      if (ofTask > PointsPerTask || k + 1 == batch.Order.size())
       {
-        batch.Pieces.push_back(k + 1);
-        ofPiece = 0.0;
+        batch.Tasks.push_back(k + 1);
+        ofTask = 0.0;
       }
     }
     return batch;
@@ -466,9 +469,9 @@ private:
     {
       this->Plans[begin].NumberOfThreads = this->Threads;
     }
-    ForEachPiece(static_cast<Index>(batch.Pieces.size()) - 1, isAlone ? 1 : this->Threads,
-      isAlone ? Progress() : progress, [&](Index piece) {
-        for (std::size_t k = batch.Pieces[piece]; k < batch.Pieces[piece + 1]; ++k)
+    ForEachTask(static_cast<Index>(batch.Tasks.size()) - 1, isAlone ? 1 : this->Threads,
+      isAlone ? Progress() : progress, [&](Index task) {
+        for (std::size_t k = batch.Tasks[task]; k < batch.Tasks[task + 1]; ++k)
         {
           const Index hole = batch.Order[k].second;
           this->FillOne(hole, isAlone ? progress : Progress(), filled[hole - begin]);
@@ -497,6 +500,9 @@ private:
   void FillOne(Index hole, const Progress& progress, FilledHole& filled)
   {
     HoleReport& report = this->Result.Reports[hole];
+    const bool mayHaveLines =
+      this->Options.Method == Interpolation::Adaptive && this->GivenHoles.IsRegion(hole);
+    Stages stages(progress, { 40, 5, 5, mayHaveLines ? 40.0 : 0.0, mayHaveLines ? 10.0 : 50.0 });
     try
     {
       filled.Triangles = CollectBoundary(this->Surface, this->GivenHoles, hole);
@@ -505,24 +511,23 @@ private:
       {
         patch.Surroundings = this->Context.Surroundings[hole];
       }
-      MakePatch(this->Plans[hole], progress.Between(0.0, 0.4), patch);
+      MakePatch(this->Plans[hole], stages.Next(), patch);
       if (this->GivenHoles.IsRegion(hole) && patch.NumberOfNewVertices() == 0)
       {
         // It keeps its long triangles, which cover it as well.
         this->HasRoom[hole] = 0;
         return;
       }
-      FindNeighbors(patch, progress.Between(0.4, 0.45));
-      FindNearest(patch, progress.Between(0.45, 0.5));
+      FindNeighbors(patch, stages.Next());
+      FindNearest(patch, stages.Next());
       const Values elevation = [this](Index id) { return this->Points.Elevation(id); };
-      const bool mayHaveLines =
-        this->Options.Method == Interpolation::Adaptive && this->GivenHoles.IsRegion(hole);
+      const Progress betweenLines = stages.Next();
       if (!mayHaveLines ||
         !ElevateBetweenLines(this->Surface, this->Stars.get(), this->GivenHoles.LongestEdge,
-          elevation, this->Options, progress.Between(0.5, 0.9), filled, report))
+          elevation, this->Options, betweenLines, filled, report))
       {
-        Elevate(this->Surface, this->Stars.get(), elevation, this->Options,
-          progress.Between(mayHaveLines ? 0.9 : 0.5, 1.0), filled, report);
+        Elevate(this->Surface, this->Stars.get(), elevation, this->Options, stages.Next(), filled,
+          report);
       }
     }
     catch (const Error& error)

@@ -249,9 +249,10 @@ private:
 
 void FindNeighbors(PatchMesh& patch, const Progress& progress)
 {
-  CollectNeighbors(patch, progress.Between(0.0, 0.5));
-  WeighNeighbors(patch, progress.Between(0.5, 0.7));
-  FindLayers(patch, progress.Between(0.7, 1.0));
+  Stages stages(progress, { 50, 20, 30 });
+  CollectNeighbors(patch, stages.Next());
+  WeighNeighbors(patch, stages.Next());
+  FindLayers(patch, stages.Next());
 }
 
 void FindNearest(PatchMesh& patch, const Progress& progress)

@@ -78,12 +78,13 @@ void CutAlong(const std::vector<Segment>& edges, Mesh& mesh, const Progress& pro
 /** The triangles of known and new points inside the hole, as a mesh with Twins. */
 Mesh Connect(const Patch& patch, int threads, const Progress& progress)
 {
+  Stages stages(progress, { 60, 20, 10, 10, 0 });
   PointView view;
   view.Double = patch.Points.data();
   view.Count = patch.NumberOfVertices();
   DelaunayOptions options;
   options.NumberOfThreads = threads;
-  options.Monitor = progress.Between(0.0, 0.6);
+  options.Monitor = stages.Next();
   const Triangulation triangulation = Triangulate(view, options);
   // Points that coincide with others: of the boundary, two borders touch without a common vertex;
   // of the new ones, rounding has pushed two onto each other.
@@ -100,16 +101,16 @@ Mesh Connect(const Patch& patch, int threads, const Progress& progress)
     mesh.Points[v] = patch.At(v);
   }
   mesh.Triangles.assign(triangulation.Triangles.begin(), triangulation.Triangles.end());
-  mesh.ConnectTwins(0, progress.Between(0.6, 0.8));
+  mesh.ConnectTwins(0, stages.Next());
   std::vector<char> constrained;
-  RecoverSegments(mesh, patch.Edges, constrained, progress.Between(0.8, 0.9));
-  KeepTriangles(FindInside(mesh, constrained, progress.Between(0.9, 1.0)), mesh);
+  RecoverSegments(mesh, patch.Edges, constrained, stages.Next());
+  KeepTriangles(FindInside(mesh, constrained, stages.Next()), mesh);
   // Where borders cross or overlap, recovery may succeed and yet enclose something else.
   if (!IsBoundedBy(patch.Edges, mesh))
   {
     throw BordersTouch();
   }
-  CutAlong(patch.InnerEdges, mesh, progress.Between(1.0, 1.0));
+  CutAlong(patch.InnerEdges, mesh, stages.Next());
   return mesh;
 }
 } // namespace
@@ -165,8 +166,9 @@ Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
 
 void MakePatch(const PatchPlan& plan, const Progress& progress, Patch& patch)
 {
+  Stages stages(progress, { 10, 60, 30 });
   patch.Spacing = plan.Spacing;
-  const Progress placing = progress.Between(0.0, 0.1);
+  const Progress placing = stages.Next();
   if (plan.Kind == Arrangement::Nodes)
   {
     // Between neighbouring nodes there are edges anyway; a longer edge would block nodes.
@@ -183,10 +185,10 @@ void MakePatch(const PatchPlan& plan, const Progress& progress, Patch& patch)
     PlaceEvenly(plan, placing, patch);
   }
   // Nodes are left as they are: triangles of a lattice are good, and points off it would not fit.
-  Mesh mesh = Connect(patch, plan.NumberOfThreads, progress.Between(0.1, 0.7));
+  Mesh mesh = Connect(patch, plan.NumberOfThreads, stages.Next());
   if (plan.Kind != Arrangement::Nodes)
   {
-    Refine(plan, patch, progress.Between(0.7, 1.0), mesh);
+    Refine(plan, patch, stages.Next(), mesh);
   }
   // Those that refinement has added.
   for (Index v = patch.NumberOfVertices(); v < mesh.NumberOfPoints(); ++v)

@@ -86,7 +86,8 @@ Blocked BlockRow(const Rows& rows, Index row, const Point2& a, const Point2& b)
 std::vector<Blocked> BlockRows(
   const Rows& rows, const std::vector<Point2>& points, const Patch& patch, const Progress& progress)
 {
-  const Progress blocking = progress.Between(0.0, 0.7);
+  Stages stages(progress, { 70, 30 });
+  const Progress blocking = stages.Next();
   std::vector<Blocked> blocked;
   StepCount visited;
   const std::size_t count = patch.Edges.size() + patch.InnerEdges.size();
@@ -121,7 +122,7 @@ std::vector<Blocked> BlockRows(
     [](const Blocked& s, const Blocked& t) {
       return s.Row != t.Row ? s.Row < t.Row : s.Begin < t.Begin;
     },
-    progress.Between(0.7, 1.0));
+    stages.Next());
   return blocked;
 }
 
@@ -137,13 +138,14 @@ template <typename InRows, typename Visitor>
 void VisitRows(
   const Rows& rows, const Patch& patch, const Progress& progress, InRows&& inRows, Visitor&& visit)
 {
+  Stages stages(progress, { 60, 40 });
   std::vector<Point2> points(patch.NumberOfBoundaryVertices());
   for (Index v = 0; v < patch.NumberOfBoundaryVertices(); ++v)
   {
     points[v] = inRows(v);
   }
-  std::vector<Blocked> blocked = BlockRows(rows, points, patch, progress.Between(0.0, 0.6));
-  const Progress placing = progress.Between(0.6, 1.0);
+  std::vector<Blocked> blocked = BlockRows(rows, points, patch, stages.Next());
+  const Progress placing = stages.Next();
   // From the left along each row: inside or not behind the stretches that have been passed.
   bool isInside = false;
   StepCount placed;

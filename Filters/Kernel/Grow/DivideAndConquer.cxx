@@ -413,12 +413,13 @@ Buffer<Index> DivideAndConquer(
   {
     return Buffer<Index>();
   }
-  const Progress dividing = progress.Between(0.0, 0.9);
+  Stages stages(progress, { 90, 5, 5 });
+  const Progress dividing = stages.Next();
   Division division(points, dividing, metric);
   // RemoveTies() keeps the hull's edges, so this spoke serves all three passes.
   const Index hullSpoke = division.Divide(0, static_cast<Index>(points.size())).FromLowest;
-  division.RemoveTies(hullSpoke, progress.Between(0.9, 0.95));
-  Buffer<Index> triangles = division.CutIntoFans(hullSpoke, progress.Between(0.95, 1.0));
+  division.RemoveTies(hullSpoke, stages.Next());
+  Buffer<Index> triangles = division.CutIntoFans(hullSpoke, stages.Next());
   Report(progress, 1.0);
   return triangles;
 }

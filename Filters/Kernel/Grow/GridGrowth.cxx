@@ -39,7 +39,8 @@ public:
 
   // The interface that GrowAll() needs: strips, and for divide and conquer places and ids.
   class GridStrip;
-  std::vector<std::unique_ptr<GridStrip>> MakeStrips(const Hull& hull, int threads);
+  std::vector<std::unique_ptr<GridStrip>> MakeStrips(
+    const Hull& hull, int threads, const Progress& progress);
 
   /** The points by increasing (y, x), once growth is given up. */
   Buffer<Point2> Places(const Progress& progress)
@@ -262,7 +263,8 @@ private:
 };
 
 /** One strip per thread. */
-std::vector<std::unique_ptr<Growth::GridStrip>> Growth::MakeStrips(const Hull& hull, int threads)
+std::vector<std::unique_ptr<Growth::GridStrip>> Growth::MakeStrips(
+  const Hull& hull, int threads, const Progress& progress)
 {
   // A walk passes about as many triangles as a row of the strip has points, and more; with fewer
   // points per strip, walks would cost a noticeable share of the growth.
@@ -274,10 +276,9 @@ std::vector<std::unique_ptr<Growth::GridStrip>> Growth::MakeStrips(const Hull& h
     return static_cast<Index>(static_cast<std::int64_t>(count) * k / number);
   };
   this->Pool.Resize(count);
-  ForEachRange(
-    count, threads, this->Options.Monitor.Between(0.2, 0.2), [this](Index, Index begin, Index end) {
-      std::fill(this->Pool.begin() + begin, this->Pool.begin() + end, Ends{ None, None });
-    });
+  ForEachRange(count, threads, progress, [this](Index, Index begin, Index end) {
+    std::fill(this->Pool.begin() + begin, this->Pool.begin() + end, Ends{ None, None });
+  });
   std::vector<std::unique_ptr<GridStrip>> strips;
   for (Index i = 0; i < number; ++i)
   {
@@ -291,8 +292,8 @@ Buffer<Index> GrowOverGrid(
   BinGrid& grid, const Hull& hull, const DelaunayOptions& options, int threads)
 {
   Growth growth(grid, options);
-  return GrowAll(growth, hull, grid.NumberOfPoints(), options, threads,
-    options.Monitor.Between(0.2, 1.0), std::move(grid.Scratch));
+  return GrowAll(growth, hull, grid.NumberOfPoints(), options, threads, options.Monitor,
+    std::move(grid.Scratch));
 }
 
 } // namespace elevation

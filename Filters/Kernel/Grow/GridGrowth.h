@@ -17,7 +17,6 @@ namespace elevation
  * Expected linear for even density, n log n otherwise.
  * @param grid        its Scratch is moved from
  * @param hull        of its points, which are not all on one line
- * @param options     Monitor gets fractions from 0.2 on
  */
 Buffer<Index> GrowOverGrid(
   BinGrid& grid, const Hull& hull, const DelaunayOptions& options, int threads);

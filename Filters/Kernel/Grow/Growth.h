@@ -276,13 +276,15 @@ template <typename Growth>
 Buffer<Index> GrowAll(Growth& growth, const Hull& hull, Index vertices,
   const DelaunayOptions& options, int threads, const Progress& progress, Buffer<Index>&& room)
 {
+  Stages stages(progress, { 0, 95, 5 }); // where growth does not take all of it
+  const Progress preparing = stages.Next();
   Buffer<Index> triangles = std::move(room);
   if (!options.DivideAtOnce)
   {
     // First by growth; CannotGrow from any strip ends it, and its triangles are dropped.
     try
     {
-      const auto strips = growth.MakeStrips(hull, threads);
+      const auto strips = growth.MakeStrips(hull, threads, preparing);
       // Euler's formula, for a triangulated disc with all points of the hull on its border.
       triangles.Resize(3 * (2 * static_cast<std::size_t>(vertices) - 2 - hull.NumberOfPoints()));
       for (const auto& strip : strips)
@@ -310,9 +312,8 @@ Buffer<Index> GrowAll(Growth& growth, const Hull& hull, Index vertices,
   }
   // Freed first: divide and conquer needs more memory than growth.
   triangles = Buffer<Index>();
-  triangles = DivideAndConquer(
-    growth.Places(progress.Between(0.0, 0.0)), progress.Between(0.0, 0.95), growth.Metric);
-  const Progress naming = progress.Between(0.95, 1.0);
+  triangles = DivideAndConquer(growth.Places(preparing), stages.Next(), growth.Metric);
+  const Progress naming = stages.Next();
   // In place: no triangle moves up, so none is overwritten before it is read.
   std::size_t kept = 0;
   for (const std::size_t t : Counted(triangles.size() / 3))

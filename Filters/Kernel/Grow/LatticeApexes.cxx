@@ -141,9 +141,9 @@ bool IsBetter(const Apex& p, const Apex& q, const Offset& e)
   {
     return order < 0;
   }
-  return e.Y >= 0
-    ? Cross(p.Place, q.Place) > 0
-    : Cross({ q.Place.X - e.X, q.Place.Y - e.Y }, { p.Place.X - e.X, p.Place.Y - e.Y }) > 0;
+  return e.Y >= 0 ? Cross(p.Position, q.Position) > 0
+                  : Cross({ q.Position.X - e.X, q.Position.Y - e.Y },
+                      { p.Position.X - e.X, p.Position.Y - e.Y }) > 0;
 }
 
 LatticeApexes::LatticeApexes(const LatticeNodes& nodes, const LatticeMetric& metric)
@@ -233,7 +233,7 @@ const LatticeApexes::Entries* LatticeApexes::MakeList(
     {
       break;
     }
-    const Offset& p = apex.Place;
+    const Offset& p = apex.Position;
     made->push_back({ static_cast<Index>(p.Y * this->Nodes.WordsPerRow * 64 + p.X),
       static_cast<std::int16_t>(p.X), static_cast<std::int16_t>(p.Y) });
   }
@@ -294,7 +294,7 @@ public:
         break;
       }
     }
-    return this->Best.Place;
+    return this->Best.Position;
   }
 
 private:

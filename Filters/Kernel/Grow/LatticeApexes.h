@@ -48,7 +48,7 @@ inline std::int64_t Cross(const Offset& p, const Offset& q)
  */
 struct Apex
 {
-  Offset Place;
+  Offset Position;
   std::int64_t Dot, Cross;
 };
 

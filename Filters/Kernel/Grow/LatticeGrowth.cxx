@@ -46,7 +46,8 @@ public:
   }
 
   class LatticeStrip;
-  std::vector<std::unique_ptr<LatticeStrip>> MakeStrips(const Hull& hull, int threads);
+  std::vector<std::unique_ptr<LatticeStrip>> MakeStrips(
+    const Hull& hull, int threads, const Progress& progress);
   Hull FindHull() const;
   Buffer<Point2> Places(const Progress& progress);
   bool ToIds(Index* triangle) const;
@@ -272,7 +273,8 @@ private:
  * Strips with points, of about equal work: several per thread, as work is only estimated, unless
  * the walks would take too much of it.
  */
-std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(const Hull& hull, int threads)
+std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(
+  const Hull& hull, int threads, const Progress&)
 {
   const LatticeNodes& nodes = this->Nodes;
   const Index count = nodes.NumberOfPoints();
@@ -463,7 +465,7 @@ void Growth::LatticeStrip::GrowFan(Index row, Index node, Index rank, Index firs
 
 /** @return false when the lattice is of no use: all on one line, or a triangle would be flat */
 bool GrowOnLattice(const PointView& points, LatticeNodes& nodes, const LatticeMetric& metric,
-  const DelaunayOptions& options, int threads, Triangulation& result)
+  const DelaunayOptions& options, int threads, const Progress& progress, Triangulation& result)
 {
   Growth growth(points, nodes, metric, options);
   const Hull hull = growth.FindHull();
@@ -473,8 +475,8 @@ bool GrowOnLattice(const PointView& points, LatticeNodes& nodes, const LatticeMe
   }
   try
   {
-    result.Triangles = GrowAll(growth, hull, nodes.NumberOfPoints(), options, threads,
-      options.Monitor.Between(0.4, 1.0), Buffer<Index>());
+    result.Triangles =
+      GrowAll(growth, hull, nodes.NumberOfPoints(), options, threads, progress, Buffer<Index>());
   }
   catch (const IsFlat&)
   {
@@ -488,12 +490,14 @@ bool GrowOnLattice(const PointView& points, LatticeNodes& nodes, const LatticeMe
 bool TriangulateLattice(
   const PointView& points, const DelaunayOptions& options, Triangulation& result, Extent& extent)
 {
+  Stages stages(options.Monitor, { 15, 85 });
   const double tolerance = options.ToleranceInSteps();
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
-  LatticeSearch search =
-    FindLattice(points, tolerance, threads, options.Monitor.Between(0.0, 0.15));
+  LatticeSearch search = FindLattice(points, tolerance, threads, stages.Next());
+  DelaunayOptions onLattice = options;
+  onLattice.Monitor = stages.Next();
   // Any doubt ends here: the general path then triangulates by coordinates.
-  if (search.Found && TriangulateOnLattice(points, search, options, result))
+  if (search.Found && TriangulateOnLattice(points, search, onLattice, result))
   {
     return true;
   }
@@ -504,6 +508,7 @@ bool TriangulateLattice(
 bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
   const DelaunayOptions& options, Triangulation& result)
 {
+  Stages stages(options.Monitor, { 30, 70, 0 });
   const double tolerance = options.ToleranceInSteps();
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
   // The cheapest answers "no lattice" come first. Few points fit some lattice within the tolerance
@@ -511,17 +516,15 @@ bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
   LatticeNodes nodes;
   LatticeMetric metric;
   if (!metric.Set(search.Steps) ||
-    !nodes.Place(
-      points, search, tolerance, options.Duplicates, threads, options.Monitor.Between(0.15, 0.4)) ||
+    !nodes.Place(points, search, tolerance, options.Duplicates, threads, stages.Next()) ||
     IsLatticeByChance(nodes.NumberOfPoints(), tolerance) ||
-    !GrowOnLattice(points, nodes, metric, options, threads, result))
+    !GrowOnLattice(points, nodes, metric, options, threads, stages.Next(), result))
   {
     return false;
   }
   result.LatticeFound = true;
   result.Steps = nodes.Steps;
-  SetUnusedPoints(
-    std::move(nodes.Duplicates), search.NotFinite, options.Monitor.Between(1.0, 1.0), result);
+  SetUnusedPoints(std::move(nodes.Duplicates), search.NotFinite, stages.Next(), result);
   Report(options.Monitor, 1.0);
   return true;
 }

@@ -16,11 +16,11 @@ namespace elevation
 
 namespace
 {
-/** A point by its node, column and row, and its place in a piece. */
+/** A point by its node, column and row, and its index in a piece. */
 struct PlacedNode
 {
   LatticeNode Node;
-  Index Place;
+  Index Point;
 };
 
 /** @throws NotOnLattice if a point is on no node */
@@ -54,7 +54,7 @@ void KeepOneOnEach(const PointView& points, DuplicatePolicy policy, std::vector<
   Sort(
     placed.begin(), placed.end(),
     [&](const PlacedNode& p, const PlacedNode& q) {
-      return isSame(p, q) ? IsPreferred(points, policy, p.Place, q.Place)
+      return isSame(p, q) ? IsPreferred(points, policy, p.Point, q.Point)
                           : std::tie(p.Node.J, p.Node.I) < std::tie(q.Node.J, q.Node.I);
     },
     progress);
@@ -67,11 +67,11 @@ void KeepOneOnEach(const PointView& points, DuplicatePolicy policy, std::vector<
       placed[++kept] = placed[i];
       continue;
     }
-    if (points.At(placed[kept].Place) != points.At(placed[i].Place))
+    if (points.At(placed[kept].Point) != points.At(placed[i].Point))
     {
       throw NotOnLattice();
     }
-    duplicates.push_back(placed[i].Place);
+    duplicates.push_back(placed[i].Point);
   }
   placed.resize(std::min(placed.size(), kept + 1));
   std::sort(duplicates.begin(), duplicates.end());
@@ -81,11 +81,11 @@ void KeepOneOnEach(const PointView& points, DuplicatePolicy policy, std::vector<
 Triangulation TriangulateSparse(
   const PointView& points, const SharedLattice& lattice, const DelaunayOptions& options)
 {
+  Stages stages(options.Monitor, { 10, 10, 80 });
   Triangulation result;
   std::vector<Index> notFinite, duplicates;
-  std::vector<PlacedNode> placed =
-    FindNodes(points, lattice, notFinite, options.Monitor.Between(0.0, 0.1));
-  KeepOneOnEach(points, options.Duplicates, placed, duplicates, options.Monitor.Between(0.1, 0.2));
+  std::vector<PlacedNode> placed = FindNodes(points, lattice, notFinite, stages.Next());
+  KeepOneOnEach(points, options.Duplicates, placed, duplicates, stages.Next());
   result.LatticeFound = true;
   result.Steps = lattice.Steps();
   SetUnusedPoints(std::move(duplicates), notFinite, Progress(), result);
@@ -106,7 +106,7 @@ Triangulation TriangulateSparse(
     nodes.Append(
       { static_cast<double>(one.Node.I - lowest.I), static_cast<double>(one.Node.J - lowest.J) });
   }
-  result.Triangles = DivideAndConquer(nodes, options.Monitor.Between(0.2, 1.0), &lattice.Metric());
+  result.Triangles = DivideAndConquer(nodes, stages.Next(), &lattice.Metric());
   const Index triangles = static_cast<Index>(result.Triangles.size() / 3);
   if (triangles > 0)
   {
@@ -115,7 +115,7 @@ Triangulation TriangulateSparse(
   }
   for (Index& corner : result.Triangles)
   {
-    corner = placed[corner].Place;
+    corner = placed[corner].Point;
   }
   return result;
 }
@@ -165,9 +165,10 @@ Triangulation TriangulateNodes(const PointView& points, const SharedLattice& lat
 
 Triangulation TriangulateOnGivenLattice(const PointView& points, const DelaunayOptions& options)
 {
+  Stages stages(options.Monitor, { 15, 85, 0 });
   const double tolerance = options.ToleranceInSteps();
-  const LatticeSearch search = GivenLattice(points, options.GivenLattice, tolerance,
-    ThreadsAtOnce(options.NumberOfThreads), options.Monitor.Between(0.0, 0.15));
+  const LatticeSearch search = GivenLattice(
+    points, options.GivenLattice, tolerance, ThreadsAtOnce(options.NumberOfThreads), stages.Next());
   // The nodes' range is needed first: a lattice with more columns and rows than 32 bits is refused.
   const NodeFinder nodeOf(search.Steps);
   const NodeBox nodes = FindNodeBox(nodeOf, search, search.Steps, [&]() {
@@ -182,18 +183,19 @@ Triangulation TriangulateOnGivenLattice(const PointView& points, const DelaunayO
   {
     throw GivenLatticeTooLarge();
   }
+  DelaunayOptions onLattice = options;
+  onLattice.Monitor = stages.Next();
   try
   {
     Triangulation result;
-    if (!TriangulateOnLattice(points, search, options, result))
+    if (!TriangulateOnLattice(points, search, onLattice, result))
     {
-      result = TriangulateSparse(points, lattice, options);
+      result = TriangulateSparse(points, lattice, onLattice);
     }
     result.LatticeFound = hasPoints; // a part without points says nothing of those of others
     CheckTriangles(points, result.Triangles);
     // Growth has done it already; divide and conquer does not know the limit.
-    LeaveOutLong(
-      points, options.MaximumEdgeLength, result.Triangles, options.Monitor.Between(1.0, 1.0));
+    LeaveOutLong(points, options.MaximumEdgeLength, result.Triangles, stages.Next());
     Report(options.Monitor, 1.0);
     return result;
   }

@@ -116,17 +116,17 @@ bool FitLattice(const LatticeSample& sample, std::vector<Point2>&& inFullestPlac
 LatticeSearch FindLattice(
   const PointView& points, double tolerance, int threads, const Progress& progress)
 {
+  Stages stages(progress, { 55, 40, 5 });
   LatticeSearch search;
   const LatticeSample sample =
-    SampleForLattice(points, points.Count, threads, progress.Between(0.0, 0.55), search.NotFinite);
+    SampleForLattice(points, points.Count, threads, stages.Next(), search.NotFinite);
   static_cast<Box&>(search) = sample;
   // The second pass over all points, only where there is a prospect.
   if (sample.MayFitLattice())
   {
-    std::vector<Point2> around = DistinctPointsIn(
-      FullestPlace(sample), points, search.NotFinite, threads, progress.Between(0.55, 0.95));
-    search.Found =
-      FitLattice(sample, std::move(around), tolerance, progress.Between(0.95, 1.0), search.Steps);
+    std::vector<Point2> around =
+      DistinctPointsIn(FullestPlace(sample), points, search.NotFinite, threads, stages.Next());
+    search.Found = FitLattice(sample, std::move(around), tolerance, stages.Next(), search.Steps);
   }
   return search;
 }

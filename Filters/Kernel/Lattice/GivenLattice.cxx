@@ -102,13 +102,14 @@ Error GivenLatticeUnfit()
 LatticeSearch GivenLattice(const PointView& points, const Lattice& given, double tolerance,
   int threads, const Progress& progress)
 {
+  Stages stages(progress, { 40, 60 });
   LatticeSearch search;
   search.Found = true;
   search.Steps = CheckedSteps(given);
   static_cast<Extent&>(search) =
-    FindExtent(points, threads, progress.Between(0.0, 0.4), [](Index, const Point2&) {});
+    FindExtent(points, threads, stages.Next(), [](Index, const Point2&) {});
   const Index beside =
-    FirstOffLattice(points, search.NotFinite, search.Steps, tolerance, progress.Between(0.4, 1.0));
+    FirstOffLattice(points, search.NotFinite, search.Steps, tolerance, stages.Next());
   if (beside != None)
   {
     throw BesideGivenLattice(beside, points.At(beside), search.Steps, tolerance);

@@ -126,11 +126,13 @@ using Picked = std::vector<std::vector<Point2>>;
 /** The distinct points of all ranges, sorted. */
 std::vector<Point2> JoinPicked(Picked sets, const Progress& progress)
 {
+  Stages stages(progress, { 50, 50 });
   PlaceSet all;
+  const Progress joining = stages.Next();
   std::size_t joined = 0;
   for (std::vector<Point2>& set : Counted(sets))
   {
-    ReportStep(progress, joined++, 2 * sets.size(), 16);
+    ReportStep(joining, joined++, sets.size(), 16);
     for (const Point2& p : set)
     {
       all.Add(p);
@@ -138,7 +140,7 @@ std::vector<Point2> JoinPicked(Picked sets, const Progress& progress)
     set = std::vector<Point2>();
   }
   std::vector<Point2> places = all.Places();
-  Sort(places.begin(), places.end(), IsLower, progress.Between(0.5, 1.0));
+  Sort(places.begin(), places.end(), IsLower, stages.Next());
   return places;
 }
 
@@ -279,23 +281,23 @@ void LatticeSample::Add(LatticeSample&& part)
 LatticeSample SampleForLattice(const PointView& points, double totalCount, int threads,
   const Progress& progress, std::vector<Index>& notFinite)
 {
+  Stages stages(progress, { 90, 10 });
   Picked picked(NumberOfRanges(points.Count));
   std::vector<PlaceSet> sets(picked.size());
   const std::uint64_t limit = HashLimit(WideSampleSize(totalCount), totalCount);
-  Extent extent =
-    FindExtent(points, threads, progress.Between(0.0, 0.9), [&](Index piece, const Point2& p) {
-      if (HashOf(p) < limit)
-      {
-        sets[piece].Add(p);
-      }
-    });
+  Extent extent = FindExtent(points, threads, stages.Next(), [&](Index range, const Point2& p) {
+    if (HashOf(p) < limit)
+    {
+      sets[range].Add(p);
+    }
+  });
   std::transform(
     sets.begin(), sets.end(), picked.begin(), [](const PlaceSet& set) { return set.Places(); });
   LatticeSample sample;
   static_cast<Box&>(sample) = extent;
   sample.CloudSize = totalCount;
   sample.Count = static_cast<double>(points.Count) - static_cast<double>(extent.NotFinite.size());
-  sample.Points = JoinPicked(std::move(picked), progress.Between(0.9, 1.0));
+  sample.Points = JoinPicked(std::move(picked), stages.Next());
   notFinite = std::move(extent.NotFinite);
   return sample;
 }
@@ -329,9 +331,10 @@ Box FullestPlace(const LatticeSample& sample)
 std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
   const std::vector<Index>& notFinite, int threads, const Progress& progress)
 {
+  Stages stages(progress, { 80, 20 });
   Picked picked(NumberOfRanges(points.Count));
   ForEachRange(
-    points.Count, threads, progress.Between(0.0, 0.8), [&](Index piece, Index begin, Index end) {
+    points.Count, threads, stages.Next(), [&](Index range, Index begin, Index end) {
       PlaceSet here;
       ForEachPoint(points, begin, end, notFinite, [&](Index, const Point2& p) {
         if (place.Contains(p))
@@ -339,9 +342,9 @@ std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
           here.Add(p);
         }
       });
-      picked[piece] = here.Places();
+      picked[range] = here.Places();
     });
-  return JoinPicked(std::move(picked), progress.Between(0.8, 1.0));
+  return JoinPicked(std::move(picked), stages.Next());
 }
 
 std::vector<Point2> FullestPart(std::vector<Point2>&& points, const Progress& progress)

@@ -71,26 +71,28 @@ public:
 
   bool Run(double tolerance, const Progress& progress)
   {
-    if (!this->MakeBitmap(this->FindBox(progress.Between(0.0, 0.2)), progress.Between(0.2, 0.2)))
+    Stages stages(progress, { 20, 0, 30, 20, 29, 1 });
+    const NodeBox box = this->FindBox(stages.Next());
+    if (!this->MakeBitmap(box, stages.Next()))
     {
       return false;
     }
     this->IsScattered = AreScattered(this->Points, this->Search.NotFinite, this->NodeOf);
-    if (!this->FindNodes(tolerance, progress.Between(0.2, 0.5)))
+    if (!this->FindNodes(tolerance, stages.Next()))
     {
       return false;
     }
     IdSet duplicates(this->Points.Count);
     Buckets sorted;
-    const bool isSorted =
-      this->IsScattered && this->SortIntoBuckets(sorted, progress.Between(0.5, 0.7));
-    const Progress placing = progress.Between(0.7, 0.99);
+    const Progress sorting = stages.Next();
+    const bool isSorted = this->IsScattered && this->SortIntoBuckets(sorted, sorting);
+    const Progress placing = stages.Next();
     if (!(isSorted ? this->PlaceSorted(sorted, duplicates, placing)
                    : this->PlaceInOrder(duplicates, placing)))
     {
       return false;
     }
-    this->Nodes.Duplicates = duplicates.List(progress.Between(0.99, 1.0));
+    this->Nodes.Duplicates = duplicates.List(stages.Next());
     this->FindOrigin();
     return true;
   }
@@ -109,17 +111,17 @@ private:
   NodeBox FindBox(const Progress& progress) const
   {
     return FindNodeBox(this->NodeOf, this->Search, this->Search.Steps, [&]() {
-      std::vector<NodeBox> pieces(NumberOfRanges(this->Points.Count));
-      this->ForEachRange(progress, [&](Index piece, Index begin, Index end) {
+      std::vector<NodeBox> boxes(NumberOfRanges(this->Points.Count));
+      this->ForEachRange(progress, [&](Index range, Index begin, Index end) {
         NodeBox here;
         ForEachPoint(this->Points, begin, end, this->Search.NotFinite,
           [&](Index, const Point2& p) { this->NodeOf.Extend(here, p); });
-        pieces[piece] = here;
+        boxes[range] = here;
       });
       NodeBox box;
-      for (const NodeBox& piece : pieces)
+      for (const NodeBox& one : boxes)
       {
-        box.Join(piece);
+        box.Join(one);
       }
       return box;
     });
@@ -163,7 +165,7 @@ private:
     std::vector<double> offsets(NumberOfRanges(this->Points.Count), 0.0);
     this->Second.resize(offsets.size());
     std::atomic<bool> fits{ true };
-    this->ForEachRange(progress, [&](Index piece, Index begin, Index end) {
+    this->ForEachRange(progress, [&](Index range, Index begin, Index end) {
       if (!fits)
       {
         return;
@@ -195,8 +197,8 @@ private:
       {
         fits = false;
       }
-      offsets[piece] = largest;
-      this->Second[piece] = std::move(second);
+      offsets[range] = largest;
+      this->Second[range] = std::move(second);
     });
     // With rounding: growth proves with it that triangles are not flat.
     this->Nodes.LargestOffset = *std::max_element(offsets.begin(), offsets.end()) +
@@ -204,7 +206,7 @@ private:
     return fits;
   }
 
-  /** Calls work(piece, begin, end) for ranges of the points. */
+  /** Calls work(range, begin, end) for ranges of the points. */
   template <typename Work>
   void ForEachRange(const Progress& progress, Work&& work) const
   {
@@ -214,12 +216,13 @@ private:
   /** The way for scattered points: bucket by bucket, so that bitmap and ids are in the cache. */
   bool PlaceSorted(Buckets& sorted, IdSet& duplicates, const Progress& progress)
   {
-    ForEachPiece(sorted.Count(), this->Threads, progress.Between(0.0, 0.35),
+    Stages stages(progress, { 35, 50, 15 });
+    ForEachTask(sorted.Count(), this->Threads, stages.Next(),
       [&](Index bucket) { this->OccupyBucket(sorted, bucket); });
     this->CountBefore();
-    ForEachPiece(sorted.Count(), this->Threads, progress.Between(0.35, 0.85),
+    ForEachTask(sorted.Count(), this->Threads, stages.Next(),
       [&](Index bucket) { this->PlaceBucket(sorted, bucket); });
-    const Progress settling = progress.Between(0.85, 1.0);
+    const Progress settling = stages.Next();
     const Index placed = sorted.Begins.back();
     // All points placed: there are no duplicates to look for.
     for (const Index i : Counted(this->Nodes.NumberOfPoints() < placed ? placed : 0))
@@ -237,18 +240,20 @@ private:
   /** The way for points in some order: range by range, prefetching. */
   bool PlaceInOrder(IdSet& duplicates, const Progress& progress)
   {
+    Stages stages(progress, { 35, 50, 15 });
+    const Progress occupying = stages.Next();
     if (this->IsScattered)
     {
-      this->ForEachRange(progress.Between(0.0, 0.35), [&](Index piece, Index begin, Index end) {
+      this->ForEachRange(occupying, [&](Index range, Index begin, Index end) {
         std::vector<Index> second;
         this->Occupy(begin, end, second);
-        this->Second[piece] = std::move(second);
+        this->Second[range] = std::move(second);
       });
     }
     this->CountBefore();
-    this->ForEachRange(progress.Between(0.35, 0.85),
-      [&](Index, Index begin, Index end) { this->PlaceIds(begin, end); });
-    const Progress settling = progress.Between(0.85, 1.0);
+    this->ForEachRange(
+      stages.Next(), [&](Index, Index begin, Index end) { this->PlaceIds(begin, end); });
+    const Progress settling = stages.Next();
     // One after another, by id: which of several is kept does not depend on threads.
     std::size_t steps = 0;
     for (const std::vector<Index>& second : this->Second)
@@ -327,6 +332,7 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
  */
 bool LatticeNodes::Placement::SortIntoBuckets(Buckets& sorted, const Progress& progress)
 {
+  Stages stages(progress, { 50, 50 });
   // A bucket should fit into a core's cache, and so should the ends of all buckets.
   constexpr Index pointsPerBucket = 1 << 14, mostBuckets = 512;
   // Shift so many bits of the node number that buckets are few, and about as large as wanted.
@@ -354,7 +360,7 @@ bool LatticeNodes::Placement::SortIntoBuckets(Buckets& sorted, const Progress& p
   };
   sorted.Nodes.Resize(static_cast<std::size_t>(count));
   sorted.Ids.Resize(static_cast<std::size_t>(count));
-  this->ForEachRange(progress.Between(0.0, 0.5), [&](Index range, Index begin, Index end) {
+  this->ForEachRange(stages.Next(), [&](Index range, Index begin, Index end) {
     // The writes below come in no order; see TouchPages().
     TouchPages(sorted.Nodes, begin, end);
     TouchPages(sorted.Ids, begin, end);
@@ -378,7 +384,7 @@ bool LatticeNodes::Placement::SortIntoBuckets(Buckets& sorted, const Progress& p
     sorted = Buckets(); // gives its memory back
     return false;
   }
-  this->ForEachRange(progress.Between(0.5, 1.0), [&](Index range, Index begin, Index end) {
+  this->ForEachRange(stages.Next(), [&](Index range, Index begin, Index end) {
     forEachNode(range, begin, end, [&](Index place, Index id) {
       sorted.Nodes[place] = this->Nodes.Scratch[id];
       sorted.Ids[place] = id;
@@ -477,31 +483,31 @@ void LatticeNodes::Placement::CountBefore()
 {
   const Index words = static_cast<Index>(this->Nodes.Memory.size());
   this->Nodes.Before.Resize(this->Nodes.Memory.size());
-  // Two passes, as the sums of all earlier pieces are needed before ranks can be written.
-  const Index pieces = std::min(this->Threads, words);
-  const auto beginOf = [&](Index piece) {
-    return static_cast<Index>(std::int64_t(words) * piece / pieces);
+  // Two passes, as the sums of all earlier ranges are needed before ranks can be written.
+  const Index ranges = std::min(this->Threads, words);
+  const auto beginOf = [&](Index range) {
+    return static_cast<Index>(std::int64_t(words) * range / ranges);
   };
-  std::vector<Index> sums(pieces, 0);
-  ForEachPiece(pieces - 1, this->Threads, [&](Index piece) {
+  std::vector<Index> sums(ranges, 0);
+  ForEachTask(ranges - 1, this->Threads, [&](Index range) {
     Index sum = 0;
-    CountWork(static_cast<std::size_t>(beginOf(piece + 1) - beginOf(piece)));
-    for (Index word = beginOf(piece); word < beginOf(piece + 1); ++word)
+    CountWork(static_cast<std::size_t>(beginOf(range + 1) - beginOf(range)));
+    for (Index word = beginOf(range); word < beginOf(range + 1); ++word)
     {
       sum += CountBits(this->Nodes.Word(word));
     }
-    sums[piece + 1] = sum;
+    sums[range + 1] = sum;
   });
   std::partial_sum(sums.begin(), sums.end(), sums.begin());
-  ForEachPiece(pieces, this->Threads, [&](Index piece) {
-    Index rank = sums[piece];
-    CountWork(static_cast<std::size_t>(beginOf(piece + 1) - beginOf(piece)));
-    for (Index word = beginOf(piece); word < beginOf(piece + 1); ++word)
+  ForEachTask(ranges, this->Threads, [&](Index range) {
+    Index rank = sums[range];
+    CountWork(static_cast<std::size_t>(beginOf(range + 1) - beginOf(range)));
+    for (Index word = beginOf(range); word < beginOf(range + 1); ++word)
     {
       this->Nodes.Before[word] = rank;
       rank += CountBits(this->Nodes.Word(word));
     }
-    sums[piece] = rank;
+    sums[range] = rank;
   });
   this->Nodes.Ids.Resize(sums.back());
 }

@@ -116,11 +116,12 @@ public:
   /** @return false when two half-edges that run the same way were found; borders not checked */
   bool Run(const Progress& progress)
   {
-    this->NumberVertices(progress.Between(0.0, 0.2));
-    this->CountRising(progress.Between(0.2, 0.3));
-    this->ListRising(progress.Between(0.3, 0.5));
-    this->SortWhereMany(progress.Between(0.5, 0.5));
-    return this->ConnectFalling(progress.Between(0.5, 0.9));
+    Stages stages(progress, { 20, 10, 20, 0, 40 });
+    this->NumberVertices(stages.Next());
+    this->CountRising(stages.Next());
+    this->ListRising(stages.Next());
+    this->SortWhereMany(stages.Next());
+    return this->ConnectFalling(stages.Next());
   }
 
 private:
@@ -325,8 +326,9 @@ private:
 /** Whether no two borders run the same way between the same vertices. */
 bool HasDistinctBorders(const Mesh& mesh, const Progress& progress)
 {
+  Stages stages(progress, { 50, 50 });
   std::vector<std::pair<Index, Index>> borders;
-  ForEachStretch(mesh.NumberOfTriangles(), progress.Between(0.0, 0.5), [&](Index begin, Index end) {
+  ForEachStretch(mesh.NumberOfTriangles(), stages.Next(), [&](Index begin, Index end) {
     for (Index h = 3 * begin; h < 3 * end; ++h)
     {
       if (mesh.IsBorder(h))
@@ -335,18 +337,18 @@ bool HasDistinctBorders(const Mesh& mesh, const Progress& progress)
       }
     }
   });
-  Sort(borders.begin(), borders.end(), std::less<std::pair<Index, Index>>(),
-    progress.Between(0.5, 1.0));
+  Sort(borders.begin(), borders.end(), std::less<std::pair<Index, Index>>(), stages.Next());
   return std::adjacent_find(borders.begin(), borders.end()) == borders.end();
 }
 } // namespace
 
 void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
 {
+  Stages stages(progress, { 90, 10, 0 });
   this->Twins.assign(this->Triangles.size(), Border);
-  if (!TwinFinder(*this).Run(progress) || !HasDistinctBorders(*this, progress.Between(0.9, 1.0)))
+  if (!TwinFinder(*this).Run(stages.Next()) || !HasDistinctBorders(*this, stages.Next()))
   {
-    ThrowNotManifold(*this, firstCell, progress.Between(1.0, 1.0));
+    ThrowNotManifold(*this, firstCell, stages.Next());
   }
 }
 
@@ -393,17 +395,18 @@ public:
 
   Rings Run(const Progress& progress)
   {
-    this->FindBorders(progress.Between(0.0, 0.95));
-    const Progress sorting = progress.Between(0.95, 0.95);
+    Stages stages(progress, { 95, 0, 5 });
+    this->FindBorders(stages.Next());
+    const Progress sorting = stages.Next();
     this->ListLeaving(sorting);
     this->SortWhereMany(sorting);
-    return this->Walk(progress.Between(0.95, 1.0));
+    return this->Walk(stages.Next());
   }
 
 private:
   /** A border that leaves a vertex: the vertex, and the border's place in Borders. */
   using Leave = std::pair<Index, Index>;
-  using Place = std::vector<Leave>::const_iterator;
+  using LeaveEntry = std::vector<Leave>::const_iterator;
 
   /**
    * Where more meet, they are sorted by angle from the one in Leaving, for binary search. Below,
@@ -492,12 +495,12 @@ private:
     const Point2& p = this->Surface.PointOf(b);
     const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
     Index best = this->Leaving[b];
-    Place other = this->FirstAt(b);
+    LeaveEntry other = this->FirstAt(b);
     // Sorted from the direction of the first border that leaves b: the answer is the first one
     // after that of b->a, or, past the last, the first border itself.
     if (this->Further.end() - other > Many && other[Many].first == b)
     {
-      const Place last = this->FirstAt(b + 1);
+      const LeaveEntry last = this->FirstAt(b + 1);
       const Point2& start = this->EndOf(best);
       other = std::partition_point(other, last,
         [&](const Leave& u) { return TurnsToFirst(p, start, this->EndOf(u.second), from); });
@@ -544,7 +547,7 @@ private:
 
   Index Count() const { return static_cast<Index>(this->Borders.size()); }
   /** Where the further borders of a vertex begin in Further. */
-  Place FirstAt(Index vertex) const
+  LeaveEntry FirstAt(Index vertex) const
   {
     return std::lower_bound(this->Further.begin(), this->Further.end(), Leave(vertex, 0));
   }

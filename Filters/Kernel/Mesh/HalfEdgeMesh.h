@@ -278,11 +278,12 @@ private:
 template <typename Relation>
 Components FindComponents(const Mesh& mesh, const Progress& progress, Relation&& relation)
 {
+  Stages stages(progress, { 80, 20 });
   const Index count = mesh.NumberOfTriangles();
   Components components;
   components.Labels.Resize(count);
   LabelSets joined;
-  ForEachStretch(count, progress.Between(0.0, 0.8), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       Index label = None;
@@ -308,7 +309,7 @@ Components FindComponents(const Mesh& mesh, const Progress& progress, Relation&&
     }
   });
   joined.Renumber(components.Lowest);
-  ForEachStretch(count, progress.Between(0.8, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       components.Labels[t] = joined(components.Labels[t]);

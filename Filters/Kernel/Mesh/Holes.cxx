@@ -123,8 +123,9 @@ public:
   /** @return whether no place is covered twice; if not, Fault() is the error message */
   bool Run(const Progress& progress)
   {
-    this->MakeSegments(progress.Between(0.0, 0.05));
-    this->FindRims(progress.Between(0.05, 0.1));
+    Stages stages(progress, { 5, 5, 30, 60 });
+    this->MakeSegments(stages.Next());
+    this->FindRims(stages.Next());
     Sort(
       this->Events.begin(), this->Events.end(),
       [](const Event& a, const Event& b) {
@@ -132,8 +133,8 @@ public:
         return a.At != b.At ? IsLower(a.At, b.At)
                             : (a.IsStart != b.IsStart ? b.IsStart : a.Segment < b.Segment);
       },
-      progress.Between(0.1, 0.4));
-    const Progress sweeping = progress.Between(0.4, 1.0);
+      stages.Next());
+    const Progress sweeping = stages.Next();
     std::size_t nextReport = 0;
     for (std::size_t first = 0; first < this->Events.size();)
     {
@@ -161,7 +162,7 @@ public:
   const std::string& Fault() const { return this->Message; }
 
 private:
-  using Place = std::set<Index, IsLeftOf>::iterator;
+  using StatusEntry = std::set<Index, IsLeftOf>::iterator;
 
   // Regions of walks: a rim has its own from the start, the outside of a component gets one when
   // the sweep meets its lowest vertex.
@@ -189,7 +190,7 @@ private:
         this->Events.push_back({ this->Segments.back().High, id, false });
       }
     }
-    this->Places.resize(this->Segments.size());
+    this->Entries.resize(this->Segments.size());
   }
 
   /** Finds the walks that are rims; each bounds a region of its own. */
@@ -231,13 +232,13 @@ private:
     const Point2 p = this->Events[first].At;
 
     // Remove edges that end here.
-    Place behind = this->Status.end();
+    StatusEntry behind = this->Status.end();
     bool haveEnded = false;
     for (; first < last && !this->Events[first].IsStart; ++first)
     {
       // Edges that end at one point are neighbours, so what follows the last one erased is the
       // first edge to the right of the point.
-      behind = this->Status.erase(this->Places[this->Events[first].Segment]);
+      behind = this->Status.erase(this->Entries[this->Events[first].Segment]);
       haveEnded = true;
     }
     // Edges that pass through this point stay; without a contact there are none. behind is the
@@ -246,13 +247,13 @@ private:
     {
       behind = this->Status.lower_bound(p);
     }
-    Place through = behind;
+    StatusEntry through = behind;
     while (through != this->Status.begin() && this->IsOn(*std::prev(through), p))
     {
       --through;
     }
     const bool hasLeft = through != this->Status.begin();
-    const Place left = hasLeft ? std::prev(through) : this->Status.end();
+    const StatusEntry left = hasLeft ? std::prev(through) : this->Status.end();
     while (behind != this->Status.end() && this->IsOn(*behind, p))
     {
       ++behind;
@@ -267,7 +268,7 @@ private:
       const Index segment = this->Events[i].Segment;
       // With its neighbour as a hint, in constant time; the order among those that start here is
       // found by IsLeftOf.
-      this->Places[segment] = this->Status.insert(behind, segment);
+      this->Entries[segment] = this->Status.insert(behind, segment);
     }
     // From the neighbour on the left to the one on the right, also where nothing has started: two
     // that were apart until an edge between them ended are neighbours now.
@@ -277,14 +278,15 @@ private:
     }
 
     // The first edges of a walk start at its lowest point, with an empty region on their left.
-    for (Place place = hasLeft ? std::next(left) : this->Status.begin(); place != behind; ++place)
+    for (StatusEntry entry = hasLeft ? std::next(left) : this->Status.begin(); entry != behind;
+         ++entry)
     {
-      Index& region = this->Regions[this->Segments[*place].Walk];
+      Index& region = this->Regions[this->Segments[*entry].Walk];
       // The edge on the left has been placed before, and what is on its right is empty: otherwise
       // IsInOrder() had failed.
       if (region == NotLocated)
       {
-        region = place == this->Status.begin() ? Outside : this->RegionOf(*std::prev(place));
+        region = entry == this->Status.begin() ? Outside : this->RegionOf(*std::prev(entry));
       }
     }
     this->MarkContacts(p, last);
@@ -299,22 +301,22 @@ private:
   Index RegionOf(Index segment) const { return this->Regions[this->Segments[segment].Walk]; }
 
   /** Whether edges from @a begin to @a end, both included, enter and leave the surface in turn. */
-  bool IsInOrder(Place begin, Place end, const Point2& p)
+  bool IsInOrder(StatusEntry begin, StatusEntry end, const Point2& p)
   {
     // Nothing is on the left of the first edge, so it must lead in, running down.
     if (begin == this->Status.begin() && begin != this->Status.end() && this->Segments[*begin].IsUp)
     {
       return this->RefuseOverlap(*begin, p);
     }
-    for (Place place = begin; place != end && place != this->Status.end(); ++place)
+    for (StatusEntry entry = begin; entry != end && entry != this->Status.end(); ++entry)
     {
-      const Place next = std::next(place);
+      const StatusEntry next = std::next(entry);
       if (next == this->Status.end())
       {
         // And the last one must lead out.
-        return this->Segments[*place].IsUp || this->RefuseOverlap(*place, p);
+        return this->Segments[*entry].IsUp || this->RefuseOverlap(*entry, p);
       }
-      const BorderSegment& s = this->Segments[*place];
+      const BorderSegment& s = this->Segments[*entry];
       const BorderSegment& t = this->Segments[*next];
       // Crossing is tested first, as its message names both cells.
       if (CrossInside(s, t))
@@ -324,7 +326,7 @@ private:
       if (s.IsUp == t.IsUp)
       {
         // Twice in: the triangle of the right edge overlaps; twice out: that of the left edge.
-        return this->RefuseOverlap(s.IsUp ? *place : *next, p);
+        return this->RefuseOverlap(s.IsUp ? *entry : *next, p);
       }
     }
     return true;
@@ -479,7 +481,7 @@ private:
   std::vector<BorderSegment> Segments;
   std::vector<Event> Events;
   std::set<Index, IsLeftOf> Status;
-  std::vector<Place> Places;  ///< of each segment in Status
+  std::vector<StatusEntry> Entries; ///< of each segment in Status
   std::vector<Index> Regions; ///< the empty region of each walk: a hole, or Outside
   std::vector<Index> Rims;    ///< the rim of each hole
   std::vector<Index> Passing; ///< segments with the current point inside
@@ -524,11 +526,12 @@ Mesh MakeBorderMesh(const std::vector<BorderEdge>& border, const PointView& poin
 
 Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
 {
+  Stages stages(progress, { 50, 50 });
   Holes holes;
-  holes.Walks = TraceBorder(mesh, progress.Between(0.0, 0.5));
+  holes.Walks = TraceBorder(mesh, stages.Next());
   StartAtLowest(mesh, holes.Walks);
   BorderSweep sweep(mesh, firstCell, holes);
-  if (!sweep.Run(progress.Between(0.5, 1.0)))
+  if (!sweep.Run(stages.Next()))
   {
     throw Error(sweep.Fault());
   }
@@ -542,9 +545,10 @@ Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
 Holes FindBorderHoles(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
 {
+  Stages stages(progress, { 20, 80 });
   std::vector<Index> ids;
-  const Mesh mesh = MakeBorderMesh(border, points, progress.Between(0.0, 0.2), ids);
-  Holes holes = FindHoles(mesh, 0, progress.Between(0.2, 1.0));
+  const Mesh mesh = MakeBorderMesh(border, points, stages.Next(), ids);
+  Holes holes = FindHoles(mesh, 0, stages.Next());
   for (Index& vertex : holes.Walks.Vertices)
   {
     vertex = ids[vertex];
@@ -555,12 +559,13 @@ Holes FindBorderHoles(
 bool CoversOnce(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
 {
+  Stages stages(progress, { 50, 25, 25 });
   std::vector<Index> ids;
-  const Mesh mesh = MakeBorderMesh(border, points, progress.Between(0.0, 0.5), ids);
+  const Mesh mesh = MakeBorderMesh(border, points, stages.Next(), ids);
   Holes holes;
-  holes.Walks = TraceBorder(mesh, progress.Between(0.5, 0.75));
+  holes.Walks = TraceBorder(mesh, stages.Next());
   StartAtLowest(mesh, holes.Walks);
-  return BorderSweep(mesh, 0, holes).Run(progress.Between(0.75, 1.0));
+  return BorderSweep(mesh, 0, holes).Run(stages.Next());
 }
 
 } // namespace elevation

@@ -45,14 +45,15 @@ public:
   /** @return whether there are regions */
   bool Run(const Progress& progress)
   {
-    if (!this->FindRegions(progress.Between(0.0, 0.5)))
+    Stages stages(progress, { 50, 20, 20, 10 });
+    if (!this->FindRegions(stages.Next()))
     {
       return false;
     }
-    this->TraceBorders(progress.Between(0.5, 0.7));
+    this->TraceBorders(stages.Next());
     this->FindRims();
-    this->CollectInnerEdges(progress.Between(0.7, 0.9));
-    this->MeasureGaps(progress.Between(0.9, 1.0));
+    this->CollectInnerEdges(stages.Next());
+    this->MeasureGaps(stages.Next());
     return true;
   }
 
@@ -209,11 +210,12 @@ private:
   // the same region on both sides.
   void CollectInnerEdges(const Progress& progress)
   {
+    Stages stages(progress, { 50, 50 });
     const Mesh& mesh = this->Surface;
     const IsLowerPoint isLower{ mesh };
     std::vector<InnerEdge> edges;
     std::vector<char> isJoined(mesh.NumberOfPoints(), 0);
-    const Progress collecting = progress.Between(0.0, 0.5);
+    const Progress collecting = stages.Next();
     for (const Index h : Counted(mesh.NumberOfHalfEdges()))
     {
       ReportStep(collecting, h, mesh.NumberOfHalfEdges());
@@ -242,7 +244,7 @@ private:
         return s.Region != t.Region ? s.Region < t.Region
                                     : IsLowerEdge(this->Surface, s.Low, s.High, t.Low, t.High);
       },
-      progress.Between(0.5, 1.0));
+      stages.Next());
     std::size_t i = 0;
     for (Index region = 0; region < this->NumberOfRegions; ++region)
     {
@@ -348,10 +350,11 @@ private:
 
 std::vector<Index> NumberRegions(const Mesh& mesh, double longest, const Progress& progress)
 {
+  Stages stages(progress, { 50, 50 });
   const EdgeLimit limit(longest);
   const Index count = mesh.NumberOfTriangles();
   std::vector<char> isLong(count);
-  ForEachStretch(count, progress.Between(0.0, 0.5), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       isLong[t] = !limit.Admits([&](Index v) -> const Point2& { return mesh.PointOf(v); },
@@ -363,19 +366,19 @@ std::vector<Index> NumberRegions(const Mesh& mesh, double longest, const Progres
   {
     return regionOf;
   }
-  const Components parts = FindComponents(mesh, progress.Between(0.5, 1.0), [&](Index h) {
+  const Components components = FindComponents(mesh, stages.Next(), [&](Index h) {
     return isLong[Mesh::Triangle(h)] && isLong[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
   });
-  std::vector<Index> numbers(parts.Count(), None);
+  std::vector<Index> numbers(components.Count(), None);
   Index number = 0;
-  for (Index part = 0; part < parts.Count(); ++part)
+  for (Index component = 0; component < components.Count(); ++component)
   {
-    numbers[part] = isLong[parts.Lowest[part]] ? number++ : None;
+    numbers[component] = isLong[components.Lowest[component]] ? number++ : None;
   }
   regionOf.resize(count);
   for (Index t = 0; t < count; ++t)
   {
-    regionOf[t] = numbers[parts.ComponentOf(t)];
+    regionOf[t] = numbers[components.ComponentOf(t)];
   }
   return regionOf;
 }
@@ -399,6 +402,7 @@ double LargestHeight(const Mesh& mesh, Index triangle)
 void AddBorderRegions(const std::vector<BorderEdge>& border, const std::vector<Index>& regionOf,
   const PointView& points, Holes& holes, const Progress& progress)
 {
+  Stages stages(progress, { 30, 70 });
   // The functions for borders expect the surface on the left, and so the region on the right.
   std::vector<BorderEdge> reversed;
   for (const BorderEdge& edge : border)
@@ -407,8 +411,8 @@ void AddBorderRegions(const std::vector<BorderEdge>& border, const std::vector<I
   }
   std::vector<Index> ids;
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(holes.Walks.Vertices.size());
-  const Mesh mesh = MakeBorderMesh(reversed, points, progress.Between(0.0, 0.3), ids);
-  RegionFinder(mesh, holes.LongestEdge, holes).RunOnBorder(regionOf, progress.Between(0.3, 1.0));
+  const Mesh mesh = MakeBorderMesh(reversed, points, stages.Next(), ids);
+  RegionFinder(mesh, holes.LongestEdge, holes).RunOnBorder(regionOf, stages.Next());
   std::for_each(holes.Walks.Vertices.begin() + first, holes.Walks.Vertices.end(),
     [&ids](Index& vertex) { vertex = ids[vertex]; });
 }
@@ -416,14 +420,15 @@ void AddBorderRegions(const std::vector<BorderEdge>& border, const std::vector<I
 bool OpenLongTriangles(
   const Mesh& mesh, double longest, Holes& holes, Mesh& rest, const Progress& progress)
 {
+  Stages stages(progress, { 90, 10 });
   RegionFinder finder(mesh, longest, holes);
-  if (!finder.Run(progress.Between(0.0, 0.9)))
+  if (!finder.Run(stages.Next()))
   {
     return false;
   }
   rest = mesh;
   KeepTriangles(finder.Others(), rest);
-  Report(progress, 1.0);
+  Report(stages.Next(), 1.0);
   return true;
 }
 

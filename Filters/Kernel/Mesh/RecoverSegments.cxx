@@ -505,8 +505,9 @@ Index FirstCrossed(const Mesh& mesh, VertexStars& stars, Index from, Index to)
 Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
   std::vector<char>& constrained, const Progress& progress)
 {
-  VertexStars stars(mesh, progress.Between(0.0, 0.5));
-  return RecoverSegments(mesh, stars, segments, constrained, progress.Between(0.5, 1.0));
+  Stages stages(progress, { 50, 50 });
+  VertexStars stars(mesh, stages.Next());
+  return RecoverSegments(mesh, stars, segments, constrained, stages.Next());
 }
 
 Index RecoverSegments(Mesh& mesh, VertexStars& stars, const std::vector<Segment>& segments,

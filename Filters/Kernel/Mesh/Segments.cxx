@@ -37,22 +37,23 @@ public:
   /** Runs the sweep, and ends at the first crossing. */
   bool FindsCrossing(const Progress& progress)
   {
+    Stages stages(progress, { 30, 20, 50 });
     std::vector<Ends>& all = this->Segments;
     Sort(
       all.begin(), all.end(),
       [](const Ends& s, const Ends& t) {
         return s[0] != t[0] ? IsLower(s[0], t[0]) : IsLower(s[1], t[1]);
       },
-      progress.Between(0.0, 0.3));
+      stages.Next());
     // The order needs a position for each on the sweep line; equal segments would have the same.
     all.erase(std::unique(all.begin(), all.end()), all.end());
     std::vector<Index> byEnd(all.size());
     std::iota(byEnd.begin(), byEnd.end(), 0);
     Sort(
       byEnd.begin(), byEnd.end(), [&](Index s, Index t) { return IsLower(all[s][1], all[t][1]); },
-      progress.Between(0.3, 0.5));
+      stages.Next());
 
-    const Progress sweeping = progress.Between(0.5, 1.0);
+    const Progress sweeping = stages.Next();
     const auto isBefore = [this](Index s, Index t) { return this->IsLeftOf(s, t); };
     std::set<Index, decltype(isBefore)> across(isBefore);
     std::vector<decltype(across.begin())> places(all.size());
@@ -270,10 +271,12 @@ void VisitCrossings(const std::vector<Ends>& segments, const CellGrid& grid,
 std::vector<Passage> JoinOverlaps(
   std::vector<SegmentPiece>& pieces, const std::vector<Point2>& places, const Progress& progress)
 {
+  Stages stages(progress, { 25, 50, 25 });
   std::vector<LinePiece> entries;
+  const Progress listing = stages.Next();
   for (const SegmentPiece& piece : Counted(pieces))
   {
-    ReportStep(progress, entries.size(), 4 * pieces.size());
+    ReportStep(listing, entries.size(), pieces.size());
     // A point is on no line.
     entries.push_back({ piece.A == piece.B ? ~static_cast<std::uint64_t>(piece.A)
                                            : LineHash(places[piece.A], places[piece.B]),
@@ -284,10 +287,9 @@ std::vector<Passage> JoinOverlaps(
     [&](const LinePiece& p, const LinePiece& q) {
       return p.Line != q.Line ? p.Line < q.Line : IsLower(places[p.Piece.A], places[q.Piece.A]);
     },
-    progress.Between(0.25, 0.75));
+    stages.Next());
 
-  const Progress joining = progress.Between(0.75, 1.0);
-  WorkReporter work(joining);
+  WorkReporter work(stages.Next());
   std::vector<Passage> passages;
   pieces.clear();
   for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end)

@@ -89,8 +89,9 @@ std::vector<Index> AllTriangles(const TriangleList& list)
 
 Mesh MeshOf(const TriangleList& list, int threads, const Progress& progress)
 {
+  Stages stages(progress, { 20, 80 });
   Mesh mesh;
-  const bool areFinite = CopyPoints(list.Points, threads, progress.Between(0.0, 0.2), mesh.Points);
+  const bool areFinite = CopyPoints(list.Points, threads, stages.Next(), mesh.Points);
   mesh.Triangles.resize(3 * static_cast<std::size_t>(list.Count));
   const auto read = [&](Index, Index begin, Index end) {
     // Few at a time, so that their points can be prefetched. Two passes over each group: the first
@@ -116,19 +117,20 @@ Mesh MeshOf(const TriangleList& list, int threads, const Progress& progress)
       }
     }
   };
-  ForEachRange(list.Count, threads, progress.Between(0.2, 1.0), read, AtOnce);
+  ForEachRange(list.Count, threads, stages.Next(), read, AtOnce);
   return mesh;
 }
 
 Mesh SubMesh(
   const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress)
 {
+  Stages stages(progress, { 40, 10, 50 });
   Mesh mesh;
   const Index count = static_cast<Index>(triangles.size());
   // A set of bits, and ranks by counting them: points keep their order, and vertices are numbered
   // without sorting.
   IdSet corners(list.Points.Count);
-  ForEachStretch(count, progress.Between(0.0, 0.4), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
     {
       Prefetch(list.CornersOf(triangles[std::min(i + 16, count - 1)]));
@@ -138,13 +140,14 @@ Mesh SubMesh(
   mesh.Ids = corners.ListAndRank();
   mesh.FirstNewId = list.Points.Count;
   mesh.Points.reserve(mesh.Ids.size());
+  Report(stages.Next(), 0.0);
   for (std::size_t i = 0; i < mesh.Ids.size(); ++i)
   {
     list.PrefetchPoint(mesh.Ids[std::min(i + 16, mesh.Ids.size() - 1)]);
     mesh.Points.push_back(list.Points.At(mesh.Ids[i]));
   }
   mesh.Triangles.reserve(3 * triangles.size());
-  ForEachStretch(count, progress.Between(0.5, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index i = 3 * begin; i < 3 * end; ++i)
     {
       mesh.Triangles.push_back(corners.RankOf(list.CornersOf(triangles[i / 3])[i % 3]));

@@ -40,7 +40,7 @@ namespace elevation
 /** What the sweep keeps of a vertex; a visitor's Vertex adds its own. */
 struct SweptVertex
 {
-  Point2 Place{ 0.0, 0.0 };
+  Point2 Position{ 0.0, 0.0 };
   Index Upper[2] = { None, None }; ///< upper ends of open half-edges: one up, one down
   Index NumberOfOthers = 0; ///< further open half-edges of which it is the lower end
   Index Unused = 0;         ///< so that no vertex spans two cache lines
@@ -252,6 +252,7 @@ public:
    */
   bool Run(const Visitor& visitor, const Progress& progress)
   {
+    Stages stages(progress, { 30, 10, 55, 5 });
     const Index number = this->Number;
     for (Index i = 0; i < number; ++i)
     {
@@ -264,16 +265,16 @@ public:
         OpenEdges<Vertex>(this->Vertices, 1024 + static_cast<std::size_t>(this->List.Count) / 64),
         visitor, IdSet(number > 1 ? this->List.Points.Count : 0), {} });
     }
-    if (!this->Read(progress.Between(0.0, 0.3)))
+    if (!this->Read(stages.Next()))
     {
       return false;
     }
     bool isRight = true;
+    const Progress marking = stages.Next();
     // Several ranges: first each marks its corners, then corners of two ranges are found.
     if (number > 1)
     {
-      isRight = this->InRanges(
-        progress.Between(0.3, 0.4), [this](Range& range) { return this->Mark(range); });
+      isRight = this->InRanges(marking, [this](Range& range) { return this->Mark(range); });
       IdSet all(this->List.Points.Count);
       for (Range& range : this->Ranges)
       {
@@ -281,10 +282,9 @@ public:
         range.Corners = IdSet(0);
       }
     }
-    isRight = isRight && this->InRanges(progress.Between(0.4, 0.95), [this](Range& range) {
-      return this->Sweep(range);
-    });
-    return isRight && this->SweepDeferred(progress.Between(0.95, 1.0));
+    isRight =
+      isRight && this->InRanges(stages.Next(), [this](Range& range) { return this->Sweep(range); });
+    return isRight && this->SweepDeferred(stages.Next());
   }
 
   /** The visitors, by range; the first one may have visited triangles out of order. */
@@ -309,8 +309,8 @@ public:
   std::vector<BorderEdge> Border(Index count, const Progress& progress, IdOf&& idOf, Visit&& visit)
   {
     const OpenEdges<Vertex>& edges = this->Ranges[0].Edges;
-    std::vector<std::vector<BorderEdge>> pieces(elevation::NumberOfRanges(count));
-    ForEachRange(count, this->Threads, progress, [&](Index piece, Index begin, Index end) {
+    std::vector<std::vector<BorderEdge>> byRange(elevation::NumberOfRanges(count));
+    ForEachRange(count, this->Threads, progress, [&](Index range, Index begin, Index end) {
       std::vector<BorderEdge> here;
       for (Index i = begin; i < end; ++i)
       {
@@ -322,21 +322,21 @@ public:
         }
         visit(i, id != None ? this->Vertices + id : nullptr);
       }
-      pieces[piece] = std::move(here);
+      byRange[range] = std::move(here);
     });
     std::size_t size = 0;
-    for (const std::vector<BorderEdge>& piece : pieces)
+    for (const std::vector<BorderEdge>& some : byRange)
     {
-      size += piece.size();
+      size += some.size();
     }
     std::vector<BorderEdge> border;
     border.reserve(size);
-    for (std::vector<BorderEdge>& piece : pieces)
+    for (std::vector<BorderEdge>& some : byRange)
     {
       Report(progress, 1.0);
-      CountWork(piece.size());
-      border.insert(border.end(), piece.begin(), piece.end());
-      piece = std::vector<BorderEdge>();
+      CountWork(some.size());
+      border.insert(border.end(), some.begin(), some.end());
+      some = std::vector<BorderEdge>();
     }
     edges.AddOthers(border);
     return border;
@@ -374,7 +374,7 @@ private:
           for (Index v = begin; v < end; ++v, p += 3)
           {
             Vertex* vertex = new (this->Vertices + v) Vertex;
-            vertex->Place = { static_cast<double>(p[0]), static_cast<double>(p[1]) };
+            vertex->Position = { static_cast<double>(p[0]), static_cast<double>(p[1]) };
             sum += 0.0 * static_cast<double>(p[2]);
           }
           if (!(sum == 0.0))
@@ -541,8 +541,8 @@ private:
         Vertex& a = *b;
         last = ids[2];
         b = vertices + last;
-        isRight &= IsCounterClockwise(a.Place, b->Place, p.Place);
-        edges.Add(SweptEdge(before, a.Place, last, b->Place));
+        isRight &= IsCounterClockwise(a.Position, b->Position, p.Position);
+        edges.Add(SweptEdge(before, a.Position, last, b->Position));
         visitor.Visit(t, p, a, *b);
         ids += 3;
         ++t;
@@ -551,9 +551,9 @@ private:
       if (!edges.MatchBoth(p, right, last))
       {
         // First match both: a match makes room for the other one to stay open.
-        const SweptEdge firstEdge(first, p.Place, right, r.Place);
+        const SweptEdge firstEdge(first, p.Position, right, r.Position);
         const bool hasTwin = edges.Match(firstEdge);
-        edges.Add(SweptEdge(last, b->Place, first, p.Place));
+        edges.Add(SweptEdge(last, b->Position, first, p.Position));
         if (!hasTwin)
         {
           edges.Add(firstEdge); // where the fan is closed, the last edge is its twin

@@ -64,13 +64,13 @@ public:
   /** Chains of places, each between two that stay: first open ones, then closed ones. */
   std::vector<std::vector<Index>> Chains(const Progress& progress)
   {
+    Stages halves(progress, { 50, 50 });
     std::vector<std::vector<Index>> chains;
     // Closed lines that pass no point that stays are what is left after the open ones. The first
     // way left of one is from its lowest point, as ways are sorted.
     for (const bool areOpen : { true, false })
     {
-      const Progress half = areOpen ? progress.Between(0.0, 0.5) : progress.Between(0.5, 1.0);
-      WorkReporter reporter(half);
+      WorkReporter reporter(halves.Next());
       for (std::size_t way = 0; way < this->Ways.size(); ++way)
       {
         reporter.Step(way, this->Ways.size());
@@ -265,6 +265,7 @@ bool IsNear(const PlacedPoints& placed, const Stretch& one, Index place)
 std::vector<char> FindHindered(
   const PlacedPoints& placed, const std::vector<Stretch>& stretches, const Progress& progress)
 {
+  Stages stages(progress, { 20, 80 });
   // The grid holds the new pieces; all points are looked up in it.
   const auto endsOf = [&](std::size_t i) {
     return std::array<Point2, 2>{ { placed.At(stretches[i].Begin()),
@@ -281,11 +282,10 @@ std::vector<char> FindHindered(
       own.emplace_back((*one.Chain)[at], i);
     }
   }
-  Sort(
-    own.begin(), own.end(), std::less<std::pair<Index, std::size_t>>(), progress.Between(0.0, 0.2));
+  Sort(own.begin(), own.end(), std::less<std::pair<Index, std::size_t>>(), stages.Next());
   std::vector<char> isHindered(stretches.size(), 0);
   const CellGrid grid(stretches.size(), endsOf);
-  const Progress looking = progress.Between(0.2, 1.0);
+  const Progress looking = stages.Next();
   for (const Index place : Counted(placed.Count()))
   {
     ReportStep(looking, place, placed.Count());
@@ -304,12 +304,14 @@ std::vector<char> FindHindered(
 std::vector<Segment> FewerPieces(const PlacedPoints& placed, const std::vector<Segment>& pieces,
   double error, const Progress& progress)
 {
+  Stages stages(progress, { 20, 30, 10, 40 });
   std::vector<Segment> fewer;
+  const Progress sorting = stages.Next();
   const std::vector<std::vector<Index>> chains =
-    Network(placed, pieces, progress.Between(0.0, 0.2)).Chains(progress.Between(0.2, 0.5));
+    Network(placed, pieces, sorting).Chains(stages.Next());
   const Straightening straightening(placed, error);
   std::vector<Stretch> bent; // not exactly straight
-  const Progress straight = progress.Between(0.5, 0.6);
+  const Progress straight = stages.Next();
   for (const std::vector<Index>& chain : chains)
   {
     for (std::size_t first = 0; first + 1 < chain.size();)
@@ -330,7 +332,7 @@ std::vector<Segment> FewerPieces(const PlacedPoints& placed, const std::vector<S
   }
   // Only stretches that are not exactly straight can have a point between line and piece.
   const std::vector<char> isHindered =
-    bent.empty() ? std::vector<char>() : FindHindered(placed, bent, progress.Between(0.6, 1.0));
+    bent.empty() ? std::vector<char>() : FindHindered(placed, bent, stages.Next());
   for (std::size_t i = 0; i < bent.size(); ++i)
   {
     const Stretch& one = bent[i];

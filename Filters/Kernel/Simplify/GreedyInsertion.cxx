@@ -68,11 +68,11 @@ void GreedyInsertion::AddSample(std::uint32_t every, int threads, const Progress
   const auto isNew = [&](Index place) {
     return this->Inserted.Links[place] == InsertionMesh::Unassigned && IsInSample(place, every - 1);
   };
-  ForEachPiece((count + pointsAtOnce - 1) / pointsAtOnce, threads, progress, [&](Index piece) {
+  ForEachTask((count + pointsAtOnce - 1) / pointsAtOnce, threads, progress, [&](Index task) {
     Index face = this->Ordered.front(), known = None;
     Slopes slopes{ 0.0, 0.0 };
     for (const Index place :
-      Counted(piece * pointsAtOnce, std::min(count, (piece + 1) * pointsAtOnce)))
+      Counted(task * pointsAtOnce, std::min(count, (task + 1) * pointsAtOnce)))
     {
       if (!isNew(place))
       {
@@ -186,23 +186,22 @@ void GreedyInsertion::Run(double error, int threads, const Progress& progress)
   for (double begin = 0.0; every > 0; every /= SampleFactor)
   {
     const double end = every == 1 ? 1.0 : begin + 0.1;
-    this->AddSample(every, threads, progress.Between(begin, begin + 0.3 * (end - begin)));
+    Stages stages(progress.Between(begin, end), { 30, 70 });
+    this->AddSample(every, threads, stages.Next());
     // The last run has all points, and no limit to its vertices.
     const double density = every == 1 ? count : 1.0 / (PointsPerVertex * every);
     // Vertices are about half as many as triangles, and as many along a side as the root of that.
     const double rows = std::sqrt(0.5 * static_cast<double>(this->Ordered.size()));
     const Index strips =
       static_cast<Index>(std::min(rows / VertexRowsPerStrip, static_cast<double>(MostStrips)));
-    const Progress refining = progress.Between(begin + 0.3 * (end - begin), end);
+    const Progress refining = stages.Next();
+    Stages passes = strips > 1 ? Stages(refining, { 60, 20, 20 }) : Stages(refining, { 100 });
     if (strips > 1)
     {
-      this->Refine(
-        error, density, this->MakeStrips(strips, false), threads, refining.Between(0.0, 0.6));
-      this->Refine(
-        error, density, this->MakeStrips(strips, true), threads, refining.Between(0.6, 0.8));
+      this->Refine(error, density, this->MakeStrips(strips, false), threads, passes.Next());
+      this->Refine(error, density, this->MakeStrips(strips, true), threads, passes.Next());
     }
-    this->Refine(error, density, this->MakeStrips(1, false), threads,
-      refining.Between(strips > 1 ? 0.8 : 0.0, 1.0));
+    this->Refine(error, density, this->MakeStrips(1, false), threads, passes.Next());
     begin = end;
   }
 }

@@ -148,15 +148,16 @@ std::vector<Segment> Renumbered(
 bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int threads,
   const Progress& progress, PlacedPoints& placed)
 {
+  Stages stages(progress, { 40, 40, 20 });
   const double tolerance = options.ToleranceInSteps();
+  const Progress searching = stages.Next();
   LatticeSearch search = options.GivenLattice.IsSet()
-    ? GivenLattice(points, options.GivenLattice, tolerance, threads, progress.Between(0.0, 0.4))
-    : FindLattice(points, tolerance, threads, progress.Between(0.0, 0.4));
+    ? GivenLattice(points, options.GivenLattice, tolerance, threads, searching)
+    : FindLattice(points, tolerance, threads, searching);
   LatticeNodes nodes;
   LatticeMetric metric;
   if (!search.Found || !metric.Set(search.Steps) ||
-    !nodes.Place(
-      points, search, tolerance, options.Duplicates, threads, progress.Between(0.4, 0.8)) ||
+    !nodes.Place(points, search, tolerance, options.Duplicates, threads, stages.Next()) ||
     (!options.GivenLattice.IsSet() && IsLatticeByChance(nodes.NumberOfPoints(), tolerance)))
   {
     return false;
@@ -166,7 +167,7 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
     return row < nodes.Rows ? nodes.RankOf(nodes.NodeAt(row, 0)) : nodes.NumberOfPoints();
   };
   placed.Places.Resize(static_cast<std::size_t>(nodes.NumberOfPoints()));
-  ForEachPiece(nodes.Rows, threads, progress.Between(0.8, 1.0), [&](Index row) {
+  ForEachTask(nodes.Rows, threads, stages.Next(), [&](Index row) {
     Index place = placesBefore(row);
     // Rows are converted in parallel, each from its first place on.
     nodes.VisitRow(row, [&](Index column) {
@@ -202,8 +203,9 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
 PlacedPoints PlaceInBins(
   const PointView& points, const DelaunayOptions& options, int threads, const Progress& progress)
 {
+  Stages stages(progress, { 70, 15, 15 });
   PlacedPoints placed;
-  BinGrid grid(points, options.Duplicates, progress.Between(0.0, 0.7), threads);
+  BinGrid grid(points, options.Duplicates, stages.Next(), threads);
   placed.Duplicates = std::move(grid.Duplicates);
   placed.NotFinite = std::move(grid.NotFinite);
   if (grid.NumberOfPoints() == 0)
@@ -213,7 +215,7 @@ PlacedPoints PlaceInBins(
   // As much memory as all places need.
   grid.Scratch = Buffer<Index>();
   grid.Tree = BoxTree();
-  const Buffer<Index> candidates = SortedCandidates(grid, threads, progress.Between(0.7, 0.85));
+  const Buffer<Index> candidates = SortedCandidates(grid, threads, stages.Next());
   grid.Order = Buffer<Index>();
   grid.X = Buffer<double>();
   grid.Y = Buffer<double>();
@@ -223,15 +225,14 @@ PlacedPoints PlaceInBins(
   }
   placed.Ids = std::move(grid.Ids);
   placed.Places.Resize(placed.Ids.size());
-  ForEachRange(
-    placed.Count(), threads, progress.Between(0.85, 1.0), [&](Index, Index begin, Index end) {
-      for (Index place = begin; place < end; ++place)
-      {
-        const Index id = placed.Ids[place];
-        const Point2 p = points.At(id);
-        placed.Places[place] = { p.X, p.Y, points.Elevation(id) };
-      }
-    });
+  ForEachRange(placed.Count(), threads, stages.Next(), [&](Index, Index begin, Index end) {
+    for (Index place = begin; place < end; ++place)
+    {
+      const Index id = placed.Ids[place];
+      const Point2 p = points.At(id);
+      placed.Places[place] = { p.X, p.Y, points.Elevation(id) };
+    }
+  });
   placed.Corners = CornersOf(placed, candidates);
   return placed;
 }
@@ -239,16 +240,17 @@ PlacedPoints PlaceInBins(
 std::vector<Segment> PiecesByPlaces(
   const std::vector<Segment>& pieces, const PlacedPoints& placed, const Progress& progress)
 {
+  Stages stages(progress, { 30, 50, 20 });
   std::vector<Index> ids;
   for (const Segment& piece : pieces)
   {
     ids.insert(ids.end(), { piece.A, piece.B });
   }
   // The pieces' points are few, all points many: one pass over all looks each up among the few.
-  Sort(ids.begin(), ids.end(), std::less<Index>(), progress.Between(0.0, 0.3));
+  Sort(ids.begin(), ids.end(), std::less<Index>(), stages.Next());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   std::vector<Index> placeOf(ids.size(), None);
-  const Progress finding = progress.Between(0.3, 0.8);
+  const Progress finding = stages.Next();
   for (const Index place : Counted(ids.empty() ? 0 : placed.Count()))
   {
     ReportStep(finding, place, placed.Ids.size());
@@ -261,25 +263,26 @@ std::vector<Segment> PiecesByPlaces(
   const auto find = [&](Index id) {
     return placeOf[std::lower_bound(ids.begin(), ids.end(), id) - ids.begin()];
   };
-  return Renumbered(pieces, find, progress.Between(0.8, 1.0));
+  return Renumbered(pieces, find, stages.Next());
 }
 
 std::vector<Segment> AddEnds(
   const std::vector<Segment>& pieces, PlacedPoints& placed, const Progress& progress)
 {
+  Stages stages(progress, { 60, 40 });
   std::vector<Index>& corners = placed.Corners;
   for (const Segment& piece : pieces)
   {
     corners.insert(corners.end(), { piece.A, piece.B });
   }
   const auto isLower = [&placed](Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); };
-  Sort(corners.begin(), corners.end(), isLower, progress.Between(0.0, 0.6));
+  Sort(corners.begin(), corners.end(), isLower, stages.Next());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   const auto cornerOf = [&](Index place) {
     return static_cast<Index>(
       std::lower_bound(corners.begin(), corners.end(), place, isLower) - corners.begin());
   };
-  return Renumbered(pieces, cornerOf, progress.Between(0.6, 1.0));
+  return Renumbered(pieces, cornerOf, stages.Next());
 }
 
 } // namespace elevation

@@ -34,6 +34,7 @@ namespace
 Mesh FirstMesh(const PlacedPoints& placed, const std::vector<Segment>& pieces,
   std::vector<char>& fixed, const Progress& progress)
 {
+  Stages stages(progress, { 50, 10, 40 });
   Mesh mesh;
   Buffer<Point2> corners;
   for (const Index place : placed.Corners)
@@ -42,13 +43,13 @@ Mesh FirstMesh(const PlacedPoints& placed, const std::vector<Segment>& pieces,
   }
   const Buffer<Index> triangles = DivideAndConquer(
     // On a lattice in its metric, as all that follows.
-    corners, progress.Between(0.0, 0.5), placed.Metric ? &*placed.Metric : nullptr);
+    corners, stages.Next(), placed.Metric ? &*placed.Metric : nullptr);
   mesh.Triangles.assign(triangles.begin(), triangles.end());
   mesh.Points.assign(corners.begin(), corners.end());
-  mesh.ConnectTwins(0, progress.Between(0.5, 0.6));
+  mesh.ConnectTwins(0, stages.Next());
   if (!pieces.empty() && mesh.NumberOfTriangles() > 0)
   {
-    RecoverSegments(mesh, pieces, fixed, progress.Between(0.6, 1.0));
+    RecoverSegments(mesh, pieces, fixed, stages.Next());
   }
   for (Index& corner : mesh.Triangles)
   {
@@ -78,13 +79,13 @@ public:
   {
     constexpr Index facesAtOnce = 4096;
     const Index count = static_cast<Index>(this->Chosen.Order().size());
-    const Index pieces = (count + facesAtOnce - 1) / facesAtOnce;
-    std::vector<double> largest(static_cast<std::size_t>(pieces), 0.0);
+    const Index tasks = (count + facesAtOnce - 1) / facesAtOnce;
+    std::vector<double> largest(static_cast<std::size_t>(tasks), 0.0);
     std::vector<std::vector<Index>> found(largest.size());
-    ForEachPiece(pieces, threads, progress, [&](Index piece) {
-      for (const Index i : Counted(piece * facesAtOnce, std::min(count, (piece + 1) * facesAtOnce)))
+    ForEachTask(tasks, threads, progress, [&](Index task) {
+      for (const Index i : Counted(task * facesAtOnce, std::min(count, (task + 1) * facesAtOnce)))
       {
-        this->MeasureFace(this->Chosen.Order()[i], most, largest[piece], found[piece]);
+        this->MeasureFace(this->Chosen.Order()[i], most, largest[task], found[task]);
       }
     });
     for (const std::vector<Index>& some : found)
@@ -181,8 +182,9 @@ private:
 Buffer<Index> RanksOf(
   const PlacedPoints& placed, const GreedyInsertion& mesh, const Progress& progress)
 {
+  Stages stages(progress, { 20, 60, 20 });
   std::vector<Index> vertices;
-  ForEachStretch(placed.Count(), progress.Between(0.0, 0.2), [&](Index begin, Index end) {
+  ForEachStretch(placed.Count(), stages.Next(), [&](Index begin, Index end) {
     for (Index place = begin; place < end; ++place)
     {
       if (mesh.IsVertex(place))
@@ -191,17 +193,18 @@ Buffer<Index> RanksOf(
       }
     }
   });
+  const Progress sorting = stages.Next();
   // Bins are in rows, but points of a row of bins are not by y.
   if (!placed.Metric) // on a lattice, places are in this order
   {
     const auto isLower = [&placed](
                            Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); };
-    Sort(vertices.begin(), vertices.end(), isLower, progress.Between(0.2, 0.8));
+    Sort(vertices.begin(), vertices.end(), isLower, sorting);
   }
   Buffer<Index> ranks;
   ranks.Resize(placed.Ids.size());
   const Index count = static_cast<Index>(vertices.size());
-  ForEachStretch(count, progress.Between(0.8, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
     {
       ranks[vertices[i]] = i;
@@ -218,8 +221,9 @@ Buffer<Index> TrianglesOf(
   {
     Index Corners[3]; // from the lowest on
   };
-  const Buffer<Index> ranks = RanksOf(placed, mesh, progress.Between(0.0, 0.4));
-  const Progress turning = progress.Between(0.4, 0.6), sorting = progress.Between(0.6, 1.0);
+  Stages stages(progress, { 40, 20, 40 });
+  const Buffer<Index> ranks = RanksOf(placed, mesh, stages.Next());
+  const Progress turning = stages.Next(), sorting = stages.Next();
   std::vector<Turned> faces;
   // A counting sort by lowest vertex, then each fan by angle, exactly.
   std::vector<Index> begins(1, 0); // of fans
@@ -266,6 +270,7 @@ Buffer<Index> TrianglesOf(
 void ListUnused(Index count, const PlacedPoints& placed, const GreedyInsertion* mesh,
   const Progress& progress, Triangulation& result)
 {
+  Stages stages(progress, { 50, 50 });
   // By ids, as the lists must be increasing.
   std::vector<unsigned char> reasons(static_cast<std::size_t>(count), 0);
   const auto set = [&reasons](Index id, UnusedReason reason) {
@@ -280,7 +285,7 @@ void ListUnused(Index count, const PlacedPoints& placed, const GreedyInsertion* 
     set(id, UnusedReason::NotFinite);
   }
   const Index candidates = mesh ? placed.Count() : 0;
-  ForEachStretch(candidates, progress.Between(0.0, 0.5), [&](Index begin, Index end) {
+  ForEachStretch(candidates, stages.Next(), [&](Index begin, Index end) {
     for (Index place = begin; place < end; ++place)
     {
       if (!mesh->IsVertex(place))
@@ -296,7 +301,7 @@ void ListUnused(Index count, const PlacedPoints& placed, const GreedyInsertion* 
     placed.Duplicates.size() + placed.NotFinite.size() + result.NumberOfRedundant;
   result.UnusedPoints.reserve(unused);
   result.UnusedReasons.reserve(unused);
-  ForEachStretch(count, progress.Between(0.5, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index id = begin; id < end; ++id)
     {
       if (reasons[id] != 0)
@@ -313,31 +318,34 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   const std::vector<Segment>& pieces, const DelaunayOptions& options, int threads,
   const Progress& progress)
 {
+  Stages stages(progress, { 1, 1, 1, 2, 75, 0, 10, 8, 2 });
   Triangulation result;
   result.LatticeFound = placed.Metric.has_value();
   result.Steps = placed.Steps;
-  std::vector<Segment> lines = PiecesByPlaces(pieces, placed, progress.Between(0.0, 0.01));
+  std::vector<Segment> lines = PiecesByPlaces(pieces, placed, stages.Next());
+  const Progress straightening = stages.Next();
   if (options.SimplifyConstraints && !lines.empty())
   {
-    lines = FewerPieces(placed, lines, options.MaximumElevationError, progress.Between(0.01, 0.02));
+    lines = FewerPieces(placed, lines, options.MaximumElevationError, straightening);
   }
   // The first mesh has these corners alone; its triangles then get the numbers of places.
-  const std::vector<Segment> byCorners = AddEnds(lines, placed, progress.Between(0.02, 0.03));
+  const std::vector<Segment> byCorners = AddEnds(lines, placed, stages.Next());
   std::vector<char> fixed;
   // Few triangles, mostly long: the hull's corners, and the ends of lines.
-  const Mesh first = FirstMesh(placed, byCorners, fixed, progress.Between(0.03, 0.05));
+  const Mesh first = FirstMesh(placed, byCorners, fixed, stages.Next());
   // All points are on one line, or fewer than three: duplicates and points that are not finite are
   // still reported.
   if (first.NumberOfTriangles() == 0)
   {
-    ListUnused(points.Count, placed, nullptr, progress.Between(0.05, 1.0), result);
+    ListUnused(points.Count, placed, nullptr, stages.Next(), result);
     return result;
   }
   GreedyInsertion mesh(placed.Places, placed.Rows, placed.Metric ? &*placed.Metric : nullptr, first,
     fixed, options.Edges);
   const Measurement measurement(points, placed, mesh);
   std::vector<Index> beyond;
-  Progress ofRound = progress.Between(0.05, 0.8);
+  Progress ofRound = stages.Next();
+  const Progress ofFurther = stages.Next(), measuring = stages.Next();
   // Ends, as each round inserts what was beyond: at worst all points.
   do
   {
@@ -345,14 +353,14 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
     {
       mesh.Insert(beyond);
       beyond.clear();
-      ofRound = progress.Between(0.8, 0.8);
+      ofRound = ofFurther;
     }
     mesh.Run(options.MaximumElevationError, threads, ofRound);
     result.LargestElevationError =
-      measurement.Run(options.MaximumElevationError, threads, progress.Between(0.8, 0.9), beyond);
+      measurement.Run(options.MaximumElevationError, threads, measuring, beyond);
   } while (!beyond.empty());
-  result.Triangles = TrianglesOf(placed, mesh, progress.Between(0.9, 0.98));
-  ListUnused(points.Count, placed, &mesh, progress.Between(0.98, 1.0), result);
+  result.Triangles = TrianglesOf(placed, mesh, stages.Next());
+  ListUnused(points.Count, placed, &mesh, stages.Next(), result);
   // Euler's formula, with the vertices that are left.
   result.NumberOfHullPoints = 2 * (placed.Count() - result.NumberOfRedundant) - 2 -
     static_cast<Index>(result.Triangles.size() / 3);
@@ -365,8 +373,8 @@ Triangulation TriangulateFew(
   const PointView& points, const DelaunayOptions& options, const std::vector<Segment>& pieces)
 {
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
-  const Progress placing = options.Monitor.Between(0.0, 0.2),
-                 working = options.Monitor.Between(0.2, 1.0);
+  Stages stages(options.Monitor, { 20, 80 });
+  const Progress placing = stages.Next(), working = stages.Next();
   if (options.UseLattice == LatticeMode::Automatic && pieces.empty())
   {
     PlacedPoints placed;

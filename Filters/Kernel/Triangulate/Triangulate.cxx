@@ -46,23 +46,24 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
   {
     return result;
   }
+  Stages stages(options.Monitor, { 20, 0, 0, 80 });
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
-  BinGrid grid(points, options.Duplicates, options.Monitor.Between(0.0, 0.2), threads,
+  BinGrid grid(points, options.Duplicates, stages.Next(), threads,
     // The search has found the extent, which binning needs first.
     isLatticeAsked ? &extent : nullptr);
-  SetUnusedPoints(
-    std::move(grid.Duplicates), grid.NotFinite, options.Monitor.Between(0.2, 0.2), result);
+  SetUnusedPoints(std::move(grid.Duplicates), grid.NotFinite, stages.Next(), result);
   if (grid.NumberOfPoints() < 3)
   {
     return result;
   }
 
-  const Hull hull = FindHull(grid, options.Monitor.Between(0.2, 0.2));
+  const Hull hull = FindHull(grid, stages.Next());
   if (hull.IsLine())
   {
     return result;
   }
   result.NumberOfHullPoints = static_cast<Index>(hull.NumberOfPoints());
+  options.Monitor = stages.Next();
   result.Triangles = GrowOverGrid(grid, hull, options, threads);
   Report(options.Monitor, 1.0);
   return result;

@@ -40,14 +40,14 @@ Point2 CrossingOf(const Ends& edge, const Ends& line)
     return DifferenceOfProducts(dx, p.Y - line[0].Y, dy, p.X - line[0].X);
   };
   const double from = sideOf(edge[0]), to = sideOf(edge[1]);
-  const double part = from / (from - to);
-  const Point2 place{ edge[0].X + part * (edge[1].X - edge[0].X),
-    edge[0].Y + part * (edge[1].Y - edge[0].Y) };
+  const double share = from / (from - to);
+  const Point2 place{ edge[0].X + share * (edge[1].X - edge[0].X),
+    edge[0].Y + share * (edge[1].Y - edge[0].Y) };
   // Else products may have left the range of double.
   constexpr double least = 1e-250, most = 1e250;
   const auto isUsual = [&](
                          double side) { return least < std::fabs(side) && std::fabs(side) < most; };
-  return isUsual(from) && isUsual(to) && 0.0 <= part && part <= 1.0
+  return isUsual(from) && isUsual(to) && 0.0 <= share && share <= 1.0
     ? place
     : RoundedCrossing(edge[0], edge[1], line[0], line[1]);
 }
@@ -58,7 +58,7 @@ public:
   Follower(Mesh& mesh, MeshCutter& cutter, const Progress& progress)
     : Surface(mesh)
     , Cutter(cutter)
-    , Stars(mesh, progress.Between(0.0, 0.3))
+    , Stars(mesh, progress)
     , Fixed(mesh.Triangles.size(), 0)
   {
   }
@@ -410,9 +410,9 @@ private:
 void FollowSurface(
   Mesh& mesh, MeshCutter& cutter, std::vector<FollowedSegment>& segments, const Progress& progress)
 {
-  Follower follower(mesh, cutter, progress);
-  const Progress walking = progress.Between(0.3, 1.0);
-  WorkReporter work(walking);
+  Stages stages(progress, { 30, 70 });
+  Follower follower(mesh, cutter, stages.Next());
+  WorkReporter work(stages.Next());
   for (std::size_t i = 0; i < segments.size(); ++i)
   {
     work.Step(i, segments.size());

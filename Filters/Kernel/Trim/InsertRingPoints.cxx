@@ -8,7 +8,7 @@
 // 3. LocateOthers: one sweep over the triangles finds which one holds each other point.
 // 4. InsertLocated: cuts at these. The points that wait in a triangle move on to its parts.
 //
-// Two points of the rings at the same place are one: the map of vertices is by place.
+// Two points of the rings at the same position are one: the map of vertices is by position.
 #include "InsertRingPoints.h"
 
 #include "CutAlongRings.h"
@@ -56,9 +56,10 @@ public:
 
   RingVertices Run(const Progress& progress)
   {
-    this->MatchCorners(progress.Between(0.0, 0.57));
-    this->LocateOthers(progress.Between(0.57, 0.93));
-    this->InsertLocated(progress.Between(0.93, 1.0));
+    Stages stages(progress, { 57, 36, 7 });
+    this->MatchCorners(stages.Next());
+    this->LocateOthers(stages.Next());
+    this->InsertLocated(stages.Next());
     return std::move(this->VertexAt);
   }
 
@@ -67,7 +68,7 @@ private:
    * A point that is not a corner, and the triangle that holds it, which changes while others are
    * cut.
    */
-  struct Place
+  struct LocatedPoint
   {
     Index Triangle;
     Index Point;
@@ -75,6 +76,7 @@ private:
   /** Finds the corners of the mesh at points of the rings. */
   void MatchCorners(const Progress& progress)
   {
+    Stages stages(progress, { 30, 70 });
     const Mesh& mesh = this->Surface;
     for (const Index point : this->InsertRingPoints)
     {
@@ -98,14 +100,14 @@ private:
       sieve.Add(bitOf(entry.first));
     }
     std::vector<char> isToMatch(mesh.Points.size());
-    ForEachStretch(mesh.NumberOfPoints(), progress.Between(0.0, 0.3), [&](Index begin, Index end) {
+    ForEachStretch(mesh.NumberOfPoints(), stages.Next(), [&](Index begin, Index end) {
       for (Index v = begin; v < end; ++v)
       {
         const Point2& p = mesh.PointOf(v);
         isToMatch[v] = sieve.Has(bitOf(p)) && this->VertexAt.count(p) > 0;
       }
     });
-    const Progress matching = progress.Between(0.3, 1.0);
+    const Progress matching = stages.Next();
     // Over half-edges, not points: a point that no triangle uses is not a corner, and two at the
     // same place are no trouble if only one is used.
     for (const Index h : Counted(mesh.NumberOfHalfEdges()))
@@ -134,7 +136,9 @@ private:
   /** Finds the triangle that contains each point that is not a corner. */
   void LocateOthers(const Progress& progress)
   {
+    Stages stages(progress, { 20, 80 });
     const Mesh& mesh = this->Surface;
+    const Progress snapping = stages.Next();
     std::vector<Index> open; // ids of Points
     for (const Index point : this->InsertRingPoints)
     {
@@ -147,7 +151,7 @@ private:
     }
     if (!open.empty() && this->MayInsert)
     {
-      this->SnapBorderToPoints(open, progress.Between(0.0, 0.2));
+      this->SnapBorderToPoints(open, snapping);
     }
     if (open.empty())
     {
@@ -159,8 +163,7 @@ private:
     const CellGrid grid(open.size(),
       [&](std::size_t i) { return std::array<Point2, 1>{ { this->Points[open[i]] } }; });
     std::vector<Index> triangles(open.size(), None);
-    const Progress looking = progress.Between(0.2, 1.0);
-    ForEachStretch(mesh.NumberOfTriangles(), looking, [&](Index begin, Index end) {
+    ForEachStretch(mesh.NumberOfTriangles(), stages.Next(), [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
         // The points of successive triangles may be far apart in memory.
@@ -275,19 +278,20 @@ private:
   {
     // In an order that depends only on the places, not on the numbers of triangles, and is random:
     // each cut then divides the points that wait in a triangle about evenly.
-    std::sort(this->Located.begin(), this->Located.end(), [&](const Place& a, const Place& b) {
-      const Point2& p = this->Points[a.Point];
-      const Point2& q = this->Points[b.Point];
-      const std::uint64_t mixedP = PointHash()(p);
-      const std::uint64_t mixedQ = PointHash()(q);
-      return std::tie(mixedP, p.X, p.Y) < std::tie(mixedQ, q.X, q.Y);
-    });
+    std::sort(this->Located.begin(), this->Located.end(),
+      [&](const LocatedPoint& a, const LocatedPoint& b) {
+        const Point2& p = this->Points[a.Point];
+        const Point2& q = this->Points[b.Point];
+        const std::uint64_t mixedP = PointHash()(p);
+        const std::uint64_t mixedQ = PointHash()(q);
+        return std::tie(mixedP, p.X, p.Y) < std::tie(mixedQ, q.X, q.Y);
+      });
     // Weights in the triangles before they are cut.
     std::vector<InsertedVertex> weights;
-    for (const Place& place : this->Located)
+    for (const LocatedPoint& located : this->Located)
     {
-      weights.push_back(this->Cutter.WeightsIn(place.Triangle, this->Points[place.Point]));
-      this->Waiting[place.Triangle].push_back(static_cast<Index>(weights.size()) - 1);
+      weights.push_back(this->Cutter.WeightsIn(located.Triangle, this->Points[located.Point]));
+      this->Waiting[located.Triangle].push_back(static_cast<Index>(weights.size()) - 1);
     }
     for (std::size_t i = 0; i < this->Located.size(); ++i)
     {
@@ -390,13 +394,13 @@ private:
     {
       if (i != done)
       {
-        Place& place = this->Located[i];
+        LocatedPoint& located = this->Located[i];
         // There is always one: the parts cover what they were cut from, also where an edge was
         // moved to the point, as the two triangles of the edge make the same quadrilateral as
         // before.
-        place.Triangle = *std::find_if(parts.begin(), parts.end(),
-          [&](Index part) { return this->Cutter.Holds(part, this->Points[place.Point]); });
-        this->Waiting[place.Triangle].push_back(i);
+        located.Triangle = *std::find_if(parts.begin(), parts.end(),
+          [&](Index part) { return this->Cutter.Holds(part, this->Points[located.Point]); });
+        this->Waiting[located.Triangle].push_back(i);
       }
     }
   }
@@ -408,7 +412,7 @@ private:
   const bool Follows;
   MeshCutter& Cutter;
   RingVertices VertexAt;
-  std::vector<Place> Located;
+  std::vector<LocatedPoint> Located;
   std::unordered_map<Index, std::vector<Index>> Waiting; ///< by triangle: indices in Located
 };
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// InsertRings.h lists the passes: CheckCrossings() is pass 1, InsertRingPoints() 2 and 3, CutAtBorder()
-// 4; FollowSurface() threads what pass 5 inserts into the rings.
+// InsertRings.h lists the passes: CheckCrossings() is pass 1, InsertRingPoints() 2 and 3,
+// CutAtBorder() 4; FollowSurface() threads what pass 5 inserts into the rings.
 //
 // During the work a ring is a list of pieces. A piece is the part of one edge of the given rings
 // from one vertex to the next. Pieces are cut at stops into more pieces, and remember the edge that
@@ -49,22 +49,25 @@ public:
 
   void Run(const Progress& progress)
   {
+    const bool follows = this->Follow != Following::None;
+    Stages stages(progress, { 10, 70, follows ? 10.0 : 20.0, 0, follows ? 10.0 : 0.0 });
+    const Progress checking = stages.Next();
     // Lines may cross: what comes later cuts what is there already, as it cuts any edge of the
     // mesh.
     if (this->Follow != Following::Lines)
     {
-      CheckCrossings(this->Points, this->Drawn, progress.Between(0.0, 0.1));
+      CheckCrossings(this->Points, this->Drawn, checking);
     }
     this->VertexAt = InsertRingPoints(this->Surface, this->Points, this->Drawn, this->MayInsert,
-      this->Follow != Following::None, this->Cutter, progress.Between(0.1, 0.8));
+      follows, this->Cutter, stages.Next());
     // Every point of the rings is now a vertex, or known to be outside.
     this->StartRings();
     // An edge or a border that is cut at a rounded place moves slightly: all are tested again. As
     // the move rarely causes a crossing, one more round is usually enough. The limit turns a search
     // without end, which nothing excludes, into an error.
     constexpr int mostRounds = 100;
-    const double end = this->Follow != Following::None ? 0.9 : 1.0;
-    bool isCut = this->CutAtBorder(progress.Between(0.8, end));
+    bool isCut = this->CutAtBorder(stages.Next());
+    const Progress again = stages.Next(); // no share, as more rounds are rare
     for (int round = 1; isCut; ++round)
     {
       if (round == mostRounds)
@@ -73,13 +76,11 @@ public:
           " runs so near the border of the mesh that rounding does not let it be cut there. Let it "
           "pass through points of the mesh.");
       }
-      // No share of the progress is kept for rounds that are rare.
-      const Progress again = progress.Between(end, end);
       isCut = this->CutAtEachOther(again) || this->CutAtBorder(again);
     }
-    if (this->Follow != Following::None)
+    if (follows)
     {
-      this->FollowPieces(progress.Between(0.9, 1.0));
+      this->FollowPieces(stages.Next());
     }
     // Points outside come last: no vertex may be added after them, or the numbers of vertices would
     // not be those of Result.Inserted.
@@ -106,7 +107,7 @@ private:
   struct BorderCrossing
   {
     Index Border; ///< index in BorderEdges
-    Point2 Place;
+    Point2 Position;
     std::size_t Piece;
     bool IsBeyond; ///< whether it is past the foot of the triangle's apex, along the border
   };
@@ -151,14 +152,15 @@ private:
    */
   bool CutAtBorder(const Progress& progress)
   {
+    Stages stages(progress, { 30, 20, 50 });
     // All pieces are tested against the border as it is now: those of the last round have moved it.
     const std::vector<Ends> pieces = this->PieceEnds();
     this->Stops.clear();
     this->IsCut.clear();
     this->Cutter.ForgetMoves();
-    const BorderEdges border = FindBorder(this->Surface, progress.Between(0.0, 0.3));
+    const BorderEdges border = FindBorder(this->Surface, stages.Next());
     std::vector<BorderCrossing> crossings =
-      this->FindBorderCrossings(pieces, border, progress.Between(0.3, 0.5));
+      this->FindBorderCrossings(pieces, border, stages.Next());
     if (!crossings.empty() && !this->MayInsert)
     {
       throw Error("The boundary's edge " +
@@ -168,7 +170,7 @@ private:
     // In this order: crossings become vertices, then vertices on pieces are found, the new ones
     // among them, then the pieces are cut at all of these.
     this->CutBorder(crossings, pieces, border);
-    this->FindStops(pieces, progress.Between(0.5, 1.0));
+    this->FindStops(pieces, stages.Next());
     this->CutPieces(pieces);
     return !this->IsCut.empty();
   }
@@ -243,8 +245,9 @@ private:
         const Ends& ends = border.Segments[a.Border];
         return a.Border != b.Border  ? a.Border < b.Border
           : a.IsBeyond != b.IsBeyond ? b.IsBeyond
-          : a.Place != b.Place       ? IsBefore(ends[0], ends[1], a.Place, b.Place) != a.IsBeyond
-                                     : a.Piece < b.Piece;
+          : a.Position != b.Position
+          ? IsBefore(ends[0], ends[1], a.Position, b.Position) != a.IsBeyond
+          : a.Piece < b.Piece;
       });
     const Mesh& mesh = this->Surface;
     Index h = None;
@@ -258,13 +261,13 @@ private:
         last = None;
       }
       // Two pieces may cross the border at one rounded place: one vertex serves both.
-      const bool isSamePlace = last != None && crossings[i - 1].Place == crossing.Place;
+      const bool isSamePosition = last != None && crossings[i - 1].Position == crossing.Position;
       const Index from = mesh.Origin(h), to = mesh.Destination(h);
-      Index vertex = isSamePlace               ? last
-        : crossing.Place == mesh.PointOf(from) ? from
-        : crossing.Place == mesh.PointOf(to)   ? to
-                                               : None;
-      Point2 place = crossing.Place;
+      Index vertex = isSamePosition               ? last
+        : crossing.Position == mesh.PointOf(from) ? from
+        : crossing.Position == mesh.PointOf(to)   ? to
+                                                  : None;
+      Point2 place = crossing.Position;
       if (vertex == None && !this->Cutter.MoveToCut(h, place))
       {
         throw Error("The boundary's edge " + this->EdgeName(this->Pieces[crossing.Piece].Edge) +
@@ -362,6 +365,7 @@ private:
     {
       return;
     }
+    Stages stages(progress, { 50, 50 });
     const Mesh& mesh = this->Surface;
     // Pieces that cross no border stay as they are: passes that follow step through the vertices on
     // them.
@@ -375,7 +379,7 @@ private:
     const CellGrid grid = GridOf(segments);
     std::unordered_map<Index, std::vector<Index>> segmentsThrough;
     std::vector<char> isOn(mesh.Points.size(), 0);
-    ForEachStretch(mesh.NumberOfPoints(), progress.Between(0.0, 0.5), [&](Index begin, Index end) {
+    ForEachStretch(mesh.NumberOfPoints(), stages.Next(), [&](Index begin, Index end) {
       for (Index v = begin; v < end; ++v)
       {
         const Point2& p = mesh.PointOf(v);
@@ -393,22 +397,21 @@ private:
       return;
     }
     // Only vertices that a triangle uses become stops.
-    ForEachStretch(
-      mesh.NumberOfHalfEdges(), progress.Between(0.5, 1.0), [&](Index begin, Index end) {
-        for (Index h = begin; h < end; ++h)
+    ForEachStretch(mesh.NumberOfHalfEdges(), stages.Next(), [&](Index begin, Index end) {
+      for (Index h = begin; h < end; ++h)
+      {
+        const Index v = mesh.Origin(h);
+        if (isOn[v])
         {
-          const Index v = mesh.Origin(h);
-          if (isOn[v])
+          // Once, whatever the number of its triangles.
+          isOn[v] = 0;
+          for (const Index i : segmentsThrough.at(v))
           {
-            // Once, whatever the number of its triangles.
-            isOn[v] = 0;
-            for (const Index i : segmentsThrough.at(v))
-            {
-              this->AddStop(this->IsCut[i], segments[i], h, v);
-            }
+            this->AddStop(this->IsCut[i], segments[i], h, v);
           }
         }
-      });
+      }
+    });
   }
 
   /** Cuts the pieces at their stops. */
@@ -479,6 +482,7 @@ private:
   /** Splits the pieces within the mesh where they cross its edges. */
   void FollowPieces(const Progress& progress)
   {
+    Stages stages(progress, { 10, 85, 5 }); // the last one reports nothing
     const Mesh& mesh = this->Surface;
     const auto segmentOf = [&](Index i) {
       const Index a = this->Pieces[i].Vertex;
@@ -504,14 +508,14 @@ private:
         segments.emplace_back(segment);
       }
     }
-    Sort(segments.begin(), segments.end(), isBefore, progress.Between(0.0, 0.1));
+    Sort(segments.begin(), segments.end(), isBefore, stages.Next());
     // An edge that several rings share is followed once.
     segments.erase(std::unique(segments.begin(), segments.end(),
                      [](const FollowedSegment& s, const FollowedSegment& t) {
                        return s.Ends.A == t.Ends.A && s.Ends.B == t.Ends.B;
                      }),
       segments.end());
-    FollowSurface(this->Surface, this->Cutter, segments, progress.Between(0.1, 0.95));
+    FollowSurface(this->Surface, this->Cutter, segments, stages.Next());
     std::vector<Piece> followed;
     std::vector<Index> offsets{ 0 };
     for (Index i = 0; i < count; ++i)

@@ -66,9 +66,9 @@ struct Measurer
 
   void Begin(Vertex& p, Vertex& a)
   {
-    this->Largest = std::max({ this->Largest, std::fabs(p.Place.X), std::fabs(p.Place.Y),
-      std::fabs(a.Place.X), std::fabs(a.Place.Y) });
-    this->ToLast = SquaredLength(p.Place, a.Place);
+    this->Largest = std::max({ this->Largest, std::fabs(p.Position.X), std::fabs(p.Position.Y),
+      std::fabs(a.Position.X), std::fabs(a.Position.Y) });
+    this->ToLast = SquaredLength(p.Position, a.Position);
     this->First = this->NumberOf(p);
     this->Last = this->NumberOf(a);
   }
@@ -79,10 +79,10 @@ struct Measurer
     corners[0] = this->First;
     corners[1] = this->Last;
     corners[2] = this->Last = this->NumberOf(b);
-    this->Largest = std::max({ this->Largest, std::fabs(b.Place.X), std::fabs(b.Place.Y) });
+    this->Largest = std::max({ this->Largest, std::fabs(b.Position.X), std::fabs(b.Position.Y) });
     const double right = this->ToLast;
-    const double opposite = SquaredLength(a.Place, b.Place);
-    this->ToLast = SquaredLength(b.Place, p.Place);
+    const double opposite = SquaredLength(a.Position, b.Position);
+    this->ToLast = SquaredLength(b.Position, p.Position);
     this->Longest[t] = std::max(std::max(right, opposite), this->ToLast);
     p.Edges.Add(right);
     a.Edges.Add(opposite);
@@ -103,8 +103,8 @@ void TakeVertices(
       vertex = vertex ? vertex : &nobody;
       measured.Set(number, vertex->Edges);
       double* p = measured.Coordinates.data() + 3 * static_cast<std::size_t>(number);
-      p[0] = vertex->Place.X;
-      p[1] = vertex->Place.Y;
+      p[0] = vertex->Position.X;
+      p[1] = vertex->Position.Y;
       p[2] = 0.0;
     });
 }
@@ -122,7 +122,7 @@ void AddBorder(
     ReportStep(progress, done++, measured.Border.size());
     Measurer::Vertex& origin = sweep.At(edge.Origin);
     Measurer::Vertex& destination = sweep.At(edge.Destination);
-    destination.Edges.Add(SquaredLength(origin.Place, destination.Place));
+    destination.Edges.Add(SquaredLength(origin.Position, destination.Position));
     measured.Set(destination.Number, destination.Edges);
     edge = { origin.Number, destination.Number };
   }
@@ -133,6 +133,7 @@ void AddBorder(
 bool MeasureBySweep(
   const TriangleList& list, int threads, const Progress& progress, MeasuredTriangles& measured)
 {
+  Stages stages(progress, { 85, 11, 2, 2 });
   const Index count = list.Count;
   measured.Corners.Resize(3 * static_cast<std::size_t>(count));
   measured.Longest.Resize(count);
@@ -140,8 +141,8 @@ bool MeasureBySweep(
   measured.Ids.Resize(static_cast<std::size_t>(list.Points.Count) +
     static_cast<std::size_t>(sweep.NumberOfRanges()) * Measurer::AtOnce);
   std::atomic<Index> numbers{ 0 };
-  if (!sweep.Run(Measurer{ &sweep.At(0), &measured, measured.Longest.data(), &numbers },
-        progress.Between(0.0, 0.85)))
+  if (!sweep.Run(
+        Measurer{ &sweep.At(0), &measured, measured.Longest.data(), &numbers }, stages.Next()))
   {
     return false;
   }
@@ -156,14 +157,14 @@ bool MeasureBySweep(
   measured.List.Count = count;
   measured.List.Points.Double = measured.Coordinates.data();
   measured.List.Points.Count = numbers;
-  TakeVertices(sweep, progress.Between(0.85, 0.96), measured);
+  TakeVertices(sweep, stages.Next(), measured);
   // A mesh that has to be scaled takes the other way, Measure(), which copies coordinates anyway.
   if (largest > LargestUnscaled || largest < LeastUnscaled ||
-    !CoversOnce(measured.Border, list.Points, progress.Between(0.96, 0.98)))
+    !CoversOnce(measured.Border, list.Points, stages.Next()))
   {
     return false;
   }
-  AddBorder(sweep, progress.Between(0.98, 1.0), measured);
+  AddBorder(sweep, stages.Next(), measured);
   return true;
 }
 

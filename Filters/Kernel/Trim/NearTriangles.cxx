@@ -173,10 +173,10 @@ private:
         }
         // Rare: behind rings. The locator wants a triangle that no ring cuts; this one is inside
         // the cell.
-        const double part = 0.25 * this->Side;
+        const double offset = 0.25 * this->Side;
         const Point2 p{ this->Low.X + (column + 0.5) * this->Side,
           this->Low.Y + (row + 0.5) * this->Side };
-        kind = locator.IsInside(p, { p.X + part, p.Y }, { p.X, p.Y + part }) ? Inside : Outward;
+        kind = locator.IsInside(p, { p.X + offset, p.Y }, { p.X, p.Y + offset }) ? Inside : Outward;
       }
     }
   }
@@ -248,15 +248,15 @@ struct Classifier
 
   void Begin(const Vertex& p, const Vertex& a)
   {
-    this->Around = this->Raster.KindAround(p.Place);
-    this->LastReach = ReachOf(p.Place, a.Place);
+    this->Around = this->Raster.KindAround(p.Position);
+    this->LastReach = ReachOf(p.Position, a.Position);
   }
 
   void Visit(Index t, const Vertex& first, const Vertex& second, const Vertex& third)
   {
     // The triangles of a fan share sides: the third corner of one is the second of the next, so its
     // reach is known.
-    const Point2 p = first.Place, a = second.Place, b = third.Place;
+    const Point2 p = first.Position, a = second.Position, b = third.Position;
     const double reach = ReachOf(p, b);
     // All corners near the first one: the whole triangle is.
     const bool isShort = (reach <= this->Reach) & (this->LastReach <= this->Reach);
@@ -283,6 +283,7 @@ std::optional<SweptAlongRings> SweepAlongRings(const TriangleList& list,
   const std::vector<Point2>& points, const Rings& rings, double numberOfTriangles, int threads,
   const Progress& progress)
 {
+  Stages stages(progress, { 90, 10 });
   // The raster depends on the rings and the number of all triangles alone: parts of a mesh have the
   // same.
   const RingRaster raster(points, rings, numberOfTriangles);
@@ -299,12 +300,12 @@ std::optional<SweptAlongRings> SweepAlongRings(const TriangleList& list,
   TriangleSweep<Classifier> sweep(list, threads);
   const Classifier classifier{ raster, swept.IsOutward.data(), {}, raster.Reach(), 0.0,
     RingRaster::Near };
-  if (!sweep.Run(classifier, progress.Between(0.0, 0.9)))
+  if (!sweep.Run(classifier, stages.Next()))
   {
     return std::nullopt;
   }
   swept.Border = sweep.Border(
-    list.Points.Count, progress.Between(0.9, 1.0), [](Index id) { return id; },
+    list.Points.Count, stages.Next(), [](Index id) { return id; },
     [](Index, const SweptVertex*) {});
   // Each thread has listed its own.
   for (const Classifier* visitor : sweep.Visitors())
@@ -319,11 +320,11 @@ std::optional<SweptAlongRings> SweepAlongRings(const TriangleList& list,
 std::optional<SweptAlongRings> FindNearTriangles(const TriangleList& list,
   const std::vector<Point2>& points, const Rings& rings, int threads, const Progress& progress)
 {
+  Stages stages(progress, { 90, 10 });
   std::optional<SweptAlongRings> swept =
-    SweepAlongRings(list, points, rings, list.Count, threads, progress.Between(0.0, 0.9));
-  return swept && CoversOnce(swept->Border, list.Points, progress.Between(0.9, 1.0))
-    ? std::move(swept)
-    : std::nullopt;
+    SweepAlongRings(list, points, rings, list.Count, threads, stages.Next());
+  return swept && CoversOnce(swept->Border, list.Points, stages.Next()) ? std::move(swept)
+                                                                        : std::nullopt;
 }
 
 } // namespace elevation

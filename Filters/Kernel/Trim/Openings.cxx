@@ -15,9 +15,9 @@ namespace
 
 constexpr std::int64_t LakeWithBays = 4; // least lakes
 
-/** The parts of triangles with equal values of flagOf(t), connected by edges. */
+/** The components of triangles with equal values of flagOf(t), connected by edges. */
 template <typename FlagOf>
-Components FindFlagParts(const Mesh& mesh, FlagOf&& flagOf, const Progress& progress)
+Components FindFlagComponents(const Mesh& mesh, FlagOf&& flagOf, const Progress& progress)
 {
   // -1 separates the triangles on both sides of an edge, 0 joins them on the same side.
   return FindComponents(mesh, progress, [&](Index h) {
@@ -51,18 +51,19 @@ struct Opening
  * of the surface, too; isOpen says which triangles belong to openings.
  */
 template <typename IsOpen, typename Look>
-void VisitOpenings(const Components& parts, std::vector<Opening>& openings, IsOpen&& isOpen,
+void VisitOpenings(const Components& components, std::vector<Opening>& openings, IsOpen&& isOpen,
   const Progress& progress, Look&& look)
 {
-  ForEachStretch(static_cast<Index>(parts.Labels.size()), progress, [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      if (isOpen(t))
+  ForEachStretch(
+    static_cast<Index>(components.Labels.size()), progress, [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
       {
-        look(t, openings[parts.ComponentOf(t)]);
+        if (isOpen(t))
+        {
+          look(t, openings[components.ComponentOf(t)]);
+        }
       }
-    }
-  });
+    });
 }
 
 } // namespace
@@ -70,45 +71,44 @@ void VisitOpenings(const Components& parts, std::vector<Opening>& openings, IsOp
 void CloseSmallLakes(
   const Mesh& mesh, const LakeShare& share, std::vector<char>& flags, const Progress& progress)
 {
-  const Components parts = FindFlagParts(
-    mesh, [&](Index t) { return flags[t] == Surface; }, progress.Between(0.0, 0.6));
-  std::vector<Opening> openings(parts.Count());
+  Stages stages(progress, { 60, 20, 20 });
+  const Components components = FindFlagComponents(
+    mesh, [&](Index t) { return flags[t] == Surface; }, stages.Next());
+  std::vector<Opening> openings(components.Count());
   const auto isOpen = [&](Index t) { return flags[t] != Surface; };
-  VisitOpenings(
-    parts, openings, isOpen, progress.Between(0.6, 0.8), [&](Index t, Opening& opening) {
-      opening.Share += ToFixedPoint(share(t));
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
-      {
-        opening.ReachesBorder |= mesh.IsBorder(h);
-      }
-    });
-  VisitOpenings(
-    parts, openings, isOpen, progress.Between(0.8, 1.0), [&](Index t, Opening& opening) {
-      // A lake that is large enough for bays stays as it is.
-      if (!opening.ReachesBorder && opening.Share < LakeWithBays * FixedOne)
-      {
-        flags[t] = opening.Share < FixedOne ? Surface : Outside;
-      }
-    });
+  VisitOpenings(components, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
+    opening.Share += ToFixedPoint(share(t));
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      opening.ReachesBorder |= mesh.IsBorder(h);
+    }
+  });
+  VisitOpenings(components, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
+    // A lake that is large enough for bays stays as it is.
+    if (!opening.ReachesBorder && opening.Share < LakeWithBays * FixedOne)
+    {
+      flags[t] = opening.Share < FixedOne ? Surface : Outside;
+    }
+  });
 }
 
 void CloseSmallBays(
   const Mesh& mesh, const LakeShare& share, std::vector<char>& flags, const Progress& progress)
 {
-  const Components parts = FindFlagParts(
-    mesh, [&](Index t) { return flags[t]; }, progress.Between(0.0, 0.5));
-  std::vector<Opening> openings(parts.Count());
+  Stages stages(progress, { 50, 20, 20, 10 });
+  const Components components = FindFlagComponents(
+    mesh, [&](Index t) { return flags[t]; }, stages.Next());
+  std::vector<Opening> openings(components.Count());
   const auto isOpen = [&](Index t) { return flags[t] == Bay; };
+  VisitOpenings(components, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
+    opening.Share += ToFixedPoint(share(t));
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      opening.Longest = std::max(opening.Longest, mesh.SquaredLengthOf(h));
+    }
+  });
   VisitOpenings(
-    parts, openings, isOpen, progress.Between(0.5, 0.7), [&](Index t, Opening& opening) {
-      opening.Share += ToFixedPoint(share(t));
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
-      {
-        opening.Longest = std::max(opening.Longest, mesh.SquaredLengthOf(h));
-      }
-    });
-  VisitOpenings(
-    parts, openings, isOpen, progress.Between(0.7, 0.9), [&](Index t, Opening& opening) {
+    components, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
         const char beside =
@@ -122,16 +122,16 @@ void CloseSmallBays(
         opening.Open += beside == Surface ? -length : length;
       }
     });
-  VisitOpenings(
-    parts, openings, isOpen, progress.Between(0.9, 1.0), [&](Index t, Opening& opening) {
-      flags[t] = opening.Share < FixedOne && opening.Open <= 0 ? Surface : Outside;
-    });
+  VisitOpenings(components, openings, isOpen, stages.Next(), [&](Index t, Opening& opening) {
+    flags[t] = opening.Share < FixedOne && opening.Open <= 0 ? Surface : Outside;
+  });
 }
 
 std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBorder,
   const std::vector<Index>& triangles, const LakeShare& share, std::vector<char>& keep,
   const Progress& progress)
 {
+  Stages stages(progress, { 70, 30 });
   Buffer<Index> parents; // of vertices, UnionFind.h
   parents.Resize(list.Points.Count);
   std::iota(parents.begin(), parents.end(), 0);
@@ -139,7 +139,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
   sums.Resize(list.Points.Count);
   std::fill(sums.begin(), sums.end(), 0);
   const Index count = static_cast<Index>(triangles.size());
-  ForEachStretch(count, progress.Between(0.0, 0.7), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
     {
       // A few triangles ahead: their corners' entries are in no order.
@@ -168,7 +168,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
     }
   });
   std::vector<Index> others;
-  ForEachStretch(count, progress.Between(0.7, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
     {
       const Index t = triangles[i];

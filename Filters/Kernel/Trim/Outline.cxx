@@ -146,54 +146,56 @@ public:
    */
   std::optional<ExtractedBoundary> Run(const Progress& progress)
   {
+    Stages stages(progress, { 2, 13, 5, 12, 68 });
     const TriangleList& list = this->Measured.List;
-    this->SortBorder(progress.Between(0.0, 0.02));
-    const Neighbors neighbors(this->Measured, progress.Between(0.02, 0.15));
+    this->SortBorder(stages.Next());
+    const Neighbors neighbors(this->Measured, stages.Next());
     if (!this->Border.IsPart)
     {
       this->Spacings.Resize(list.Points.Count);
     }
-    this->KeepCertainTriangles(progress.Between(0.15, 0.2));
-    std::vector<Index> doubtful = this->FindDoubtful(progress.Between(0.2, 0.32));
-    Report(progress, 0.32);
+    this->KeepCertainTriangles(stages.Next());
+    std::vector<Index> doubtful = this->FindDoubtful(stages.Next());
+    const Progress rest = stages.Next();
+    Report(rest, 0.0);
     // How long the next steps take depends on how many are doubtful. Where these are few, no step
     // has so large a share that progress jumps.
-    const double share =
-      std::clamp(20.0 * static_cast<double>(doubtful.size()) / list.Count, 0.6, 1.0);
-    const double scaled = 0.32 + (this->IsAutomatic ? 0.25 * share : 0.0);
-    const double decided = scaled + 0.25 * share + 0.03;
-    if (this->IsAutomatic &&
-      !this->FindAllScales(neighbors, doubtful, progress.Between(0.32, scaled)))
+    const double each =
+      25.0 * std::clamp(20.0 * static_cast<double>(doubtful.size()) / list.Count, 0.6, 1.0);
+    const double ofScales = this->IsAutomatic ? each : 0.0;
+    Stages later(rest, { ofScales, 0, each, 3, 62.0 - ofScales - each, 3, 0 });
+    const Progress scaling = later.Next();
+    if (this->IsAutomatic && !this->FindAllScales(neighbors, doubtful, scaling))
     {
       return std::nullopt;
     }
     const std::vector<Index> outside =
-      FindOutsideBridges(list, this->Grid, this->Border, progress.Between(scaled, scaled));
+      FindOutsideBridges(list, this->Grid, this->Border, later.Next());
     // These are in doubt even if they were certain: openings are measured in spacings, too.
     const auto middle = doubtful.insert(doubtful.end(), outside.begin(), outside.end());
     std::inplace_merge(doubtful.begin(), middle, doubtful.end());
     doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
-    if (!this->FindCornerSpacings(doubtful, neighbors, progress.Between(scaled, decided - 0.03)))
+    if (!this->FindCornerSpacings(doubtful, neighbors, later.Next()))
     {
       return std::nullopt;
     }
-    this->Decide(doubtful, progress.Between(decided - 0.03, decided));
+    this->Decide(doubtful, later.Next());
     for (const Index t : outside)
     {
       this->Result.IsSurface[t] = Outside;
     }
-    // With a grid, pieces that missing nodes separate stay, however small.
+    // With a grid, components that missing nodes separate stay, however small.
     const SurfaceOptions tracing{ [this](Index t) { return this->ToleranceOf(t); },
       !this->Grid.Steps.IsSet() };
     if (!TraceOutline(this->Measured, this->Border, this->CornersNear(doubtful), tracing,
-          progress.Between(decided, 0.97), this->Result.IsSurface, this->Result.Vertices) ||
-      !this->MeasureLoss(neighbors, progress.Between(0.97, 1.0)))
+          later.Next(), this->Result.IsSurface, this->Result.Vertices) ||
+      !this->MeasureLoss(neighbors, later.Next()))
     {
       return std::nullopt;
     }
     if (this->Measured.Ids.size() > 0)
     {
-      ToIds(this->Result.Vertices.Vertices, this->Measured.Ids.data(), progress.Between(1.0, 1.0));
+      ToIds(this->Result.Vertices.Vertices, this->Measured.Ids.data(), later.Next());
     }
     Report(progress, 1.0);
     return std::move(this->Result);
@@ -202,17 +204,18 @@ public:
   /** FindOutlinePart(): the first steps of Run(), as far as this part alone can decide them. */
   OutlinePart FindPart(int margin, const Progress& progress)
   {
+    Stages stages(progress, { 2, 13, 5, 5, 15, 5, 15, 5, 0, 35 });
     const TriangleList& list = this->Measured.List;
     const IdSet& border = this->Border.Vertices;
-    this->SortBorder(progress.Between(0.0, 0.02));
-    const Neighbors neighbors(this->Measured, progress.Between(0.02, 0.15));
+    this->SortBorder(stages.Next());
+    const Neighbors neighbors(this->Measured, stages.Next());
     this->Spacings.Resize(list.Points.Count);
-    this->KeepCertainTriangles(progress.Between(0.15, 0.2));
-    for (const Index t : TrianglesAt(list, border, progress.Between(0.2, 0.25)))
+    this->KeepCertainTriangles(stages.Next());
+    for (const Index t : TrianglesAt(list, border, stages.Next()))
     {
       this->Result.IsSurface[t] = Outside; // not all edges are known there
     }
-    const std::vector<Index> doubtful = this->FindDoubtful(progress.Between(0.25, 0.4));
+    const std::vector<Index> doubtful = this->FindDoubtful(stages.Next());
     // A tolerance that the user gives has no scale, so lonely vertices do not matter.
     IdSet near = this->IsAutomatic
       ? LonelyVertices(neighbors, this->CornersNear(doubtful), list.Points.Count)
@@ -220,14 +223,15 @@ public:
     // A spacing for which a vertex at the border had to be expanded stays unknown, too.
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     std::fill(this->Spacings.begin(), this->Spacings.end(), unknown);
-    FindSpacings(list, neighbors, CornersOf(list, doubtful, progress.Between(0.4, 0.45)),
-      this->Threads, progress.Between(0.45, 0.6), this->Spacings.data(), &border);
+    const Progress listing = stages.Next();
+    FindSpacings(list, neighbors, CornersOf(list, doubtful, listing), this->Threads, stages.Next(),
+      this->Spacings.data(), &border);
     // Of groups that reach the border, other parts may have more.
     std::vector<char> isInside(list.Count, 0);
     // Groups away from the border are known whole, and all such groups count as small here: what is
     // asked is only which ones are.
     const auto nothing = [](Index) { return 0.0; };
-    DropSmallGroups(list, border, doubtful, nothing, isInside, progress.Between(0.6, 0.65));
+    DropSmallGroups(list, border, doubtful, nothing, isInside, stages.Next());
     std::vector<TriangleState> states(list.Count, TriangleState::Surface);
     for (const Index t : doubtful)
     {
@@ -240,11 +244,11 @@ public:
         near.AddAll(list.CornersOf(t));
       }
     }
-    for (const Index t : FindBridges(list, this->Grid, progress.Between(0.65, 0.65)))
+    for (const Index t : FindBridges(list, this->Grid, stages.Next()))
     {
       near.AddAll(list.CornersOf(t)); // the border of the mesh may be in another part
     }
-    return this->PartNear(near, margin, states, progress.Between(0.65, 1.0));
+    return this->PartNear(near, margin, states, stages.Next());
   }
 
 private:
@@ -384,16 +388,17 @@ private:
   bool FindCornerSpacings(
     const std::vector<Index>& triangles, const Neighbors& neighbors, const Progress& progress)
   {
+    Stages stages(progress, { 10, 90 });
     Report(progress, 0.0);
     const TriangleList& list = this->Measured.List;
-    std::vector<Index> corners = CornersOf(list, triangles, progress.Between(0.0, 0.1));
+    std::vector<Index> corners = CornersOf(list, triangles, stages.Next());
     const auto isKnown = [this](Index v) { return !std::isnan(this->Spacings[v]); };
     if (this->Border.IsPart)
     {
       corners.erase(std::remove_if(corners.begin(), corners.end(), isKnown), corners.end());
     }
-    FindSpacings(list, neighbors, corners, this->Threads, progress.Between(0.1, 1.0),
-      this->Spacings.data(), this->Border.IsPart ? &this->Ends : nullptr);
+    FindSpacings(list, neighbors, corners, this->Threads, stages.Next(), this->Spacings.data(),
+      this->Border.IsPart ? &this->Ends : nullptr);
     Report(progress, 1.0);
     return !this->Border.IsPart || std::all_of(corners.begin(), corners.end(), isKnown);
   }
@@ -463,11 +468,12 @@ private:
   /** The triangles that are not kept yet, without those of groups too small for a lake. */
   std::vector<Index> FindDoubtful(const Progress& progress)
   {
+    Stages stages(progress, { 20, 80 });
     const TriangleList& list = this->Measured.List;
     // Both lists increase, and so does what is returned.
     std::vector<char>& keep = this->Result.IsSurface;
     std::vector<Index> doubtful, inGroups; // the groups of the others are known
-    ForEachStretch(list.Count, progress.Between(0.0, 0.2), [&](Index begin, Index end) {
+    ForEachStretch(list.Count, stages.Next(), [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
         if (!keep[t])
@@ -481,8 +487,8 @@ private:
       const double spacing = SpacingOf(this->Measured.ShortSpacings, list.CornersOf(t));
       return list.SquareShare(t, SmallGroup * this->Tolerance * spacing);
     };
-    const std::vector<Index> others = DropSmallGroups(
-      list, this->Border.Vertices, inGroups, shareOf, keep, progress.Between(0.2, 1.0));
+    const std::vector<Index> others =
+      DropSmallGroups(list, this->Border.Vertices, inGroups, shareOf, keep, stages.Next());
     const auto middle = doubtful.insert(doubtful.end(), others.begin(), others.end());
     std::inplace_merge(doubtful.begin(), middle, doubtful.end());
     return doubtful;
@@ -524,6 +530,7 @@ private:
    */
   bool MeasureLoss(const Neighbors& neighbors, const Progress& progress)
   {
+    Stages stages(progress, { 60, 40 });
     const TriangleList& list = this->Measured.List;
     const std::vector<char>& keep = this->Result.IsSurface;
     std::vector<Index> outward;
@@ -533,7 +540,7 @@ private:
       outward.push_back(static_cast<Index>(t - keep.begin()));
       area += list.SquareShare(outward.back(), 1.0);
     }
-    const IdSet leftOut = CornersLeftOut(list, outward, keep, progress.Between(0.0, 0.6));
+    const IdSet leftOut = CornersLeftOut(list, outward, keep, stages.Next());
     this->Result.NumberOfPointsLeftOut = leftOut.Count();
     const double all = AreaOf(list, this->Border.Edges);
     this->Result.AreaLeftOut = all > 0.0 ? std::min(1.0, area / all) : 0.0;
@@ -544,7 +551,7 @@ private:
     {
       return true;
     }
-    if (!this->FindCornerSpacings(outward, neighbors, progress.Between(0.6, 1.0)))
+    if (!this->FindCornerSpacings(outward, neighbors, stages.Next()))
     {
       return false;
     }
@@ -607,6 +614,7 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
 bool FindOutlinePart(
   const TriangleList& list, int margin, const ExtractOptions& options, OutlinePart& part)
 {
+  Stages stages(options.Monitor, { 50, 50 });
   part = OutlinePart();
   part.Spacings.assign(list.Points.Count, std::numeric_limits<double>::quiet_NaN());
   MeasuredTriangles measured;
@@ -614,12 +622,11 @@ bool FindOutlinePart(
   {
     return true;
   }
-  if (!MeasureBySweep(list, options.NumberOfThreads, options.Monitor.Between(0.0, 0.5), measured))
+  if (!MeasureBySweep(list, options.NumberOfThreads, stages.Next(), measured))
   {
     return false;
   }
-  part =
-    OutlineSearch(std::move(measured), options).FindPart(margin, options.Monitor.Between(0.5, 1.0));
+  part = OutlineSearch(std::move(measured), options).FindPart(margin, stages.Next());
   part.Spacings.resize(list.Points.Count); // there are more of the measured ids than of points
   return true;
 }
@@ -627,13 +634,13 @@ bool FindOutlinePart(
 std::optional<ExtractedBoundary> FindSharedOutline(
   const TriangleList& list, OutlineMesh&& mesh, const ExtractOptions& options)
 {
+  Stages stages(options.Monitor, { 30, 70 });
   MeasuredTriangles measured;
-  if (list.Count == 0 ||
-    !MeasureBySweep(list, options.NumberOfThreads, options.Monitor.Between(0.0, 0.3), measured))
+  if (list.Count == 0 || !MeasureBySweep(list, options.NumberOfThreads, stages.Next(), measured))
   {
     return std::nullopt;
   }
-  const Progress finding = options.Monitor.Between(0.3, 1.0);
+  const Progress finding = stages.Next();
   // All triangles of the mesh have been taken: it is not a part.
   if (list.Count == mesh.NumberOfTriangles)
   {
@@ -652,15 +659,16 @@ std::optional<ExtractedBoundary> FindSharedOutline(
 
 ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& options)
 {
+  Stages stages(options.Monitor, { 40, 60 });
   if (mesh.NumberOfTriangles() == 0)
   {
     ExtractedBoundary nothing;
     nothing.GapTolerance = options.GapTolerance;
     return nothing;
   }
-  MeasuredTriangles measured = Measure(mesh, options.Monitor.Between(0.0, 0.4));
+  MeasuredTriangles measured = Measure(mesh, stages.Next());
   ExtractOptions rest = options;
-  const Progress finding = options.Monitor.Between(0.4, 1.0);
+  const Progress finding = stages.Next();
   rest.Monitor = finding;
   return FindOutline(std::move(measured), rest);
 }

@@ -100,7 +100,7 @@ bool FindOutlinePart(
 /**
  * ExtractBoundary() for the triangles that FindOutlinePart() has taken of all parts of a mesh.
  * @return nothing if the sweep fails, or these triangles do not decide the outline: the margin is
- *         too small, there are points whose scale is not 1, or pieces that look too small
+ *         too small, there are points whose scale is not 1, or components that look too small
  * @throws Aborted, std::bad_alloc
  */
 std::optional<ExtractedBoundary> FindSharedOutline(
@@ -140,11 +140,11 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
  *     times the largest spacing of a corner (times its scale); not in lakes of less than four such
  *     squares. What is connected of them is surface if it is smaller than that square and has
  *     surface along at least half of its border. So the outline does not follow each point inwards.
- *   - A piece with 6 vertices or fewer, too few for spacings of their own, is not surface, unless
- *     all pieces are as small.
+ *   - A component with 6 vertices or fewer, too few for spacings of their own, is not surface,
+ *     unless all components are as small.
  *   - With a Grid, triangles that are reached from the border of the mesh across edges of more than
  *     one step along either axis (they bridge missing nodes) are not surface, whatever the other
- *     rules say. Pieces that this separates stay, however small.
+ *     rules say. Components that this separates stay, however small.
  * The result does not depend on the order of points or triangles. Rings are simple, start at their
  * lowest vertex, and are sorted by it.
  * Cost: linear, plus a sort of the rings, plus that of Scales.h. About 20 neighbours are looked at

@@ -20,11 +20,13 @@ namespace
 std::vector<Segment> SegmentsOf(
   const Mesh& mesh, VertexStars& stars, const Rings& rings, const Progress& progress)
 {
+  Stages stages(progress, { 50, 50 });
+  const Progress listing = stages.Next();
   std::vector<Segment> segments;
   segments.reserve(rings.Vertices.size());
   for (const std::size_t i : Counted(rings.Vertices.size()))
   {
-    ReportStep(progress, i, 2 * rings.Vertices.size(), 256);
+    ReportStep(listing, i, rings.Vertices.size(), 256);
     // After InsertRings() an edge is inside at both ends or at none. Without recovery an edge may
     // leave the mesh on its way, or end at a hole, which is refused here.
     const Segment segment{ rings.Vertices[i], rings.Vertices[rings.After(static_cast<Index>(i))] };
@@ -42,8 +44,7 @@ std::vector<Segment> SegmentsOf(
   }
   Sort(
     segments.begin(), segments.end(),
-    [&mesh](const Segment& s, const Segment& t) { return IsLower(mesh, s, t); },
-    progress.Between(0.5, 1.0));
+    [&mesh](const Segment& s, const Segment& t) { return IsLower(mesh, s, t); }, stages.Next());
   return segments;
 }
 
@@ -86,29 +87,30 @@ void MarkEdges(const Mesh& mesh, VertexStars& stars, const std::vector<Segment>&
 OutwardTriangles FindOutward(
   Mesh& mesh, const Rings& boundary, bool recover, const Progress& progress)
 {
+  Stages stages(progress, { 35, 5, 10, 10, 30, 10 });
   OutwardTriangles result;
   Report(progress, 0.0);
-  VertexStars stars(mesh, progress.Between(0.0, 0.35));
-  const std::vector<Segment> segments =
-    SegmentsOf(mesh, stars, boundary, progress.Between(0.35, 0.4));
+  VertexStars stars(mesh, stages.Next());
+  const std::vector<Segment> segments = SegmentsOf(mesh, stars, boundary, stages.Next());
+  const Progress recovering = stages.Next();
   std::vector<char>& isOnBoundary = result.IsOnBoundary;
   if (recover)
   {
     result.NumberOfRecoveredEdges =
-      RecoverSegments(mesh, stars, segments, isOnBoundary, progress.Between(0.4, 0.5));
+      RecoverSegments(mesh, stars, segments, isOnBoundary, recovering);
   }
   // Recovery has marked each edge of the rings once. What counts is how often: an edge of two is
   // none.
-  MarkEdges(mesh, stars, segments, isOnBoundary, progress.Between(0.5, 0.6));
+  MarkEdges(mesh, stars, segments, isOnBoundary, stages.Next());
 
   // Within a component, crossing an odd edge changes sides; so two labels for each component, and a
   // location of one of its triangles, give the side of all. Where the mesh has several components
   // that rings separate, each has its own location.
   const RingLocator locator(mesh.Points, boundary);
-  const Components parts = FindComponents(mesh, progress.Between(0.6, 0.9),
-    [&isOnBoundary](Index h) { return static_cast<int>(isOnBoundary[h]); });
+  const Components components = FindComponents(
+    mesh, stages.Next(), [&isOnBoundary](Index h) { return static_cast<int>(isOnBoundary[h]); });
   std::vector<char> isOutward; // one per label
-  for (const Index t : parts.Lowest)
+  for (const Index t : components.Lowest)
   {
     const bool isInside = locator.IsInside(mesh.PointOf(mesh.Origin(3 * t)),
       mesh.PointOf(mesh.Origin(3 * t + 1)), mesh.PointOf(mesh.Origin(3 * t + 2)));
@@ -117,10 +119,10 @@ OutwardTriangles FindOutward(
   }
   const Index count = mesh.NumberOfTriangles();
   result.IsOutward.resize(count);
-  ForEachStretch(count, progress.Between(0.9, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
-      result.IsOutward[t] = isOutward[parts.Labels[t]];
+      result.IsOutward[t] = isOutward[components.Labels[t]];
     }
   });
   Report(progress, 1.0);
@@ -134,6 +136,7 @@ OutwardTriangles FindOutward(
 void ApplyInwardNormalTest(const Mesh& mesh, const std::vector<char>& isOnBoundary,
   std::vector<char>& isOutward, const Progress& progress)
 {
+  Stages stages(progress, { 50, 50 });
   // A walk with the surface on the right has outward triangles on its left. Two edges of such a
   // triangle are consecutive on the walk if and only if the triangle is on the left of both, as
   // nothing else fits into its corner. So instead of the walk, it is enough to count how many edges
@@ -149,7 +152,7 @@ void ApplyInwardNormalTest(const Mesh& mesh, const std::vector<char>& isOnBounda
       taken.push_back(t);
     }
   };
-  ForEachStretch(mesh.NumberOfHalfEdges(), progress.Between(0.0, 0.5), [&](Index begin, Index end) {
+  ForEachStretch(mesh.NumberOfHalfEdges(), stages.Next(), [&](Index begin, Index end) {
     for (Index h = begin; h < end; ++h)
     {
       if (isOnBoundary[h])
@@ -158,7 +161,7 @@ void ApplyInwardNormalTest(const Mesh& mesh, const std::vector<char>& isOnBounda
       }
     }
   });
-  const Progress walking = progress.Between(0.5, 1.0);
+  const Progress walking = stages.Next();
   StepCount done;
   while (!taken.empty())
   {

@@ -44,16 +44,17 @@ std::vector<Index> CornersOf(
 
 PartialMesh::PartialMesh(const TriangleList& list, const MeshBorder& border,
   std::vector<Index> triangles, const Progress& progress)
-  : Surface(SubMesh(list, triangles, progress.Between(0.0, 0.5)))
-  , Triangles(std::move(triangles))
+  : Triangles(std::move(triangles))
 {
-  this->Surface.ConnectTwins(0, progress.Between(0.5, 0.8));
+  Stages stages(progress, { 50, 30, 20 });
+  this->Surface = SubMesh(list, this->Triangles, stages.Next());
+  this->Surface.ConnectTwins(0, stages.Next());
   if (!border.IsPart && static_cast<Index>(this->Triangles.size()) == list.Count)
   {
     return; // nothing is left out
   }
   ForEachStretch(
-    this->Surface.NumberOfHalfEdges(), progress.Between(0.8, 1.0), [&](Index begin, Index end) {
+    this->Surface.NumberOfHalfEdges(), stages.Next(), [&](Index begin, Index end) {
       for (Index h = begin; h < end; ++h)
       {
         // A border edge here that is none of the whole mesh has a neighbour that was not taken. The

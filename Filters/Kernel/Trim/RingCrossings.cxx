@@ -35,9 +35,9 @@ public:
   RingWalks(const std::vector<Point2>& points, const Rings& rings, const std::vector<Ends>& edges,
     const CellGrid& grid, const Progress& progress)
   {
-    const std::vector<PieceCut> cuts =
-      FindCuts(points, rings, edges, grid, progress.Between(0.0, 0.9));
-    const Progress walking = progress.Between(0.9, 1.0);
+    Stages stages(progress, { 90, 10 });
+    const std::vector<PieceCut> cuts = FindCuts(points, rings, edges, grid, stages.Next());
+    const Progress walking = stages.Next();
     auto cut = cuts.begin();
     for (Index ring = 0; ring < rings.Count(); ++ring)
     {
@@ -90,6 +90,7 @@ public:
    */
   bool FindCrossing(Meeting& crossing, const Progress& progress) const
   {
+    Stages stages(progress, { 50, 50 });
     std::vector<Index> order; // nodes at the same place are consecutive
     for (Index node = 0; node < static_cast<Index>(this->Nodes.size()); ++node)
     {
@@ -104,9 +105,8 @@ public:
       [&](Index p, Index q) {
         return this->At(p) != this->At(q) ? IsLower(this->At(p), this->At(q)) : p < q;
       },
-      progress.Between(0.0, 0.5));
-    const Progress looking = progress.Between(0.5, 1.0);
-    WorkReporter work(looking);
+      stages.Next());
+    WorkReporter work(stages.Next());
     for (std::size_t i = 0, end = 0; i < order.size(); i = end)
     {
       work.Step(i, order.size());
@@ -127,12 +127,12 @@ private:
   static std::vector<PieceCut> FindCuts(const std::vector<Point2>& points, const Rings& rings,
     const std::vector<Ends>& edges, const CellGrid& grid, const Progress& progress)
   {
+    Stages stages(progress, { 60, 40 });
     std::vector<PieceCut> cuts;
     // In a crowded cell, a place that occurs many times is looked up only once.
     constexpr std::ptrdiff_t many = 64;
     std::unordered_set<Point2, PointHash> known;
-    const Progress cutting = progress.Between(0.0, 0.6);
-    WorkReporter work(cutting);
+    WorkReporter work(stages.Next());
     for (std::size_t i = 0; i < edges.size(); ++i)
     {
       work.Step(i, edges.size());
@@ -155,7 +155,7 @@ private:
     }
     SortAlong(
       cuts, [&](Index edge) { return edges[edge]; }, [&](Index point) { return points[point]; },
-      progress.Between(0.6, 1.0));
+      stages.Next());
     return cuts;
   }
 
@@ -412,16 +412,17 @@ std::string EdgeName(const NamedPoints& points, const Rings& rings, std::size_t 
 
 void CheckCrossings(const NamedPoints& points, const Rings& rings, const Progress& progress)
 {
+  Stages stages(progress, { 50, 25, 25 });
   const std::vector<Ends> edges = EdgesOf(points.Places, rings);
   const CellGrid grid = GridOf(edges);
-  VisitCrossings(edges, grid, progress.Between(0.0, 0.5), [&](std::size_t i, std::size_t j) {
+  VisitCrossings(edges, grid, stages.Next(), [&](std::size_t i, std::size_t j) {
     throw Error("The boundary's edge " + EdgeName(points, rings, i) + " crosses its edge " +
       EdgeName(points, rings, j) + ". Rings may touch and nest, but not cross.");
   });
 
-  const RingWalks walks(points.Places, rings, edges, grid, progress.Between(0.5, 0.75));
+  const RingWalks walks(points.Places, rings, edges, grid, stages.Next());
   RingWalks::Meeting crossing;
-  if (!walks.FindCrossing(crossing, progress.Between(0.75, 1.0)))
+  if (!walks.FindCrossing(crossing, stages.Next()))
   {
     return;
   }

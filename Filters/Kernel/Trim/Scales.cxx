@@ -97,9 +97,10 @@ bool HasGroup(const Neighbors& neighbors, const IdSet& vertices, Index count, st
 IdSet OutsideCores(
   const Neighbors& neighbors, const IdSet& near, Index count, const Progress& progress)
 {
+  Stages stages(progress, { 60, 20, 20 });
   std::vector<Index> parents(count);
   std::iota(parents.begin(), parents.end(), 0);
-  ForEachStretch(count, progress.Between(0.0, 0.6), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       // Inner vertices join all their neighbours, near ones among them: a near vertex belongs to
@@ -114,14 +115,14 @@ IdSet OutsideCores(
     }
   });
   std::vector<Index> inner(count, 0), others(count, 0);
-  ForEachStretch(count, progress.Between(0.6, 0.8), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       ++(near.Has(v) ? others : inner)[RootOf(parents, v)];
     }
   });
   IdSet outside(count);
-  ForEachStretch(count, progress.Between(0.8, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       const Index root = RootOf(parents, v);
@@ -301,10 +302,11 @@ public:
   /** @return one per vertex of the list */
   std::vector<float> FindScales(bool hasCore, const Progress& progress)
   {
-    this->MeasureTriangles(progress.Between(0.0, 0.1));
-    this->FindGroups(progress.Between(0.1, 0.2));
-    this->FindEvents(progress.Between(0.2, 0.6));
-    this->FollowEvents(progress.Between(0.6, 1.0));
+    Stages stages(progress, { 10, 10, 40, 40 });
+    this->MeasureTriangles(stages.Next());
+    this->FindGroups(stages.Next());
+    this->FindEvents(stages.Next());
+    this->FollowEvents(stages.Next());
     const std::vector<float> ofParts = this->Parts.Scales(hasCore);
     std::vector<float> scales(this->List.Points.Count, 1.0f);
     for (Index v = 0; v < this->Surface.NumberOfPoints(); ++v)
@@ -442,8 +444,9 @@ private:
    */
   void FindEvents(const Progress& progress)
   {
+    Stages stages(progress, { 30, 70 });
     ForEachStretch(
-      this->Surface.NumberOfTriangles(), progress.Between(0.0, 0.3), [&](Index begin, Index end) {
+      this->Surface.NumberOfTriangles(), stages.Next(), [&](Index begin, Index end) {
         for (Index t = begin; t < end; ++t)
         {
           int thinCorners = 0;
@@ -490,7 +493,7 @@ private:
       const std::array<Point2, 3> q = cornersOf(b.Triangle);
       return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end(), IsLower);
     };
-    Sort(this->Events.begin(), this->Events.end(), isBefore, progress.Between(0.3, 1.0));
+    Sort(this->Events.begin(), this->Events.end(), isBefore, stages.Next());
   }
 
   /**
@@ -611,6 +614,7 @@ std::vector<float> FindScales(const MeasuredTriangles& measured, const Neighbors
   const MeshBorder& border, const IdSet& near, int threads, const Progress& progress,
   double* spacings)
 {
+  Stages stages(progress, { 10, 5, 5, 20, 20, 40 });
   const TriangleList& list = measured.List;
   const Index count = list.Points.Count;
   const IdSet lonely = LonelyVertices(neighbors, near, count);
@@ -618,18 +622,19 @@ std::vector<float> FindScales(const MeasuredTriangles& measured, const Neighbors
   {
     return {};
   }
-  const IdSet thin = OutsideCores(neighbors, near, count, progress.Between(0.0, 0.1));
+  const IdSet thin = OutsideCores(neighbors, near, count, stages.Next());
   // Only around thin vertices: cores have scale 1.
-  std::vector<Index> triangles = TrianglesAt(list, thin, progress.Between(0.1, 0.15));
+  std::vector<Index> triangles = TrianglesAt(list, thin, stages.Next());
   if (triangles.empty())
   {
     return {};
   }
-  FindSpacings(list, neighbors, CornersOf(list, triangles, progress.Between(0.15, 0.2)), threads,
-    progress.Between(0.2, 0.4), spacings);
-  const PartialMesh partial(list, border, std::move(triangles), progress.Between(0.4, 0.6));
+  const Progress listing = stages.Next();
+  FindSpacings(
+    list, neighbors, CornersOf(list, triangles, listing), threads, stages.Next(), spacings);
+  const PartialMesh partial(list, border, std::move(triangles), stages.Next());
   return ThinTriangles(list, partial, border.Vertices, thin, spacings)
-    .FindScales(thin.Count() < count, progress.Between(0.6, 1.0));
+    .FindScales(thin.Count() < count, stages.Next());
 }
 
 } // namespace elevation

@@ -109,14 +109,16 @@ Rings SortedRings(const Mesh& mesh, const Rings& rings, const Progress& progress
     }
     return rings.Size(r) < rings.Size(s);
   };
+  Stages stages(progress, { 75, 25 });
   std::vector<Index> order(rings.Count());
   std::iota(order.begin(), order.end(), 0);
-  Sort(order.begin(), order.end(), isBefore, progress.Between(0.0, 0.75));
+  Sort(order.begin(), order.end(), isBefore, stages.Next());
+  const Progress copying = stages.Next();
   Rings sorted;
   sorted.Vertices.reserve(rings.Vertices.size());
   for (const Index ring : Counted(order))
   {
-    ReportStep(progress, 3 * order.size() + sorted.Count(), 4 * order.size());
+    ReportStep(copying, sorted.Count(), order.size());
     sorted.Vertices.insert(sorted.Vertices.end(), rings.Begin(ring), rings.End(ring));
     sorted.Offsets.push_back(static_cast<Index>(sorted.Vertices.size()));
   }
@@ -127,9 +129,10 @@ Rings SortedRings(const Mesh& mesh, const Rings& rings, const Progress& progress
 
 Rings FindSimpleRings(const Mesh& mesh, const std::vector<char>& keep, const Progress& progress)
 {
-  const Rings walks = TraceBorder(mesh, progress.Between(0.0, 0.6), keep);
-  const Rings rings = RingCutter(mesh).Cut(walks, progress.Between(0.6, 0.8));
-  return SortedRings(mesh, rings, progress.Between(0.8, 1.0));
+  Stages stages(progress, { 60, 20, 20 });
+  const Rings walks = TraceBorder(mesh, stages.Next(), keep);
+  const Rings rings = RingCutter(mesh).Cut(walks, stages.Next());
+  return SortedRings(mesh, rings, stages.Next());
 }
 
 } // namespace elevation

@@ -13,6 +13,7 @@ namespace elevation
 
 Neighbors::Neighbors(const MeasuredTriangles& measured, const Progress& progress)
 {
+  Stages stages(progress, { 30, 70 });
   const TriangleList& list = measured.List;
   const Index count = list.Points.Count;
   this->Offsets.Resize(static_cast<std::size_t>(count) + 1);
@@ -22,7 +23,7 @@ Neighbors::Neighbors(const MeasuredTriangles& measured, const Progress& progress
     (Group - 1) * (static_cast<std::size_t>(count) + 1));
   // At first the end of each vertex's range, which is filled backwards.
   std::uint32_t sum = 0; // below 9 per point
-  ForEachStretch(count, progress.Between(0.0, 0.3), [&](Index begin, Index end) {
+  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       const std::uint32_t size = measured.Degrees[v];
@@ -35,7 +36,7 @@ Neighbors::Neighbors(const MeasuredTriangles& measured, const Progress& progress
   this->Offsets[count] = sum;
   // Ranges are filled from their ends, so that Offsets holds their begins when all is written.
   const auto add = [&](Index a, Index b) { this->Ids[--this->Offsets[a]] = b; };
-  ForEachStretch(list.Count, progress.Between(0.3, 1.0), [&](Index begin, Index end) {
+  ForEachStretch(list.Count, stages.Next(), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       const Index* ahead = list.CornersOf(std::min(t + 40, list.Count - 1));
@@ -99,7 +100,7 @@ public:
   double SpacingAt(Index v)
   {
     this->Vertex = v;
-    this->Place = this->List.Points.At(v);
+    this->Position = this->List.Points.At(v);
     this->IsCut = false;
     std::fill_n(this->Nearest, SpacingNeighbor,
       Candidate{ std::numeric_limits<double>::infinity(), None, false });
@@ -146,7 +147,7 @@ private:
     }
     // Without branches, as they would be unpredictable.
     const Index v = this->Vertex;
-    const Point2 p = this->Place;
+    const Point2 p = this->Position;
     const PointView points = this->List.Points;
     const std::uint64_t* const known = this->Known.data();
     // The sixth distance so far. It falls as vertices are added, but a limit that is not the latest
@@ -233,7 +234,7 @@ private:
   const IdSet* const Incomplete;
   bool IsCut = false; ///< an incomplete vertex has been expanded
   Index Vertex = None;
-  Point2 Place{ 0.0, 0.0 };
+  Point2 Position{ 0.0, 0.0 };
   Candidate Nearest[SpacingNeighbor];
   std::vector<Index> Found;
   // A cache of the vertices that have been among the nearest of Vertex. One that has lost its slot

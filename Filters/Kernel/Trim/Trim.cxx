@@ -47,18 +47,20 @@ struct Changes
 /** All triangles as a mesh with Twins that covers nothing twice. @throws Error */
 Mesh ProvenMesh(const TriangleList& list, int threads, const Progress& progress)
 {
-  Mesh mesh = MeshOf(list, ResolveNumberOfThreads(threads), progress.Between(0.0, 0.4));
-  mesh.ConnectTwins(list.FirstCell, progress.Between(0.4, 0.8));
+  Stages stages(progress, { 40, 40, 20 });
+  Mesh mesh = MeshOf(list, ResolveNumberOfThreads(threads), stages.Next());
+  mesh.ConnectTwins(list.FirstCell, stages.Next());
   // Only its proof is wanted: it throws where a place is covered twice.
-  FindHoles(mesh, list.FirstCell, progress.Between(0.8, 1.0));
+  FindHoles(mesh, list.FirstCell, stages.Next());
   return mesh;
 }
 
 /** Some of the triangles, proven by a sweep, as a mesh with Twins. */
 Mesh NearMesh(const TriangleList& list, const std::vector<Index>& near, const Progress& progress)
 {
-  Mesh mesh = SubMesh(list, near, progress.Between(0.0, 0.5));
-  mesh.ConnectTwins(list.FirstCell, progress.Between(0.5, 1.0));
+  Stages stages(progress, { 50, 50 });
+  Mesh mesh = SubMesh(list, near, stages.Next());
+  mesh.ConnectTwins(list.FirstCell, stages.Next());
   return mesh;
 }
 
@@ -193,11 +195,12 @@ void MarkBordersAround(const Mesh& mesh, const Rings& rings, Index firstOutside,
     const Ends ends = endsOf(i);
     return Ends{ { { 0.0, ends[0].Y }, { 0.0, ends[1].Y } } };
   };
-  const CellGrid byHeight(border.size(), heightsOf, progress.Between(0.0, 0.5));
-  WorkReporter work(progress);
+  Stages stages(progress, { 50, 50 });
+  const CellGrid byHeight(border.size(), heightsOf, stages.Next());
+  WorkReporter work(stages.Next());
   for (std::size_t k = 0; k < outside.size(); ++k)
   {
-    work.Step(outside.size() + k, 2 * outside.size());
+    work.Step(k, outside.size());
     const Point2& p = outside[k];
     Index nearest = None;
     double nearestX = 0.0;
@@ -207,8 +210,8 @@ void MarkBordersAround(const Mesh& mesh, const Rings& rings, Index firstOutside,
       // The half-open rule counts one of two edges that meet at the height of p.
       if ((ends[0].Y <= p.Y) != (ends[1].Y <= p.Y))
       {
-        const double part = (p.Y - ends[0].Y) / (ends[1].Y - ends[0].Y);
-        const double x = ends[0].X + part * (ends[1].X - ends[0].X);
+        const double share = (p.Y - ends[0].Y) / (ends[1].Y - ends[0].Y);
+        const double x = ends[0].X + share * (ends[1].X - ends[0].X);
         // Of edges that meet there, the same in any order.
         const auto keyOf = [](double at, const Ends& e) {
           return std::make_tuple(at, e[0].X, e[0].Y, e[1].X, e[1].Y);
@@ -310,22 +313,25 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
   const std::vector<BorderEdge>* known, const TrimOptions& options, Following follow,
   const Progress& progress, Changes& changes, Trimmed& result)
 {
+  // A proven mesh of all triangles is made with the published test, or after a sweep that failed.
+  const bool isSwept = options.Test == OutwardTest::Exact;
+  Stages stages(
+    progress, { isSwept ? 30.0 : 0.0, isSwept ? 20.0 : 50.0, 0, 25, 20, 0.5, 0.5, 1, 3 });
   const int threads = options.NumberOfThreads;
   const bool areLines = follow == Following::Lines;
   result.Boundary = areLines ? ThereAndBack(lines) : JoinLines(lines, &result.Warning);
   std::vector<BorderEdge> border;
-  const NearTriangles near = FindNear(list, lines.Points, result.Boundary, known, options,
-    progress.Between(0.0, 0.3), border, changes);
-  // A proven mesh of all triangles is made with the published test, or after a sweep that failed.
-  const Progress making = progress.Between(options.Test == OutwardTest::Exact ? 0.3 : 0.0, 0.5);
+  const NearTriangles near =
+    FindNear(list, lines.Points, result.Boundary, known, options, stages.Next(), border, changes);
+  const Progress making = stages.Next(), tracing = stages.Next();
   Mesh mesh = near ? NearMesh(list, *near, making) : ProvenMesh(list, threads, making);
   mesh.NumberOf = options.NumberOf;
-  border = near ? std::move(border) : BorderOf(mesh, progress.Between(0.5, 0.5));
+  border = near ? std::move(border) : BorderOf(mesh, tracing);
   const Index before = mesh.NumberOfPoints();
-  InsertedRings rings = InsertRings(mesh, lines.Points, result.Boundary, options.RecoverBoundary,
-    progress.Between(0.5, 0.75), follow);
+  InsertedRings rings = InsertRings(
+    mesh, lines.Points, result.Boundary, options.RecoverBoundary, stages.Next(), follow);
   OutwardTriangles outward =
-    FindOutward(mesh, rings.Vertices, options.RecoverBoundary, progress.Between(0.75, 0.95));
+    FindOutward(mesh, rings.Vertices, options.RecoverBoundary, stages.Next());
   // An edge that follows the surface is counted once, also where a part of it had to be recovered.
   result.NumberOfRecoveredEdges =
     follow != Following::None ? rings.NumberOfFollowedEdges : outward.NumberOfRecoveredEdges;
@@ -339,17 +345,17 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
     std::fill(outward.IsOutward.begin(), outward.IsOutward.end(), char(0));
     std::fill(changes.IsOutward.begin(), changes.IsOutward.end(), char(0));
   }
-  result.OnBoundary = VerticesOf(mesh, outward.IsOnBoundary, progress.Between(0.95, 0.955));
+  result.OnBoundary = VerticesOf(mesh, outward.IsOnBoundary, stages.Next());
   MarkBordersAround(mesh, rings.Vertices, before + static_cast<Index>(rings.Inserted.size()), list,
-    border, progress.Between(0.955, 0.96), result.OnBoundary);
+    border, stages.Next(), result.OnBoundary);
+  const Progress testing = stages.Next();
   if (options.Test == OutwardTest::InwardNormal)
   {
     // Before the published test, which keeps triangles that no boundary touches, and so hides this.
     CheckEnclosed(list, outward.IsOutward, lines.Points, result.Boundary);
-    ApplyInwardNormalTest(
-      mesh, outward.IsOnBoundary, outward.IsOutward, progress.Between(0.96, 0.97));
+    ApplyInwardNormalTest(mesh, outward.IsOnBoundary, outward.IsOutward, testing);
   }
-  PutBack(list, near, mesh, progress.Between(0.97, 1.0), changes);
+  PutBack(list, near, mesh, stages.Next(), changes);
   PutBackFlags(near, std::move(outward.IsOutward), changes);
   PutBackInserted(near, mesh, rings, changes, result);
   if (!known)
@@ -366,9 +372,9 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
 /** What an extracted boundary leaves out. @param[in] all  if it leaves out all */
 Message LossOf(const ExtractedBoundary& found, bool all)
 {
-  const auto percent = [](double part) {
+  const auto percent = [](double share) {
     std::ostringstream text;
-    text << std::fixed << std::setprecision(1) << 100.0 * part;
+    text << std::fixed << std::setprecision(1) << 100.0 * share;
     return text.str();
   };
   const std::string tolerance = ToText(found.GapTolerance, 4);
@@ -416,23 +422,24 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   Changes& changes, Trimmed& result)
 {
   const bool isExact = options.Test == OutwardTest::Exact;
+  Stages stages(progress, { isExact ? 60.0 : 0.0, isExact ? 40.0 : 100.0 });
+  const Progress measuring = stages.Next(), rest = stages.Next();
+  // After a sweep that failed; or from the start, and then the published test follows.
+  Stages withMesh = isExact ? Stages(rest, { 25, 50, 25 }) : Stages(rest, { 45, 45, 5, 2, 3 });
   MeasuredTriangles measured;
   ExtractedBoundary found;
   Mesh mesh; // of all triangles, if the sweep fails
   // The sweep proves and measures the triangles in one pass without making half-edges.
-  if (isExact &&
-    MeasureBySweep(list, options.NumberOfThreads, progress.Between(0.0, 0.6), measured))
+  if (isExact && MeasureBySweep(list, options.NumberOfThreads, measuring, measured))
   {
-    found = FindOutline(std::move(measured), ExtractionOf(options, progress.Between(0.6, 1.0)));
+    found = FindOutline(std::move(measured), ExtractionOf(options, rest));
   }
   else
   {
     // The sweep may have filled a part of it.
     measured = MeasuredTriangles();
-    // After a sweep that failed, or from the start.
-    const double begin = isExact ? 0.6 : 0.0, proven = isExact ? 0.7 : 0.45;
-    mesh = ProvenMesh(list, options.NumberOfThreads, progress.Between(begin, proven));
-    found = ExtractBoundary(mesh, ExtractionOf(options, progress.Between(proven, 0.9)));
+    mesh = ProvenMesh(list, options.NumberOfThreads, withMesh.Next());
+    found = ExtractBoundary(mesh, ExtractionOf(options, withMesh.Next()));
   }
   if (found.Vertices.Count() == 0)
   {
@@ -446,15 +453,15 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
     // about what the outline leaves out would not be of this result.
     result.Warning = Message();
     OutwardTriangles outward =
-      FindOutward(mesh, result.Boundary, options.RecoverBoundary, progress.Between(0.9, 0.95));
+      FindOutward(mesh, result.Boundary, options.RecoverBoundary, withMesh.Next());
     isOutward = std::move(outward.IsOutward);
-    ApplyInwardNormalTest(mesh, outward.IsOnBoundary, isOutward, progress.Between(0.95, 0.97));
+    ApplyInwardNormalTest(mesh, outward.IsOnBoundary, isOutward, withMesh.Next());
     result.NumberOfPointsLeftOut = 0;
   }
   if (mesh.NumberOfTriangles() > 0)
   {
     // Triangles may have been reoriented.
-    PutBack(list, std::nullopt, mesh, progress.Between(0.97, 1.0), changes);
+    PutBack(list, std::nullopt, mesh, withMesh.Next(), changes);
   }
   changes.IsOutward = std::move(isOutward);
 }
@@ -493,6 +500,7 @@ void CopyCorners(const TriangleList& list, const Changes& changes, Index begin, 
 void WriteSides(const TriangleList& list, const Changes& changes, const TrimOptions& options,
   const Progress& progress, Trimmed& result)
 {
+  Stages stages(progress, { 10, 90 });
   const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
   const std::vector<char>& flags = changes.IsOutward;
   const Index all = static_cast<Index>(flags.size());
@@ -506,7 +514,7 @@ void WriteSides(const TriangleList& list, const Changes& changes, const TrimOpti
     outwardBefore[range + 1] =
       static_cast<Index>(std::count(flags.begin() + begin, flags.begin() + end, char(1)));
   };
-  ForEachRange(all, threads, progress.Between(0.0, 0.1), count, atOnce);
+  ForEachRange(all, threads, stages.Next(), count, atOnce);
   std::partial_sum(outwardBefore.begin(), outwardBefore.end(), outwardBefore.begin());
   const Index sizes[2] = { all - outwardBefore[ranges], outwardBefore[ranges] };
   result.NumberOfOutwardTriangles = sizes[1];
@@ -547,17 +555,18 @@ void WriteSides(const TriangleList& list, const Changes& changes, const TrimOpti
       t = end;
     }
   };
-  ForEachRange(all, threads, progress.Between(0.1, 1.0), write, atOnce);
+  ForEachRange(all, threads, stages.Next(), write, atOnce);
 }
 
 /** @param[in] find  finds the changes, and the rest of the result */
 template <typename Find>
 Trimmed TrimBy(const TriangleList& triangles, const TrimOptions& options, const Find& find)
 {
+  Stages stages(options.Monitor, { 95, 5 });
   Trimmed result;
   Changes changes;
-  find(options.Monitor.Between(0.0, 0.95), changes, result);
-  WriteSides(triangles, changes, options, options.Monitor.Between(0.95, 1.0), result);
+  find(stages.Next(), changes, result);
+  WriteSides(triangles, changes, options, stages.Next(), result);
   Report(options.Monitor, 1.0);
   return result;
 }

@@ -102,6 +102,30 @@ TEST(Progress, OfPartsDoesNotFallWhereTheyMeet)
   }
 }
 
+TEST(Progress, OfStagesGoesOnWhereTheLastOneEnded)
+{
+  double reported = 0.0;
+  const Progress whole = [&reported](double fraction) {
+    reported = fraction;
+    return true;
+  };
+  const auto expect = [&reported](const Progress& stage, double begin, double end) {
+    stage(0.0);
+    EXPECT_EQ(reported, begin);
+    stage(1.0);
+    EXPECT_EQ(reported, end);
+  };
+  Stages stages(whole, { 15, 0, 5, 80, 0 });
+  expect(stages.Next(), 0.0, 0.15);
+  expect(stages.Next(), 0.15, 0.15);
+  expect(stages.Next(), 0.15, 0.2);
+  // Of a stage, in other units.
+  Stages parts(stages.Next(), { 1, 3 });
+  expect(parts.Next(), 0.2, 0.4);
+  expect(parts.Next(), 0.4, 1.0);
+  expect(stages.Next(), 1.0, 1.0);
+}
+
 TEST(Progress, IsHeardOfEachThousandthAndTwentyTimesASecond)
 {
   using Clock = ReportPace::Clock;

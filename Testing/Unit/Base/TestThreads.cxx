@@ -30,7 +30,7 @@ void WorkFor(double milliseconds)
 }
 } // namespace
 
-TEST(Parallel, DoesEachPieceOnceAndReportsFromTheCaller)
+TEST(Parallel, DoesEachTaskOnceAndReportsFromTheCaller)
 {
   for (const int threads : { 1, 2, 4 })
   {
@@ -48,7 +48,7 @@ TEST(Parallel, DoesEachPieceOnceAndReportsFromTheCaller)
         ++reports;
         return true;
       };
-      ForEachPiece(count, threads, progress, [&](Index i) {
+      ForEachTask(count, threads, progress, [&](Index i) {
         WorkFor(4.0);
         ++times[i];
       });
@@ -61,7 +61,7 @@ TEST(Parallel, DoesEachPieceOnceAndReportsFromTheCaller)
   }
 }
 
-TEST(Parallel, ThrowsWhatTheFirstPieceThatFailedHasThrown)
+TEST(Parallel, ThrowsWhatTheFirstTaskThatFailedHasThrown)
 {
   for (const int threads : { 1, 2, 4 })
   {
@@ -69,14 +69,14 @@ TEST(Parallel, ThrowsWhatTheFirstPieceThatFailedHasThrown)
     {
       try
       {
-        ForEachPiece(1000, threads, Progress(), [&](Index piece) {
-          if (piece == 20)
+        ForEachTask(1000, threads, Progress(), [&](Index task) {
+          if (task == 20)
           {
             WorkFor(0.1); // later ones fail first
           }
-          if (piece >= 20)
+          if (task >= 20)
           {
-            throw std::runtime_error(std::to_string(piece));
+            throw std::runtime_error(std::to_string(task));
           }
         });
         FAIL() << "nothing was thrown";
@@ -95,7 +95,7 @@ TEST(Parallel, StopsBetweenRounds)
   {
     std::atomic<int> done{ 0 };
     int reports = 0;
-    EXPECT_THROW(ForEachPiece(
+    EXPECT_THROW(ForEachTask(
                    1000, threads, [&](double) { return ++reports < 3; },
                    [&](Index) {
                      WorkFor(1.0);
@@ -109,18 +109,18 @@ TEST(Parallel, StopsBetweenRounds)
 
 TEST(Parallel, EndsARoundAfterSomeWorkHoweverFastItIs)
 {
-  constexpr Index pieces = 4000;
+  constexpr Index tasks = 4000;
   Index done = 0;
   testing_work::Silence silence;
   InRounds(
     1, silence.Monitor(), [] { return 0.5; },
     [&](Index, const Round& round) {
-      while (done < pieces && !round.IsOver())
+      while (done < tasks && !round.IsOver())
       {
         CountWork(1000);
         ++done;
       }
-      return done < pieces;
+      return done < tasks;
     });
   EXPECT_LT(silence.Longest, 1100000u);
   EXPECT_GE(silence.Reports, 4);
@@ -131,12 +131,12 @@ TEST(Parallel, CountsTheWorkOfAllThreads)
   for (const int threads : { 1, 2, 4 })
   {
     const std::size_t work = testing_work::WorkOf([&]() {
-      ForEachPiece(100, threads, [](Index piece) {
+      ForEachTask(100, threads, [](Index task) {
         for (const Index step : Counted(100000))
         {
           EXPECT_LT(step, 100000);
         }
-        CountWork(static_cast<std::size_t>(piece));
+        CountWork(static_cast<std::size_t>(task));
       });
     });
     // Of what other threads have done, a part is summed up later.
@@ -221,14 +221,14 @@ TEST(Parallel, GoesOnInRoundsUntilNothingIsLeft)
 TEST(Parallel, WithOneThreadIsALoopThatEndsAtTheFirstFailure)
 {
   std::vector<Index> order;
-  const auto failAtTwo = [&order](Index piece) {
-    order.push_back(piece);
-    if (piece == 2)
+  const auto failAtTwo = [&order](Index task) {
+    order.push_back(task);
+    if (task == 2)
     {
       throw std::runtime_error("2");
     }
   };
-  EXPECT_THROW(ForEachPiece(5, 1, failAtTwo), std::runtime_error);
+  EXPECT_THROW(ForEachTask(5, 1, failAtTwo), std::runtime_error);
   EXPECT_EQ(order, (std::vector<Index>{ 0, 1, 2 }));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SmallPieces.h"
+#include "SmallComponents.h"
 
 #include "Kernel/Base/Base.h"
 #include "Spacings.h"
@@ -15,23 +15,23 @@ namespace elevation
 namespace
 {
 
-/** What is known of the pieces before their vertices are counted. */
-struct PieceSizes
+/** What is known of the components before their vertices are counted. */
+struct ComponentSizes
 {
-  PieceSizes(const Mesh& mesh, const Components& pieces, const std::vector<char>& keep,
+  ComponentSizes(const Mesh& mesh, const Components& components, const std::vector<char>& keep,
     const Progress& progress)
-    : Triangles(pieces.Count(), 0)
-    , Continues(pieces.Count(), 0)
+    : Triangles(components.Count(), 0)
+    , Continues(components.Count(), 0)
   {
     ForEachStretch(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
-        const Index piece = pieces.ComponentOf(t);
-        this->Triangles[piece] += keep[t];
+        const Index component = components.ComponentOf(t);
+        this->Triangles[component] += keep[t];
         for (Index h = 3 * t; h < 3 * t + 3; ++h)
         {
           // See PartialMesh: the neighbour has not been taken.
-          this->Continues[piece] |= mesh.Twin(h) == h;
+          this->Continues[component] |= mesh.Twin(h) == h;
         }
       }
     });
@@ -39,54 +39,56 @@ struct PieceSizes
 
   /**
    * Whether it has more triangles than so few vertices can form. The limit is generous: six form at
-   * most seven. The vertices of smaller pieces are counted.
+   * most seven. The vertices of smaller components are counted.
    */
-  bool IsLarge(Index piece) const { return this->Triangles[piece] > 3 * SpacingNeighbor; }
+  bool IsLarge(Index component) const { return this->Triangles[component] > 3 * SpacingNeighbor; }
 
   std::vector<Index> Triangles;
   std::vector<char> Continues; ///< beyond the mesh
 };
 
-/** The pairs (piece, vertex) of pieces that may be small, each once; sorted. */
-std::vector<std::pair<Index, Index>> CornersOfSmall(const Mesh& mesh, const Components& pieces,
-  const PieceSizes& sizes, const std::vector<char>& keep, const Progress& progress)
+/** The pairs (component, vertex) of components that may be small, each once; sorted. */
+std::vector<std::pair<Index, Index>> CornersOfSmall(const Mesh& mesh, const Components& components,
+  const ComponentSizes& sizes, const std::vector<char>& keep, const Progress& progress)
 {
-  // Listing the corners of pieces that may be small is cheap; counting all vertices would not be.
+  Stages stages(progress, { 70, 30 });
+  // Listing the corners of components that may be small is cheap; counting all vertices would not
+  // be.
   std::vector<std::pair<Index, Index>> corners;
-  ForEachStretch(mesh.NumberOfTriangles(), progress.Between(0.0, 0.7), [&](Index begin, Index end) {
+  ForEachStretch(mesh.NumberOfTriangles(), stages.Next(), [&](Index begin, Index end) {
     for (Index h = 3 * begin; h < 3 * end; ++h)
     {
-      const Index piece = pieces.ComponentOf(Mesh::Triangle(h));
-      if (keep[Mesh::Triangle(h)] && !sizes.IsLarge(piece))
+      const Index component = components.ComponentOf(Mesh::Triangle(h));
+      if (keep[Mesh::Triangle(h)] && !sizes.IsLarge(component))
       {
-        corners.emplace_back(piece, mesh.Origin(h));
+        corners.emplace_back(component, mesh.Origin(h));
       }
     }
   });
-  Sort(corners.begin(), corners.end(), std::less<std::pair<Index, Index>>(),
-    progress.Between(0.7, 1.0));
+  Sort(corners.begin(), corners.end(), std::less<std::pair<Index, Index>>(), stages.Next());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   return corners;
 }
 
 } // namespace
 
-std::vector<Index> DropSmallPieces(
+std::vector<Index> DropSmallComponents(
   const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
 {
-  const Components pieces = FindComponents(mesh, progress.Between(0.0, 0.5), [&](Index h) {
+  Stages stages(progress, { 50, 20, 30 });
+  const Components components = FindComponents(mesh, stages.Next(), [&](Index h) {
     return keep[Mesh::Triangle(h)] == keep[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
   });
-  const PieceSizes sizes(mesh, pieces, keep, progress.Between(0.5, 0.7));
+  const ComponentSizes sizes(mesh, components, keep, stages.Next());
   const std::vector<std::pair<Index, Index>> corners =
-    CornersOfSmall(mesh, pieces, sizes, keep, progress.Between(0.7, 1.0));
-  // A surface of small pieces only keeps them all.
+    CornersOfSmall(mesh, components, sizes, keep, stages.Next());
+  // A surface of small components only keeps them all.
   bool hasLarge = false;
-  for (Index piece = 0; piece < pieces.Count(); ++piece)
+  for (Index component = 0; component < components.Count(); ++component)
   {
-    hasLarge = hasLarge || sizes.IsLarge(piece);
+    hasLarge = hasLarge || sizes.IsLarge(component);
   }
-  std::vector<char> isSmall(pieces.Count(), 0);
+  std::vector<char> isSmall(components.Count(), 0);
   std::vector<Index> unknown;
   for (auto first = corners.begin(); first != corners.end();)
   {
@@ -104,7 +106,7 @@ std::vector<Index> DropSmallPieces(
   }
   for (Index t = 0; hasLarge && unknown.empty() && t < mesh.NumberOfTriangles(); ++t)
   {
-    keep[t] = keep[t] && !isSmall[pieces.ComponentOf(t)];
+    keep[t] = keep[t] && !isSmall[components.ComponentOf(t)];
   }
   return unknown;
 }

@@ -3,13 +3,14 @@
 /**
  * @file
  *
+ * Components of a surface with too few vertices for spacings of their own, such as lone points far
+ * away from the others.
+ *
  * A lone point has triangles to all sides, and its spacing is the distance to the others: measured
  * by that, they are as good as any surface. So the number of vertices decides.
- * Pieces of a surface with too few vertices for spacings of their own, such as lone points far away
- * from the others.
  */
-#ifndef elevation_Trim_SmallPieces_h
-#define elevation_Trim_SmallPieces_h
+#ifndef elevation_Trim_SmallComponents_h
+#define elevation_Trim_SmallComponents_h
 
 #include "Kernel/Mesh/Mesh.h"
 
@@ -19,12 +20,13 @@ namespace elevation
 {
 
 /**
- * Drops pieces with at most SpacingNeighbor vertices, if others have more.
+ * Drops components with at most SpacingNeighbor vertices, if others have more.
  * @param[in,out] keep  one per triangle: whether it is surface
- * @return vertices of pieces that look small but continue beyond the mesh; if any, nothing is done
+ * @return vertices of components that look small but continue beyond the mesh; if any, nothing is
+ *         done
  * @throws Aborted, std::bad_alloc
  */
-std::vector<Index> DropSmallPieces(
+std::vector<Index> DropSmallComponents(
   const Mesh& mesh, std::vector<char>& keep, const Progress& progress);
 
 } // namespace elevation
