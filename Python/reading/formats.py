@@ -256,6 +256,7 @@ FOREIGN = tuple(
          "is a spreadsheet or document of Office (.xlsx, .ods): save the table as .csv"),
         (rb"\xd0\xcf\x11\xe0", "is a spreadsheet or document of old Office (.xls): save the table as .csv"),
         (rb"7z\xbc\xaf|Rar!", "is an archive of 7-Zip or RAR: unpack it"),
+        (rb"STORMGRID_BINARY", "is a Storm grid, which is not read: export it as IRAP, ZMAP+ or CPS-3"),
         (rb"MATLAB 5\.0|.{512}\x89HDF[^\n]*MATLAB", "is a MATLAB file: save x, y and z by writematrix() as .csv"),
         (rb"PAR1", "is a Parquet table: save it as .csv, in pandas by to_csv()"),
         (rb"\x80[\x02-\x05]", "is a pickle of Python: save the array by numpy.save()"),

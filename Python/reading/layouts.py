@@ -214,8 +214,10 @@ def find_names(layout, head, width, one_may_lack=True):
     one_may_lack  whether the first column may have none
 
     They stand in one line, with the separator of the data or another; or a line each, numbered as
-    "3: X", or between BEGIN HEADER and END HEADER.
+    "3: X", or below their count as GSLIB has them, or between BEGIN HEADER and END HEADER.
     """
+    if len(head) > 2 and head[1].split()[:1] == [str(width)] and len(head[2:]) == width:
+        return [name.strip() for name in head[2:]]
     matches = [match for match in map(NUMBERED_NAME.match, head) if match]
     found = {int(match.group(1)): match.group(2).strip('" ') for match in matches}
     candidates = [[found[i] for i in range(1, width + 1) if i in found]]
