@@ -18,11 +18,12 @@ from .table_words import (
     CLEAR, CLEAR_OF_POOR, COLOURS, FINNISH, GOOD, HIGHEST, LINES_AS_AXES, MOST_FEET, MOST_STEP_OF_LINES, PARTS_OF_TIME,
     SEISMIC, TIMES, WEIGHTS
 )
-from .nulls import usual_nulls
+from .nulls import FAR, usual_nulls
 from ..messages import FileError
 from ..names import option
 
 SHOWN_ROWS, SHOWN_COLUMNS = 3, 12  # below a question
+MOST_JUDGED = 30  # columns, from the left: each is compared with each
 MOST_COLUMNS = 12  # of rows of points without names; with more, they are a grid
 ROWS_OF_GRID = 20  # times its columns, and no more
 NOT_DECIMALS = re.compile(r"^[^.,]*[.,]?|[eEdD].*$")
@@ -289,7 +290,7 @@ class Choice:
             self.ask([], f"{count} columns of numbers are needed, and there {are} {len(usable)}")
         if not self.names and len(usable) == self.width and count == 3:
             self.ask_for_grid()
-        left = self.without_others(usable)
+        left = self.without_others(usable[:MOST_JUDGED])
         self.decide(self.scored(left))
         for i in left[: left.index(self.indices[0])]:
             each = self.whole[i] and len(numpy.unique(self.finite[i])) == len(self.finite[i])
@@ -463,7 +464,7 @@ class Choice:
     def follow_from(self, given, wanted, are_rounded=False):
         """Whether columns are a turned and stretched copy of others, to a hundredth; or are rounded: the
         whole numbers nearest to one, as lines near points."""
-        rows = self.values[numpy.isfinite(self.values[:, [*given, *wanted]]).all(axis=1)]
+        rows = self.values[(abs(self.values[:, [*given, *wanted]]) < FAR).all(axis=1)]
         if len(rows) < 6:
             return False
         base, goal = (rows[:, list(some)] - rows[:, list(some)].mean(axis=0) for some in (given, wanted))

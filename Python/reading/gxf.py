@@ -11,7 +11,7 @@ from .horizons import numbers, read_bytes
 from .irap import rowwise_cloud
 
 KEYWORD = re.compile(rb"(?m)^#([A-Z]+)[ \t]*\r?\n[ \t]*([^\r\n#]*)")
-GRID = re.compile(rb"(?m)^#GRID[ \t]*\r?\n")
+GRID = re.compile(rb"(?m)^#GRID[ \t]*\r?$")
 
 
 def read_grid(path, options):

@@ -16,7 +16,7 @@ from .table_words import (
 from ..messages import FileError
 
 
-FORTRAN = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+))[dD]([-+]?\d+)")  # 1.5D+03
+FORTRAN = re.compile(r"([-+]?(?:\d+(?:\.\d*)?|\.\d+))[dD]([-+]?\d+)")  # 1.5D+03
 
 
 @dataclasses.dataclass(frozen=True)

@@ -83,6 +83,13 @@ class Doubts(Tables):
                     asked += 1
         self.assertLess(asked, 50)  # where numbers of lines stand before z, most
 
+    def test_hundreds_of_named_columns_are_judged_from_the_left(self):
+        """Each of a thousand compared with each would have no end."""
+        names = " ".join(f"v{i}" for i in range(1000)) + "\n"
+        rows = [" ".join(str(i * j % 97) for i in range(1, 1001)) + "\n" for j in range(1, 51)]
+        cloud = self.read(names + "".join(rows))
+        self.assertEqual(cloud.points.GetNumberOfPoints(), 50)
+
     def test_point_names_and_a_code_leave_the_order_open(self):
         generator = numpy.random.default_rng(2)
         for names in ([f"P{i}" for i in range(40)], generator.permutation(40).tolist()):
