@@ -71,8 +71,7 @@ def find_layout(path, lines, needed):
         if re.match(pattern, head):
             lacks = what in (ESRI_GRID, SURFER_GRID) and importlib.util.find_spec("osgeo") is None
             advice = "; install python3-gdal to read it" if lacks else ""
-            what += ", not a table of points" * (":" not in what)
-            raise FileError(f"{path}: is {what.replace('{path}', path)}{advice}")
+            raise FileError(f"{path}: is {what}, not a table of points{advice}")
     counts = {layout: [layout.numbers(line) for line in sample] for layout in LAYOUTS}
     if not sample:
         raise FileError(f"{path}: holds no data, only blank or comment lines")

@@ -137,15 +137,6 @@ ESRI_GRID, SURFER_GRID = "an ESRI ASCII grid", "a Surfer grid"  # which GDAL rea
 NO_TABLES = (
     (r"ncols\b", ESRI_GRID),
     (r"dsaa\b", SURFER_GRID),
-    (r"fsasci\b", "a CPS-3 grid"),
-    (r"gocad\b", "a GOCAD file"),
-    (r"h\d{4}[a-z].*\n(.*\n)*?[a-z]", "a file of UKOOA P1/90: awk '/^[^H]/ {print substr($0,47,9), substr($0,56,9), "
-     "substr($0,65,6)}' {path} > points.txt takes x, y and depth out of it"),
-    (r"[^,\n]*,\s*\d{1,2}-[a-z]{3}-\d{2}.*\n\s*0,\s*-?\d+\.\d+,", "a Surpac string file, with y before x: awk -F, '$1 + 0 > 0 "
-     "{print $3, $2, $4}' {path} > points.txt takes x, y and z out of it"),
-    (r"\*?11\d{4}[+-]", "a Leica GSI file: export x, y and z as text from the instrument or its program"),
-    (r"\d+\n\d+\n(\S+ +\S+ +\S+ *\n){4}(\S+ +\S+ +\S+ +\S+ *\n){4}", "a Leica PTX scan: convert it to .las or "
-     ".ply, by CloudCompare -O {path} -C_EXPORT_FMT PLY -SAVE_CLOUDS"),
     (r"<[?!a-z]", "XML or HTML"),
     (r"[{\[]\s*[\"{\[]", "JSON"),
 )
