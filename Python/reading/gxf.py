@@ -17,7 +17,10 @@ GRID = re.compile(rb"(?m)^#GRID[ \t]*\r?$")
 def read_grid(path, options):
     """Rows of a grid that may be turned about its first node."""
     text = read_bytes(path)
-    begin = GRID.search(text).end()
+    grid = GRID.search(text)
+    if not grid:
+        raise FileError(f"{path}: is damaged: its line #GRID is missing")
+    begin = grid.end()
     found = {key.decode(): value.replace(b'"', b"").split() for key, value in KEYWORD.findall(text[:begin])}
 
     def value(key, default):

@@ -129,7 +129,7 @@ def read_zmap(path, options):
     values = numbers(body, options.progress)
     if len(values) != rows * columns:  # numbers of fixed width may touch
         lines = [line[start - 1 :].rstrip() for line in body.splitlines()]
-        fields = (line[i : i + width] for line in lines for i in range(0, len(line), width))
+        fields = (line[i : i + width] for line in lines for i in range(0, len(line), max(width, 1)))
         values = numpy.array(list(floats(fields)))
     check_count(path, len(values), max(rows, 0) * columns)
     x, y = numpy.linspace(x_min, x_max, columns), numpy.linspace(y_max, y_min, rows)

@@ -131,7 +131,7 @@ MISSING = set(
     "na n/a #n/a n.a. null none nil nodata no-data missing void - -- ? * -nan nan(ind)".split()
 ) | {""}
 SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", None: "blanks"}
-NUMBERED_NAME = re.compile(r"(?:field|column|col)?\W*(\d+)\s*[:=.)]?\s*(\S.*)", re.I)  # "3: X" in a header
+NUMBERED_NAME = re.compile(r"(?:field|column|col)?\W*(\d{1,4})(?!\d)\s*[:=.)]?\s*(\S.*)", re.I)  # "3: X" in a header
 ESRI_GRID, SURFER_GRID = "an ESRI ASCII grid", "a Surfer grid"  # which GDAL reads
 # How files begin that are not tables, and what they are.
 NO_TABLES = (
