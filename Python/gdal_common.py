@@ -75,7 +75,10 @@ def kind_of(path, what):
     gdal = gdal_module()
     flags = gdal.OF_RASTER if what == "raster" else gdal.OF_VECTOR
     with quiet():
-        driver = gdal.IdentifyDriverEx(path, flags, drivers(what))
+        try:
+            driver = gdal.IdentifyDriverEx(path, flags, drivers(what))
+        except RuntimeError as error:  # some drivers look further than at the beginning
+            raise FileError(f"{path}: is cut off or damaged: {error}") from None
         kind = driver.ShortName if driver else None
         if what == "vectors" and kind in ("GPKG", "SQLite"):
             # These hold rasters too.

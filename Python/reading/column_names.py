@@ -74,6 +74,17 @@ def _axis_meaning(words, joined, inside):
     return Meaning(axis, rank, max(direction for *_, direction in found), "", tuple(sorted(beside)))
 
 
+def alike_but_for_axis(names):
+    """{name: Meaning} of names that differ by x and y, and z, alone, as "xcollar" and "ycollar" do."""
+    found = {}
+    for name in names:
+        for at in (match.start() for match in re.finditer("x", name)):
+            alike = [name[:at] + axis + name[at + 1 :] for axis in "xyz"]
+            if alike[1] in names:
+                found.update({one: Meaning(axis, 8) for axis, one in zip("xyz", alike)})
+    return found
+
+
 def length_unit(name):
     """The unit of length in a column's name, as "feet" for "Z (ft)" and "elev_ft", or ""."""
     outside, inside = in_brackets(name)

@@ -13,16 +13,17 @@ import re
 
 import numpy
 
-from .column_names import Meaning, in_brackets, meaning, plain
+from .column_names import Meaning, alike_but_for_axis, in_brackets, meaning, plain
 from .table_words import (
-    CLEAR, CLEAR_OF_POOR, COLOURS, FINNISH, GOOD, HIGHEST, LINES_AS_AXES, MOST_STEP_OF_LINES, PARTS_OF_TIME, SEISMIC,
-    TIMES, WEIGHTS
+    CLEAR, CLEAR_OF_POOR, COLOURS, FINNISH, GOOD, HIGHEST, LINES_AS_AXES, MOST_FEET, MOST_STEP_OF_LINES, PARTS_OF_TIME,
+    SEISMIC, TIMES, WEIGHTS
 )
-from .nulls import usual_nulls
+from .nulls import FAR, usual_nulls
 from ..messages import FileError
 from ..names import option
 
 SHOWN_ROWS, SHOWN_COLUMNS = 3, 12  # below a question
+MOST_JUDGED = 30  # columns, from the left: each is compared with each
 MOST_COLUMNS = 12  # of rows of points without names; with more, they are a grid
 ROWS_OF_GRID = 20  # times its columns, and no more
 NOT_DECIMALS = re.compile(r"^[^.,]*[.,]?|[eEdD].*$")
@@ -117,7 +118,8 @@ class Choice:
         self.high = [values.max(initial=-math.inf) for values in self.finite]
         self.spans = [float(max(high - low, 0.0)) for low, high in zip(self.low, self.high)]
         self.largest = [max(abs(low), abs(high)) for low, high in zip(self.low, self.high)]
-        decimals = [[len(NOT_DECIMALS.sub("", word)) for word in row] for row in self.rows[:500]]
+        some = self.rows[:: 1 + len(self.rows) // 500]
+        decimals = [[len(NOT_DECIMALS.sub("", word)) for word in row] for row in some]
         self.decimals = numpy.max(decimals, axis=0).tolist()
         self.whole = [
             count == 0 and len(values) > 0 and bool((values == numpy.rint(values)).all())
@@ -132,6 +134,7 @@ class Choice:
         def mean(others):
             self.meanings = [others.get(name, m) for name, m in zip(letters, self.meanings)]
 
+        mean(alike_but_for_axis([name for name, known in zip(letters, self.meanings) if known == Meaning()]))
         if not {"r", "g", "b"} <= set(letters):  # single letters are colours only together
             mean({letter: Meaning() for letter in "rgb"})
         if set(FINNISH) <= set(letters) and not set(letters) & set("nexy"):
@@ -169,15 +172,21 @@ class Choice:
     # -- readings
 
     def decide(self, readings, why="the columns can be read in two ways"):
-        """Sets the indices to the reading of the best score; asks where the next is about as good.
+        """Sets the indices to the reading of the best score; asks where the next is about as good, or z no height.
 
         readings  {indices: score}, in the order in which they are shown
         """
         best, *others = sorted(readings, key=readings.get, reverse=True)
         clear = CLEAR if readings[best] >= GOOD else CLEAR_OF_POOR
+        shown = [one for one in readings if one in (best, *others[:1])]
         if others and readings[best] - readings[others[0]] < clear:
-            self.ask([one for one in readings if one in (best, others[0])], why)
+            self.ask(shown, why)
+        if self.needed == 3 and not self.meanings[best[2]].axis and self.is_too_high(best[2]):
+            self.ask(shown, f"column {self.called(best[2])} is higher than any place, so z may lack or stand elsewhere")
         self.indices = list(best)
+
+    def is_too_high(self, i):
+        return len(self.finite[i]) > 0 and abs(self.finite[i]).min() > HIGHEST
 
     def ask(self, readings, why, other=""):
         """Raises the error that shows readings as options, or another command, and the first rows under the columns'
@@ -201,19 +210,21 @@ class Choice:
         if not any(named.values()):
             return False
         missing = [axis for axis in self.axes if not named[axis]]
-        free = self.free_columns(sum(named.values(), []), len(missing)) if missing else []
+        free, are_likely = self.free_columns(sum(named.values(), []), len(missing)) if missing else ([], True)
         known = ", ".join(f"{a} = {self.called(c[0])}" for a, c in named.items() if c)
         why = f"the names give {known}, but not {' and '.join(missing)}"
         if len(free) < len(missing):
             self.ask([], f"{why}; no column is left for it")
-        readings = {
-            indices: GOOD + WEIGHTS["one pair"] * self.is_pair(*indices[:2])
+        readings = {  # the values only choose which two are shown
+            indices: GOOD + WEIGHTS["one pair"] * self.is_pair(*indices[:2]) + 1e-3 * self.score(indices)
             for indices in itertools.product(*(named[axis] or free for axis in self.axes))
             if len(set(indices)) == self.needed
         }
         doubtful = [axis for axis in self.axes if len(named[axis]) > 1]
         if missing:
             why += f"; it may be {self.listed(free)}"
+            if not are_likely:
+                self.ask(sorted(readings, key=readings.get)[-1:-3:-1], why)
         elif doubtful:
             several = [i for axis in doubtful for i in named[axis]]
             why = f"{self.listed(several)} may all be {' and '.join(doubtful)}"
@@ -234,15 +245,15 @@ class Choice:
         return bool(x.axis and y.axis) and x.beside == y.beside and abs(x.rank - y.rank) < 2
 
     def free_columns(self, taken, count):
-        """Columns for axes that have no name of their own."""
+        """Columns for axes that have no name of their own, and whether they are likely."""
         free = [i for i in self.numeric if i not in taken and not self.meanings[i].axis]
         for roles in (("",), ("a measure", "a code")):
             others = [i for i in free if self.meanings[i].role in roles]
             if others:
                 is_other = self.times(others)
                 likely = [i for i in others if i not in is_other and not self.is_id(i)]
-                return likely if len(likely) >= count else others
-        return []
+                return (likely, roles == ("",)) if len(likely) >= count else (others, False)
+        return [], False
 
     def look_at_names(self, missing):
         x, y = self.indices[:2]
@@ -279,7 +290,7 @@ class Choice:
             self.ask([], f"{count} columns of numbers are needed, and there {are} {len(usable)}")
         if not self.names and len(usable) == self.width and count == 3:
             self.ask_for_grid()
-        left = self.without_others(usable)
+        left = self.without_others(usable[:MOST_JUDGED])
         self.decide(self.scored(left))
         for i in left[: left.index(self.indices[0])]:
             each = self.whole[i] and len(numpy.unique(self.finite[i])) == len(self.finite[i])
@@ -314,11 +325,9 @@ class Choice:
             self.note(f"no column is named as {'x, y or z' if self.needed == 3 else 'x or y'}: {self.taken()}")
         if self.needed == 3 and not any(m.axis or m.role for m in self.meanings):
             for other in ((1, 2, 0), (2, 1, 0)):  # as z, x, y
-                readings.update({other: GOOD} if self.is_utm(*other[:2]) else {})
+                readings[other] = GOOD if self.is_utm(*other[:2]) else 0
             if self.may_be_latitude(*order):
                 readings = {(1, 0, 2): GOOD, order: GOOD}
-            if len(readings) == 1 and len(self.finite[2]) and abs(self.finite[2]).min() > HIGHEST:
-                self.ask([order, (1, 2, 0)], "the last column is higher than any place, so z may lack or stand first")
         self.decide(readings)
 
     def without_others(self, columns):
@@ -366,8 +375,10 @@ class Choice:
             place = WEIGHTS["a column is left out"] * (k - 1) if k else WEIGHTS["stands first"]
             readings[x, y, *z] = self.score((x, y, *z)) + place
             others = [i for i in columns[k + count :] if self.spans[i] > 0]
-            if z and others and self.counts_along(z[0]) and not self.may_count(x, y):
-                readings[x, y, *z] += WEIGHTS["z rises along lines"]
+            behind = columns[k + count : k + count + 1]
+            is_flat = z and self.spans[z[0]] == 0 and (not others or self.counts_along(behind[0]))
+            if is_flat or z and others and self.counts_along(z[0]) and not self.may_count(x, y):
+                readings[x, y, *z] += WEIGHTS["z is flat or rises along lines"]
                 for other in others:
                     behind = WEIGHTS["z behind lines"] + place
                     behind += WEIGHTS["a column is left out"] * self.counts_along(other)
@@ -389,9 +400,8 @@ class Choice:
             "x and y are of UTM": self.is_utm(x, y) or self.is_utm(y, x),
         }
         if z:
-            heights = abs(self.finite[z[0]])
             found["z spans less"] = spans[2] <= 10 * max(spans[:2])
-            found["z is higher than any place"] = len(heights) > 0 and heights.min() > HIGHEST
+            found["z is higher than any place"] = self.is_too_high(z[0])
         return sum(WEIGHTS[what] for what, is_so in found.items() if is_so)
 
     def steps(self, i):
@@ -454,7 +464,7 @@ class Choice:
     def follow_from(self, given, wanted, are_rounded=False):
         """Whether columns are a turned and stretched copy of others, to a hundredth; or are rounded: the
         whole numbers nearest to one, as lines near points."""
-        rows = self.values[numpy.isfinite(self.values[:, [*given, *wanted]]).all(axis=1)]
+        rows = self.values[(abs(self.values[:, [*given, *wanted]]) < FAR).all(axis=1)]
         if len(rows) < 6:
             return False
         base, goal = (rows[:, list(some)] - rows[:, list(some)].mean(axis=0) for some in (given, wanted))
@@ -502,29 +512,33 @@ class Choice:
     def east_and_north(self):
         """x and y of points with numbers: surveyors write the northing first.
 
-        Metres of UTM decide it. Otherwise a code behind z speaks for point, northing,
-        easting, elevation, code, and x,y,z as they stand is as likely. So is it behind dates, where
-        latitude and longitude stand.
+        Metres of UTM decide it, where they cannot be feet of the USA. Otherwise a code behind z speaks for point,
+        northing, easting, elevation, code, and x,y,z as they stand is as likely. So is it behind dates, where latitude
+        and longitude stand.
         """
         x, y, z = self.indices
         texts = [i for i in range(self.width) if self.share_of_text[i] > 0.5]
         has_ids = any(i < min(x, y, z) for i in texts)
         has_ids |= any(reason in (COUNTS_UP, EACH_ONCE) for reason in self.reasons.values())
         coded = any(i > max(x, y, z) for i in texts)
-        if has_ids and self.is_utm(y, x):
+        northing_first, northing_second = self.is_utm(y, x), self.is_utm(x, y)
+        is_sure = max(self.low[x], self.low[y]) > MOST_FEET
+        if has_ids and northing_first and is_sure:
             self.has_swapped, self.indices = True, [y, x, z]
             self.notes.append(
                 f"column {self.called(x)} is taken as northing and {self.called(y)} as "
                 "easting, by their sizes"
             )
-        elif has_ids and coded and not self.is_utm(x, y) or self.may_be_latitude(x, y, z):
+        elif has_ids and (coded and not (northing_second and is_sure) or northing_first) or self.may_be_latitude(x, y, z):
             self.ask([(y, x, z), (x, y, z)], "the columns can be read in two ways")
 
     def may_be_latitude(self, x, y, z):
         """Whether columns may be latitude and longitude in this order, and not the other way."""
         if self.largest[x] > 90 or self.largest[y] > 180 or min(self.decimals[x], self.decimals[y]) < 4:
             return False
-        wide = max(self.spans[x], self.spans[y])
+        places = self.values[:, [x, y]]
+        places = places[numpy.isfinite(places).all(axis=1) & places.any(axis=1)]  # 0 0: no place yet
+        wide = numpy.ptp(places, axis=0).max() if len(places) else 0.0
         words = " ".join(word for row in self.rows[:SHOWN_ROWS] for word in row)
         dated = re.search(r"\d{4}-\d\d-\d\d|\d:\d\d", words) is not None
         return PART_OF_TIME in self.reasons.values() or dated or wide < 0.1 * self.spans[z]

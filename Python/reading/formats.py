@@ -256,6 +256,7 @@ FOREIGN = tuple(
          "is a spreadsheet or document of Office (.xlsx, .ods): save the table as .csv"),
         (rb"\xd0\xcf\x11\xe0", "is a spreadsheet or document of old Office (.xls): save the table as .csv"),
         (rb"7z\xbc\xaf|Rar!", "is an archive of 7-Zip or RAR: unpack it"),
+        (rb"STORMGRID_BINARY", "is a Storm grid, which is not read: export it as IRAP, ZMAP+ or CPS-3"),
         (rb"MATLAB 5\.0|.{512}\x89HDF[^\n]*MATLAB", "is a MATLAB file: save x, y and z by writematrix() as .csv"),
         (rb"PAR1", "is a Parquet table: save it as .csv, in pandas by to_csv()"),
         (rb"\x80[\x02-\x05]", "is a pickle of Python: save the array by numpy.save()"),
@@ -269,6 +270,15 @@ FOREIGN = tuple(
         (rb"[^\n]{0,60}\$[A-Z]{2}(GGA|GLL|RMC|GNS|DBT|DBS|DPT|VTG|GSA|GSV|ZDA|HDT),",
          "is a log of NMEA sentences: gpsbabel -i nmea -f {path} -o gpx -F track.gpx makes heights of it, which track.gpx "
          "gives; soundings need a program for surveys, which writes x, y and depth"),
+        (rb"H\d{4}[A-Z][^\n]*\n([^\n]*\n)*?[A-Z]",
+         "is a file of UKOOA P1/90: awk '/^[^H]/ {print substr($0,47,9), substr($0,56,9), substr($0,65,6)}' {path} > "
+         "points.txt takes x, y and depth out of it"),
+        (rb"[^,\n]*,\s*\d{1,2}-[a-z]{3}-\d{2}[^\n]*\n\s*0,\s*-?\d+\.\d+,",
+         "is a Surpac string file, with y before x: awk -F, '$1 + 0 > 0 {print $3, $2, $4}' {path} > points.txt takes x, "
+         "y and z out of it"),
+        (rb"\s*\*?11\d{4}[+-]", "is a Leica GSI file: export x, y and z as text from the instrument or its program"),
+        (rb"\s*\d+\s*\n\s*\d+\s*\n(\s*\S+ +\S+ +\S+ *\r?\n){4}(\s*\S+ +\S+ +\S+ +\S+ *\r?\n){4}",
+         "is a Leica PTX scan: convert it to .las or .ply, by CloudCompare -O {path} -C_EXPORT_FMT PLY -SAVE_CLOUDS"),
         (rb"FTP NEW \d|((VER|INF|FTP|TND|PRJ) [^\n]*\n)+(DEV|POS|EC1|ECH|MSG) ",
          "is a raw file of HYPACK, whose soundings have no places yet: edit it in HYPACK and save it as .xyz"),
     )

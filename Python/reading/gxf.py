@@ -11,13 +11,16 @@ from .horizons import numbers, read_bytes
 from .irap import rowwise_cloud
 
 KEYWORD = re.compile(rb"(?m)^#([A-Z]+)[ \t]*\r?\n[ \t]*([^\r\n#]*)")
-GRID = re.compile(rb"(?m)^#GRID[ \t]*\r?\n")
+GRID = re.compile(rb"(?m)^#GRID[ \t]*\r?$")
 
 
 def read_grid(path, options):
     """Rows of a grid that may be turned about its first node."""
     text = read_bytes(path)
-    begin = GRID.search(text).end()
+    grid = GRID.search(text)
+    if not grid:
+        raise FileError(f"{path}: is damaged: its line #GRID is missing")
+    begin = grid.end()
     found = {key.decode(): value.replace(b'"', b"").split() for key, value in KEYWORD.findall(text[:begin])}
 
     def value(key, default):

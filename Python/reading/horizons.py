@@ -57,7 +57,7 @@ def floats(words):
 
 
 def check_count(path, found, count):
-    if found != count:
+    if found != count or not found:
         raise FileError(f"{path}: {count:,} values are announced, {found:,} found")
 
 
@@ -78,7 +78,6 @@ def roughness(z):
 def columnwise_cloud(path, x, y, values, is_null, name):
     """A grid whose columns go from west to east, each from north to south, as a Cloud. Its points are in the
     order of y."""
-    check_count(path, len(values), len(x) * len(y))
     values = numpy.where(is_null(values), numpy.nan, values)
     as_given, swapped = (roughness(values.reshape(shape)) for shape in ((len(x), len(y)), (len(y), len(x))))
     if as_given > MOST_ROUGHNESS * swapped:
@@ -96,17 +95,18 @@ def read_cps3_grid(path, options):
     text, words = read_bytes(path), {}
     head = CPS3_HEAD.match(text)
     for line in head.group().splitlines():
-        key, *values = line.split() or [b""]
-        words[key] = [float(v) for v in values if re.fullmatch(rb"[-+]?[\d.]+([eE][-+]?\d+)?", v)]
+        key, *words[key] = line.split() or [b""]
     try:
-        x_min, x_max, y_min, y_max = words[b"FSLIMI"][:4]
-        rows, columns = map(int, words[b"FSNROW"][:2])
+        x_min, x_max, y_min, y_max = map(float, words[b"FSLIMI"][:4])
+        rows, columns = (int(float(word)) for word in words[b"FSNROW"][:2])
         steps = (x_max - x_min) / max(columns - 1, 1), (y_max - y_min) / max(rows - 1, 1)
-        dx, dy = words.get(b"FSXINC", steps)[:2]
-    except (KeyError, ValueError):
+        dx, dy = map(float, words.get(b"FSXINC", steps)[:2])
+    except (KeyError, OverflowError, ValueError):
         raise FileError(f"{path}: is damaged: its FSLIMI, FSNROW or FSXINC is missing") from None
     values = numbers(text[head.end() :], options.progress)
-    null = 0.999 * min((value for value in words[b"FSASCI"] if value >= 1e20), default=1e30)
+    check_count(path, len(values), max(rows, 0) * columns)
+    given = (number for word in words[b"FSASCI"] for number in floats([word]) if number >= 1e20)
+    null = 0.999 * min(given, default=1e30)
     x, y = x_min + dx * numpy.arange(columns), y_min + dy * numpy.arange(rows)
     return columnwise_cloud(path, x, y, values, lambda z: z >= null, "CPS-3 grid")
 
@@ -129,8 +129,9 @@ def read_zmap(path, options):
     values = numbers(body, options.progress)
     if len(values) != rows * columns:  # numbers of fixed width may touch
         lines = [line[start - 1 :].rstrip() for line in body.splitlines()]
-        fields = (line[i : i + width] for line in lines for i in range(0, len(line), width))
+        fields = (line[i : i + width] for line in lines for i in range(0, len(line), max(width, 1)))
         values = numpy.array(list(floats(fields)))
+    check_count(path, len(values), max(rows, 0) * columns)
     x, y = numpy.linspace(x_min, x_max, columns), numpy.linspace(y_max, y_min, rows)
     cloud = columnwise_cloud(path, x, y, values, lambda z: numpy.isclose(z, null, 1e-6, 0.0), "ZMAP+ grid")
     if b"." not in body and form[3].strip(b"0"):
@@ -217,7 +218,7 @@ def read_zmap_points(path, options):
             elif marks == 1 and not line.startswith("!"):
                 columns.append(words)
             if marks == 2:
-                nulls = [float(words[7]) for words in columns if len(words) > 7 and words[7]]
+                nulls = list(floats(words[7] for words in columns if len(words) > 7 and words[7]))
                 return read_table(path, [words[0] for words in columns], number, options.progress, *nulls[:1])
     raise FileError(f"{path}: is cut off within its header")
 

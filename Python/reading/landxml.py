@@ -47,16 +47,18 @@ class LandXml:
 
     def take(self, name, element, inside):
         """Takes what an element holds; the first number of a place is its northing."""
+        words = (element.text or "").split()
         if name == "P" and "Surface" in inside:
-            y, x, z = map(float, element.text.split()[:3])
+            y, x, z = map(float, words[:3])
             list(self.surfaces.values())[-1][0][element.get("id")] = (x, y, z)
         elif name == "F" and element.get("i") != "1":  # 1: invisible
-            list(self.surfaces.values())[-1][1].append(element.text.split()[:3])
-        elif name == "CgPoint" and element.text and len(element.text.split()) == 3:
-            y, x, z = map(float, element.text.split())
+            first, second, third = words[:3]
+            list(self.surfaces.values())[-1][1].append((first, second, third))
+        elif name == "CgPoint" and len(words) == 3:
+            y, x, z = map(float, words)
             self.others.append((x, y, z))
         elif name in POINT_LISTS and set(self.lines) & set(inside):
-            places = numpy.array(element.text.split(), "f8").reshape(-1, 3 if name == "PntList3D" else 2)
+            places = numpy.array(words, "f8").reshape(-1, 3 if name == "PntList3D" else 2)
             z = places[:, 2] if places.shape[1] == 3 else numpy.full(len(places), numpy.nan)
             kind = "Breakline" if "Breakline" in inside else "Boundary"
             self.lines[kind].append(numpy.column_stack((places[:, 1], places[:, 0], z)))

@@ -16,7 +16,7 @@ from .table_words import (
 from ..messages import FileError
 
 
-FORTRAN = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+))[dD]([-+]?\d+)")  # 1.5D+03
+FORTRAN = re.compile(r"([-+]?(?:\d+(?:\.\d*)?|\.\d+))[dD]([-+]?\d+)")  # 1.5D+03
 
 
 @dataclasses.dataclass(frozen=True)
@@ -71,8 +71,7 @@ def find_layout(path, lines, needed):
         if re.match(pattern, head):
             lacks = what in (ESRI_GRID, SURFER_GRID) and importlib.util.find_spec("osgeo") is None
             advice = "; install python3-gdal to read it" if lacks else ""
-            what += ", not a table of points" * (":" not in what)
-            raise FileError(f"{path}: is {what.replace('{path}', path)}{advice}")
+            raise FileError(f"{path}: is {what}, not a table of points{advice}")
     counts = {layout: [layout.numbers(line) for line in sample] for layout in LAYOUTS}
     if not sample:
         raise FileError(f"{path}: holds no data, only blank or comment lines")
@@ -214,8 +213,10 @@ def find_names(layout, head, width, one_may_lack=True):
     one_may_lack  whether the first column may have none
 
     They stand in one line, with the separator of the data or another; or a line each, numbered as
-    "3: X", or between BEGIN HEADER and END HEADER.
+    "3: X", or below their count as GSLIB has them, or between BEGIN HEADER and END HEADER.
     """
+    if len(head) > 2 and head[1].split()[:1] == [str(width)] and len(head[2:]) == width:
+        return [name.strip() for name in head[2:]]
     matches = [match for match in map(NUMBERED_NAME.match, head) if match]
     found = {int(match.group(1)): match.group(2).strip('" ') for match in matches}
     candidates = [[found[i] for i in range(1, width + 1) if i in found]]

@@ -62,14 +62,13 @@ def take_out(cloud, options, ranks=None):
 
 
 def nulls_in(x, y, z, ranks=None, progress=no_progress):
-    """Yields (name of the axis, or "" for all of them, value, (n,) of bool) of usual null values that
-    stand apart."""
+    """Yields (name of the axis, "x = y", or "" for all of them, value, (n,) of bool) of usual null values
+    that stand apart."""
     for done, (name, values) in enumerate((("z", z), ("x", x), ("y", y))):
         progress(done / 3)
         for value, found in usual_nulls(values, name != "z", ranks):
             yield name, value, found
-    for value, found in null_rows(x, y, z, ranks):
-        yield "", value, found
+    yield from null_rows(x, y, z, ranks)
 
 
 def blank_attributes(points):
@@ -215,16 +214,18 @@ def usual_nulls(values, is_place=False, ranks=None):
 
 
 def null_rows(x, y, z, ranks=None):
-    """[(value, (n,) of bool)]: the rows that have it thrice, as 0 0 0, where x,y of the others are all elsewhere."""
-    present = [(value, (x == value) & (y == value) & (z == value)) for value in NULL_ROWS]
+    """[(name, value, (n,) of bool)]: the rows that have it thrice, as 0 0 0, or in x and y, as of receivers that have
+    no place yet, where x,y of the others are all elsewhere: of the latter ten times as far as they are wide."""
+    present = [(value, (x == value) & (y == value)) for value in NULL_ROWS]
     others, result = ~numpy.logical_or.reduce([found for _, found in present]), []
-    for value, found in present:
-        near = others.copy()
-        if count_set(ranks, found) and count_set(ranks, others):
-            for values in (x, y):
-                near &= numpy.abs(values - value) < max(body(values[others], ranks), 1e-300)
-        if count_set(ranks, found) and not count_set(ranks, near):
-            result.append((value, found))
+    for value, pairs in present:
+        for name, found, reach in (("", pairs & (z == value), 1.0), ("x = y", pairs, 10.0)):
+            near = others.copy()
+            if count_set(ranks, found) and count_set(ranks, others):
+                for values in (x, y):
+                    near &= numpy.abs(values - value) < max(reach * body(values[others], ranks), 1e-300)
+            if count_set(ranks, found) and not count_set(ranks, near):
+                result.append((name, value, found))
     return result
 
 

@@ -85,8 +85,8 @@ def read_rows(path, stream, words, kind, progress):
             for i in range(kind[name].shape[0]):
                 rows[name][:, i] = plain[f"{name} {i}"]
     elif way == "binary":
-        data = stream.read(count * kind.itemsize)
-        rows = numpy.frombuffer(data[: len(data) // kind.itemsize * kind.itemsize], kind)
+        data = stream.read()
+        rows = numpy.frombuffer(data[: min(count, len(data) // kind.itemsize) * kind.itemsize], kind)
     elif way == "binary_compressed":
         sizes = stream.read(8)
         try:

@@ -24,7 +24,7 @@ AXES = (
         "ita itakoordinaatti"
     )),
     ("y", 1, "", _words(
-        "northing northings north hochwert hoch hw nordwert nord norte ordonnee ordenada ordinata "
+        "northing northings north nrth hochwert hoch hw nordwert nord norte ordonnee ordenada ordinata "
         "ordinate noord noording nordkoordinate polnoc polnocna nordkoordinat nordverdi noorden "
         "hochw pohjoinen pohjoiskoordinaatti"
     )),
@@ -102,7 +102,8 @@ ROLES = (
         "precision velocity speed heading pitch roll nx ny nz normal confidence hdop pdop vdop "
         "tide draft angle slope aspect undulation geoid dev deviation residual delta dx dy dz "
         "thickness offset snr weight fold scan beam ping mean stdev count density tpu tvu thu fom "
-        "antenna ant target instrument prism rod pole vel vx vy vz"
+        "antenna ant target instrument prism rod pole vel vx vy vz dist distance distanz distancia distanza afstand "
+        "avstand abstand"
     )),
 )
 COLOURS = {
@@ -130,21 +131,12 @@ MISSING = set(
     "na n/a #n/a n.a. null none nil nodata no-data missing void - -- ? * -nan nan(ind)".split()
 ) | {""}
 SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", None: "blanks"}
-NUMBERED_NAME = re.compile(r"(?:field|column|col)?\W*(\d+)\s*[:=.)]?\s*(\S.*)", re.I)  # "3: X" in a header
+NUMBERED_NAME = re.compile(r"(?:field|column|col)?\W*(\d{1,4})(?!\d)\s*[:=.)]?\s*(\S.*)", re.I)  # "3: X" in a header
 ESRI_GRID, SURFER_GRID = "an ESRI ASCII grid", "a Surfer grid"  # which GDAL reads
 # How files begin that are not tables, and what they are.
 NO_TABLES = (
     (r"ncols\b", ESRI_GRID),
     (r"dsaa\b", SURFER_GRID),
-    (r"fsasci\b", "a CPS-3 grid"),
-    (r"gocad\b", "a GOCAD file"),
-    (r"h\d{4}[a-z].*\n(.*\n)*?[a-z]", "a file of UKOOA P1/90: awk '/^[^H]/ {print substr($0,47,9), substr($0,56,9), "
-     "substr($0,65,6)}' {path} > points.txt takes x, y and depth out of it"),
-    (r"[^,\n]*,\s*\d{1,2}-[a-z]{3}-\d{2}.*\n\s*0,\s*0\.0+,", "a Surpac string file, with y before x: awk -F, '$1 + 0 > 0 "
-     "{print $3, $2, $4}' {path} > points.txt takes x, y and z out of it"),
-    (r"\*?11\d{4}[+-]", "a Leica GSI file: export x, y and z as text from the instrument or its program"),
-    (r"\d+\n\d+\n(\S+ +\S+ +\S+ *\n){4}(\S+ +\S+ +\S+ +\S+ *\n){4}", "a Leica PTX scan: convert it to .las or "
-     ".ply, by CloudCompare -O {path} -C_EXPORT_FMT PLY -SAVE_CLOUDS"),
     (r"<[?!a-z]", "XML or HTML"),
     (r"[{\[]\s*[\"{\[]", "JSON"),
 )
@@ -198,9 +190,9 @@ NULLS = (
     (-9999.0, -999.25, -999.0, -9999.25, -99999.0, -999999.0, -9999999.0, -99999.99, -9999.99)
     + (9999.0, 99999.0, 999999.0, 9999900.0, 9999999.0, 999.25, 99999.99)
     + (-32768.0, -32767.0, 32767.0, -2147483648.0, 2147483647.0)
-    + (1e30, -1e30, 1e20, -1e20, 1e35, 1.70141e38, FLOAT_MAX, -FLOAT_MAX, 3.4e38, -3.4e38)
+    + (1e30, -1e30, 1e31, 1e20, -1e20, 1e35, 1.70141e38, FLOAT_MAX, -FLOAT_MAX, 3.4e38, -3.4e38)
 )
-# Of rows that have it in each of x, y and z; 999 is IRAP's mark at the end of a line.
+# Of rows that have it in x and y, and mostly in z; 999 is IRAP's mark at the end of a line.
 NULL_ROWS = (0.0, 999.0)
 
 # ---- readings of columns ------------------------------------------------------------------------
@@ -209,6 +201,7 @@ LINES_AS_AXES = {"x": _words("inline il iline"), "y": _words("crossline xline xl
 MOST_STEP_OF_LINES = 4  # between their numbers
 FINNISH = {"p": "y", "i": "x"}  # pohjoinen, itä
 HIGHEST = 1e5  # no place is as high
+MOST_FEET = 4e6  # of many state planes of the USA, which look like metres of UTM near the equator
 # What speaks for a reading of columns as x, y and z by their values, and against it. Some differences of
 # sums are those of cases: "stands first" outweighs a fault of all but the weightiest.
 WEIGHTS = {
@@ -223,7 +216,7 @@ WEIGHTS = {
     "a column is left out": -4,  # before x, behind the first, for no reason
     "x and y are of UTM": 16,
     "x and y count": -11,  # as line and trace do
-    "z rises along lines": -10,  # whole numbers, as those of lines are
+    "z is flat or rises along lines": -10,  # as numbers of lines do
     "z behind lines": -8,
 }
 # A reading is certain if the next is this much worse; more, where the reading itself is not a good one.

@@ -40,7 +40,7 @@ TAIL = 50  # lines at the end of a block among which summaries are looked for
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED, MOST_SUMMARIES = 3, 5  # that many lines of other kinds, and of summaries, are named
 MOST_UNEVEN = 0.2  # lines of numbers that are left out, as a share of rows
-WITHOUT_DATA = "all rows are without data"
+WITHOUT_DATA, NO_ROWS = "all rows are without data", "no line is a row of x, y and z"
 
 
 class BadLine(FileError):
@@ -83,6 +83,8 @@ class Table:
         before = [line for _, line in preamble]
         self.head_lines = set(map(str.strip, before))
         rows, consecutive = self.sample(lines)
+        if not rows:
+            raise FileError(f"{path}: {NO_ROWS}")
         self.name_columns(head, rows)
         if not options.columns:
             check_names(path, self.layout, before, rows[:400], self.names, self.width, self.advice)
@@ -447,7 +449,7 @@ def parse(*arguments):
     for parser in parsed(*arguments):
         pass
     if not parser.parts:
-        raise FileError(f"{parser.table.path}: no line is a row of x, y and z")
+        raise FileError(f"{parser.table.path}: {NO_ROWS}")
     return (parser, *parser.take(), parser.final_notes())
 
 
