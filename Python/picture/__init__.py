@@ -419,6 +419,7 @@ def save(window, path):
     grab = vtkWindowToImageFilter()
     grab.SetInput(window)
     grab.ReadFrontBufferOff()
+    grab.ShouldRerenderOff()
     grab.SetInputBufferTypeToRGB()
     grab.Update()
     writer = vtkPNGWriter()

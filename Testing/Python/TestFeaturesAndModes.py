@@ -10,7 +10,6 @@ the rows that have it. Documentation/Features.md explains the words.
 import argparse
 import sys
 
-import documented
 import features
 import modes
 import outcomes
@@ -161,6 +160,8 @@ def check_properties(rows):
 
 
 def check_page():
+    import documented
+
     check(features.markdown() in documented.text_of("Features.md"),
           "Documentation/Features.md has another table than features.py prints")
 

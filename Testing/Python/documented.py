@@ -7,8 +7,8 @@ import io
 import os
 import re
 import shlex
-import subprocess
-import sys
+
+import forked
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 PROGRAM = "Utilities/reconstruct"
@@ -52,12 +52,10 @@ def run_commands(code, folder):
         program, *arguments = shlex.split(line)
         if program != PROGRAM:
             raise ValueError(f"not a command of {PROGRAM}: {line}")
-        command = [sys.executable, "-m", "vtkelevationsurface", *arguments]
-        run = subprocess.run(command, cwd=folder, text=True, check=False, stdin=subprocess.DEVNULL,
-                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-        if run.returncode != 0:
-            raise RuntimeError(f"{line}\n{run.stdout}")
-        printed += run.stdout
+        done = forked.python(*forked.PROGRAM, *arguments, folder=folder)
+        if done.returncode != 0:
+            raise RuntimeError(f"{line}\n{done.stdout}{done.stderr}")
+        printed += done.stdout + done.stderr
     return printed
 
 

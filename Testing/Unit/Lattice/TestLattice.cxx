@@ -117,7 +117,7 @@ TEST(Lattice, IsTheSameForAnyNumberOfThreads)
     check(frame, parts, "two parts");
   }
   // Large enough for several ranges of points and several rounds of strips.
-  check(frames[1], RandomNodes(random, 1200, 900, 0.12), "large and sparse");
+  check(frames[1], RandomNodes(random, 900, 850, 0.1), "large and sparse");
   for (const Frame& frame : frames)
   {
     check(frame, RandomNodes(random, 400, 400, 0.04), "many borders of a sparse one");
