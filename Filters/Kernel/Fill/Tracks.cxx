@@ -23,6 +23,10 @@ constexpr std::size_t LeastArm = 3;
 /** The direction of an arm is that to the vertex so many steps away. */
 constexpr int StepsOfDirection = 5;
 
+/** Meetings of arms that so many edges join are one, unless it had more of them than this. */
+constexpr std::size_t MostShared = 3;
+constexpr std::size_t MostMeetings = 6;
+
 /** The cosine of the angle between two arms that continue each other: 135 degrees at least. */
 constexpr double MostCosine = -0.7;
 
@@ -162,48 +166,135 @@ private:
     }
   }
 
+  /** A unit vector along an arm; 0 for a loop that comes back. */
+  Point2 DirectionOf(Index v, Index to) const
+  {
+    const Point2& p = this->Surface.PointOf(v);
+    const Point2& q = this->Surface.PointOf(this->Follow(v, to, StepsOfDirection).back());
+    const double length = std::hypot(q.X - p.X, q.Y - p.Y);
+    return { length > 0.0 ? (q.X - p.X) / length : 0.0, length > 0.0 ? (q.Y - p.Y) / length : 0.0 };
+  }
+
+  /** An arm by its vertex and its number there. */
+  struct Arm
+  {
+    Index Vertex = None;
+    int Number = -1;
+  };
+
+  bool IsMeeting(Index v) const { return this->Arms[v].size() > 2; }
+
+  /**
+   * Lines that cross may share some edges. So meetings of arms that few edges join are one, of
+   * which only the arms that leave it have partners.
+   */
   void PairArms()
   {
-    const Mesh& mesh = this->Surface;
+    std::vector<char> isDone(this->Arms.size(), 0);
     this->Partners.resize(this->Arms.size());
-    for (Index v = 0; v < mesh.NumberOfPoints(); ++v)
+    for (std::size_t v = 0; v < this->Arms.size(); ++v)
     {
-      const std::vector<Index>& arms = this->Arms[v];
-      std::vector<int>& partners = this->Partners[v];
-      partners.assign(arms.size(), -1);
-      std::vector<Point2> directions;
-      for (const Index to : arms)
+      this->Partners[v].resize(this->Arms[v].size());
+    }
+    for (Index v = 0; v < static_cast<Index>(this->Arms.size()); ++v)
+    {
+      if (isDone[v])
       {
-        const Point2& p = mesh.PointOf(v);
-        const Point2& q = mesh.PointOf(this->Follow(v, to, StepsOfDirection).back());
-        const double length = std::hypot(q.X - p.X, q.Y - p.Y);
-        // A loop that comes back has none.
-        directions.push_back(
-          { length > 0.0 ? (q.X - p.X) / length : 0.0, length > 0.0 ? (q.Y - p.Y) / length : 0.0 });
+        continue;
       }
-      std::vector<std::tuple<double, int, int>> pairs;
-      for (int i = 0; i < static_cast<int>(arms.size()); ++i)
+      std::vector<Index> meetings{ v };
+      std::vector<Arm> leaving;
+      for (std::size_t m = 0; m < meetings.size() && meetings.size() <= MostMeetings; ++m)
       {
-        for (int k = i + 1; k < static_cast<int>(arms.size()); ++k)
+        for (int i = 0; i < static_cast<int>(this->Arms[meetings[m]].size()); ++i)
         {
-          const double cosine =
-            directions[i].X * directions[k].X + directions[i].Y * directions[k].Y;
-          if (arms.size() == 2 || cosine < MostCosine)
+          const Index end =
+            this->Follow(meetings[m], this->Arms[meetings[m]][i], MostShared).back();
+          if (!this->IsMeeting(v) || !this->IsMeeting(end))
           {
-            pairs.emplace_back(cosine, i, k);
+            leaving.push_back({ meetings[m], i });
+          }
+          else if (std::find(meetings.begin(), meetings.end(), end) == meetings.end())
+          {
+            meetings.push_back(end);
           }
         }
       }
-      std::sort(pairs.begin(), pairs.end());
-      for (const auto& [cosine, i, k] : pairs)
+      if (meetings.size() > MostMeetings)
       {
-        if (partners[i] < 0 && partners[k] < 0)
+        leaving.clear();
+        meetings.resize(1);
+        for (int i = 0; i < static_cast<int>(this->Arms[v].size()); ++i)
         {
-          partners[i] = k;
-          partners[k] = i;
+          leaving.push_back({ v, i });
+        }
+      }
+      for (const Index meeting : meetings)
+      {
+        isDone[meeting] = 1;
+      }
+      this->Pair(leaving);
+    }
+  }
+
+  /** Those that continue each other best first. */
+  void Pair(const std::vector<Arm>& arms)
+  {
+    std::vector<Point2> directions;
+    for (const Arm& arm : arms)
+    {
+      directions.push_back(this->DirectionOf(arm.Vertex, this->Arms[arm.Vertex][arm.Number]));
+    }
+    std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+    for (std::size_t i = 0; i < arms.size(); ++i)
+    {
+      for (std::size_t k = i + 1; k < arms.size(); ++k)
+      {
+        const double cosine = directions[i].X * directions[k].X + directions[i].Y * directions[k].Y;
+        if (!this->IsMeeting(arms[i].Vertex) || cosine < MostCosine)
+        {
+          pairs.emplace_back(cosine, i, k);
         }
       }
     }
+    std::sort(pairs.begin(), pairs.end());
+    for (const auto& [cosine, i, k] : pairs)
+    {
+      Arm& first = this->PartnerOf(arms[i]);
+      Arm& second = this->PartnerOf(arms[k]);
+      if (first.Vertex == None && second.Vertex == None)
+      {
+        first = arms[k];
+        second = arms[i];
+      }
+    }
+  }
+
+  Arm& PartnerOf(const Arm& arm) { return this->Partners[arm.Vertex][arm.Number]; }
+
+  /** Vertices from one meeting to another, which few edges join; without the first. */
+  std::vector<Index> PathBetween(Index from, Index to)
+  {
+    std::map<Index, Index> before{ { to, None } };
+    std::vector<Index>& reached = this->Reached;
+    reached.assign(1, to);
+    for (std::size_t k = 0; k < reached.size() && before.count(from) == 0; ++k)
+    {
+      for (const Index v : this->Arms[reached[k]])
+      {
+        if (before.emplace(v, reached[k]).second)
+        {
+          reached.push_back(v);
+        }
+      }
+    }
+    CountWork(reached.size());
+    std::vector<Index> path;
+    for (Index v = from; v != to; v = before.at(v))
+    {
+      path.push_back(before.at(v));
+    }
+    return path;
   }
 
   int ArmTo(Index from, Index to) const
@@ -226,29 +317,33 @@ private:
       {
         for (int arm = 0; arm < static_cast<int>(this->Arms[v].size()); ++arm)
         {
-          if (!isTraced[v][arm] && (!haveEnds || this->Partners[v][arm] < 0))
+          if (!isTraced[v][arm] && (!haveEnds || this->Partners[v][arm].Vertex == None))
           {
-            this->TraceOne(v, arm, isTraced);
+            this->TraceOne({ v, arm }, isTraced);
           }
         }
       }
     }
   }
 
-  void TraceOne(Index v, int arm, std::vector<std::vector<char>>& isTraced)
+  void TraceOne(Arm arm, std::vector<std::vector<char>>& isTraced)
   {
     std::vector<Index>& vertices = this->Result.Vertices;
     const std::size_t first = vertices.size();
-    vertices.push_back(v);
-    while (arm >= 0 && !isTraced[v][arm])
+    vertices.push_back(arm.Vertex);
+    while (arm.Vertex != None && !isTraced[arm.Vertex][arm.Number])
     {
-      isTraced[v][arm] = 1;
-      const Index next = this->Arms[v][arm];
-      const int back = this->ArmTo(next, v);
+      isTraced[arm.Vertex][arm.Number] = 1;
+      const Index next = this->Arms[arm.Vertex][arm.Number];
+      const int back = this->ArmTo(next, arm.Vertex);
       isTraced[next][back] = 1;
       vertices.push_back(next);
       arm = this->Partners[next][back];
-      v = next;
+      if (arm.Vertex != None && arm.Vertex != next)
+      {
+        const std::vector<Index> path = this->PathBetween(next, arm.Vertex);
+        vertices.insert(vertices.end(), path.begin(), path.end());
+      }
     }
     if (vertices.back() == vertices[first])
     {
@@ -264,7 +359,7 @@ private:
 
   const Mesh& Surface;
   std::vector<std::vector<Index>> Arms;   ///< of each vertex those that an edge joins it to
-  std::vector<std::vector<int>> Partners; ///< for each arm the number of the one that continues it
+  std::vector<std::vector<Arm>> Partners; ///< for each arm the one that continues it
   std::vector<int> Steps;                 ///< of AreNear(); 0 between calls
   std::vector<Index> Reached;
   const double Longest;
