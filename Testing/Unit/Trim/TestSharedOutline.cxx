@@ -94,7 +94,7 @@ struct Joined
 {
   Surface List;
   std::vector<Index> Triangles;
-  std::vector<Known> States;
+  std::vector<TriangleState> States;
   std::vector<double> Spacings;
   std::vector<BorderEdge> Border;
   std::int64_t NumberOfPoints = 0;
