@@ -24,8 +24,8 @@ constexpr std::size_t LeastArm = 3;
 constexpr int StepsOfDirection = 5;
 
 /** Meetings of arms that so many edges join are one, unless it had more of them than this. */
-constexpr std::size_t MostShared = 3;
-constexpr std::size_t MostMeetings = 6;
+constexpr std::size_t MostShared = 2;
+constexpr std::size_t MostMeetings = 10;
 
 /** The cosine of the angle between two arms that continue each other: 135 degrees at least. */
 constexpr double MostCosine = -0.7;
@@ -35,8 +35,21 @@ constexpr Index LeastVertices = 8;
 /** Tracks whose vertices are joined by fewer edges, of the shorter one's, are not side by side. */
 constexpr double LeastContact = 0.1;
 
-/** More colours are not needed. */
-constexpr int MostColors = 4;
+/** Of lines that do not cross others; more are not needed. Then that of those that do. */
+constexpr int MostColors = 3;
+constexpr int ColorOfCrossing = 3;
+
+/** 0 where both are the same. */
+Point2 UnitVector(const Point2& p, const Point2& q)
+{
+  const double length = std::hypot(q.X - p.X, q.Y - p.Y);
+  return { length > 0.0 ? (q.X - p.X) / length : 0.0, length > 0.0 ? (q.Y - p.Y) / length : 0.0 };
+}
+
+double Cosine(const Point2& a, const Point2& b)
+{
+  return a.X * b.X + a.Y * b.Y;
+}
 
 /** Joins, prunes and traces. */
 class TrackFinding
@@ -169,10 +182,8 @@ private:
   /** A unit vector along an arm; 0 for a loop that comes back. */
   Point2 DirectionOf(Index v, Index to) const
   {
-    const Point2& p = this->Surface.PointOf(v);
-    const Point2& q = this->Surface.PointOf(this->Follow(v, to, StepsOfDirection).back());
-    const double length = std::hypot(q.X - p.X, q.Y - p.Y);
-    return { length > 0.0 ? (q.X - p.X) / length : 0.0, length > 0.0 ? (q.Y - p.Y) / length : 0.0 };
+    return UnitVector(this->Surface.PointOf(v),
+      this->Surface.PointOf(this->Follow(v, to, StepsOfDirection).back()));
   }
 
   /** An arm by its vertex and its number there. */
@@ -365,6 +376,109 @@ private:
   const double Longest;
   Tracks Result;
 };
+
+std::vector<Index> FromLongest(const Tracks& tracks)
+{
+  std::vector<Index> order(tracks.Count());
+  for (Index t = 0; t < tracks.Count(); ++t)
+  {
+    order[t] = t;
+  }
+  std::stable_sort(
+    order.begin(), order.end(), [&](Index a, Index b) { return tracks.Size(a) > tracks.Size(b); });
+  return order;
+}
+
+/**
+ * Which tracks cross the others: of two that cross one does, and the other does not. Those that are
+ * longer in all do not.
+ */
+std::vector<char> FindCrossing(
+  const Tracks& tracks, const Mesh& mesh, const std::vector<Index>& vertexOf)
+{
+  // (vertex, track, direction there)
+  std::vector<std::tuple<Index, Index, Point2>> visits;
+  for (Index t = 0; t < tracks.Count(); ++t)
+  {
+    const auto at = [&](Index place) {
+      const Index v = tracks.Begin(t)[std::max(0, std::min(tracks.Size(t) - 1, place))];
+      return vertexOf.empty() ? v : vertexOf[v];
+    };
+    for (Index i = 0; i < tracks.Size(t); ++i)
+    {
+      const Index before = at(i - StepsOfDirection), behind = at(i + StepsOfDirection);
+      if (at(i) != None && before != None && behind != None)
+      {
+        visits.emplace_back(
+          tracks.Begin(t)[i], t, UnitVector(mesh.PointOf(before), mesh.PointOf(behind)));
+      }
+    }
+  }
+  std::stable_sort(visits.begin(), visits.end(),
+    [](const auto& a, const auto& b) { return std::get<0>(a) < std::get<0>(b); });
+  std::vector<std::vector<Index>> meet(tracks.Count());
+  for (std::size_t i = 0; i < visits.size(); ++i)
+  {
+    const auto& [v, t, direction] = visits[i];
+    for (std::size_t k = i + 1; k < visits.size() && std::get<0>(visits[k]) == v; ++k)
+    {
+      const auto& [same, other, across] = visits[k];
+      if (other != t && std::fabs(Cosine(direction, across)) < -MostCosine)
+      {
+        meet[t].push_back(other);
+        meet[other].push_back(t);
+      }
+    }
+  }
+  // Each is unlike most of those it meets. A track that turns a corner may be like some of them.
+  std::vector<char> isCrossing(tracks.Count(), 0), isReached(tracks.Count(), 0);
+  const auto isUnlikeMost = [&](Index t) {
+    int balance = 0;
+    for (const Index other : meet[t])
+    {
+      balance += !isReached[other] ? 0 : isCrossing[other] ? 1 : -1;
+    }
+    return balance < 0 || (balance == 0 && isCrossing[t]);
+  };
+  for (const Index first : FromLongest(tracks))
+  {
+    std::vector<Index> reached;
+    if (!isReached[first])
+    {
+      isReached[first] = 1;
+      reached.push_back(first);
+    }
+    for (std::size_t k = 0; k < reached.size(); ++k)
+    {
+      for (const Index other : meet[reached[k]])
+      {
+        if (!isReached[other])
+        {
+          isCrossing[other] = isUnlikeMost(other);
+          isReached[other] = 1;
+          reached.push_back(other);
+        }
+      }
+    }
+    for (int again = 0; again < 3; ++again)
+    {
+      for (const Index t : reached)
+      {
+        isCrossing[t] = isUnlikeMost(t);
+      }
+    }
+    std::size_t sizes[2] = { 0, 0 };
+    for (const Index t : reached)
+    {
+      sizes[isCrossing[t]] += tracks.Size(t);
+    }
+    for (const Index t : reached)
+    {
+      isCrossing[t] = sizes[1] > sizes[0] ? !isCrossing[t] : isCrossing[t];
+    }
+  }
+  return isCrossing;
+}
 } // namespace
 
 Tracks FindTracks(const Mesh& mesh, double longest, const Progress& progress)
@@ -403,11 +517,12 @@ std::vector<int> ColorTracks(
       ++contacts[{ std::min(a, b), std::max(a, b) }];
     }
   }
+  const std::vector<char> isCrossing = FindCrossing(tracks, mesh, vertexOf);
   std::vector<std::vector<std::pair<Index, int>>> beside(tracks.Count());
   for (const auto& [pair, count] : contacts)
   {
     const Index shorter = std::min(tracks.Size(pair.first), tracks.Size(pair.second));
-    if (count >= LeastContact * shorter)
+    if (count >= LeastContact * shorter && !isCrossing[pair.first] && !isCrossing[pair.second])
     {
       beside[pair.first].emplace_back(pair.second, count);
       beside[pair.second].emplace_back(pair.first, count);
@@ -415,15 +530,8 @@ std::vector<int> ColorTracks(
   }
   // From the longest track to those beside it, so that of parallel ones none is between two
   // that have begun differently.
-  std::vector<Index> order(tracks.Count());
-  for (Index t = 0; t < tracks.Count(); ++t)
-  {
-    order[t] = t;
-  }
-  std::stable_sort(
-    order.begin(), order.end(), [&](Index a, Index b) { return tracks.Size(a) > tracks.Size(b); });
   std::vector<char> isQueued(tracks.Count(), 0);
-  for (const Index first : order)
+  for (const Index first : FromLongest(tracks))
   {
     std::queue<Index> queue;
     if (isThere[first] && !isQueued[first])
@@ -450,7 +558,9 @@ std::vector<int> ColorTracks(
           queue.push(other);
         }
       }
-      colors[t] = static_cast<int>(std::min_element(conflicts, conflicts + MostColors) - conflicts);
+      colors[t] = isCrossing[t]
+        ? ColorOfCrossing
+        : static_cast<int>(std::min_element(conflicts, conflicts + MostColors) - conflicts);
     }
   }
   return colors;
