@@ -94,6 +94,7 @@ set(es_kernel_Fill
   Tracks
   Heights
   LineRoughness
+  TrialErrors
   BetweenLines
   Fill)
 

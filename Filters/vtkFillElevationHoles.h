@@ -344,7 +344,8 @@ public:
    * whose text has the same for people, are invoked. Codes, besides those of data that are invalid,
    * which are "Words": NothingToFill, HoleNotFilled and RegionNotFilled (with a reason:
    * BordersTouch, SizeOutOfRange, MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall,
-   * PointsCoincide), MoreHolesNotFilled, BordersMeet, TooManyPointsToFill, TooManyPointsByDefault,
+   * PointsCoincide), MoreHolesNotFilled, ErrorsOutgrowRoughness, BordersMeet, TooManyPointsToFill,
+   * TooManyPointsByDefault,
    * InvalidOpenEdgeLength, InvalidHoleSize, InvalidHoleEdges, InvalidSpacing, InvalidConfidence,
    * InvalidInsertedPoints, InvalidExpectedPoints, InvalidThreads, InvalidPrecision, FoldsInSingle,
    * OriginalIdsReplaced, EdgeLengthRenamed, ArraysLeftOut, OnOneRank (with a reason:

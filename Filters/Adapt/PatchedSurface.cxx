@@ -398,6 +398,20 @@ std::vector<Message> WarningsOf(const FillResult& patches)
   {
     warnings.push_back(MakeMessage<sentences::MoreHolesNotFilled>(failed - listed));
   }
+  double outgrowth = 0.0;
+  Index outgrown = 0, first = None;
+  for (Index hole = 0; hole < holes.Count(); ++hole)
+  {
+    const double one = patches.Reports[hole].Outgrowth;
+    outgrowth = std::max(outgrowth, one);
+    outgrown += one > 0.0 ? 1 : 0;
+    first = one > 0.0 && first == None ? patches.FirstNumber + hole : first;
+  }
+  if (outgrown > 0)
+  {
+    warnings.push_back(
+      MakeMessage<sentences::ErrorsOutgrowRoughness>(outgrown, first, ToText(outgrowth, 2)));
+  }
   if (holes.NumberOfContacts > 0)
   {
     warnings.push_back(

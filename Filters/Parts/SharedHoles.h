@@ -38,8 +38,10 @@ struct FieldsOf<HoleReport>
   template <typename Report>
   static auto In(Report& report)
   {
-    auto& [status, edges, size, perimeter, area, spacing, inserted, method, more, reason] = report;
-    return std::tie(status, edges, size, perimeter, area, spacing, inserted, method, more, reason);
+    auto& [status, edges, size, perimeter, area, spacing, inserted, method, outgrowth, more,
+      reason] = report;
+    return std::tie(
+      status, edges, size, perimeter, area, spacing, inserted, method, outgrowth, more, reason);
   }
 };
 

@@ -44,8 +44,9 @@ A row has: the shares of left-out points within the standard error and in the in
 thirds of the distance from the nearest known point, and of the local roughness; the mean width of
 intervals, over that of intervals by distance alone, both made to hold the asked share; the root mean
 square error, over that of the triangles between the lines; how far heights leave the range of the
-lines, in parts of it; the part of points without an error; seconds. Surfaces without a lattice are
-left out.
+lines, in parts of it; the part of points without an error; seconds. Points on an edge between two
+known ones are not filled and do not count. Surfaces without a lattice are left out. The group
+"flagged" has the surveys for which it is reported that errors outgrow the roughness along lines.
 )";
 
 struct Options
@@ -223,6 +224,7 @@ struct SurveyFigures
   double Beyond = 0.0;
   double Unknown = 0.0;
   double Seconds = 0.0;
+  bool IsFlagged = false; ///< errors outgrow the roughness along lines, which is reported
 };
 
 struct Sample
@@ -290,6 +292,9 @@ double RoughnessAround(const Grid& grid, Index x, Index y, Index length)
   return count > 0.0 ? sum / count : 0.0;
 }
 
+/** A place has at least this share of a new point, or it is on an edge between known ones. */
+constexpr double LeastShare = 1e-9;
+
 /** @return false if there is nothing to compare */
 bool Measure(const Grid& grid, Index gap, const std::string& style, const Options& options,
   SurveyFigures& figures)
@@ -338,6 +343,10 @@ bool Measure(const Grid& grid, Index gap, const std::string& style, const Option
   const auto start = std::chrono::steady_clock::now();
   const FillResult patches = elevation::FillHoles(rest, view, holes, fill);
   figures.Seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  for (const elevation::HoleReport& report : patches.Reports)
+  {
+    figures.IsFlagged = figures.IsFlagged || report.Outgrowth > 0.0;
+  }
 
   // The surface: triangles that are left, and patches.
   Mesh filled;
@@ -403,11 +412,11 @@ bool Measure(const Grid& grid, Index gap, const std::string& style, const Option
       {
         continue;
       }
-      // A triangle without a new point is not filled.
+      // A triangle without a new point is not filled, nor is an edge between two known ones.
       bool isFilled = false;
       for (int k = 0; k < 3; ++k)
       {
-        isFilled = isFilled || amongAll.CornerOf(k) >= known;
+        isFilled = isFilled || (amongAll.CornerOf(k) >= known && amongAll.ShareOf(k) > LeastShare);
       }
       if (!isFilled)
       {
@@ -537,6 +546,10 @@ int main(int argc, char* argv[])
             groups["all"].push_back(figures);
             groups["gap " + std::to_string(gap)].push_back(figures);
             groups[style].push_back(figures);
+            if (figures.IsFlagged)
+            {
+              groups["flagged"].push_back(figures);
+            }
           }
         }
       }

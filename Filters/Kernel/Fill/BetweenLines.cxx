@@ -9,6 +9,7 @@
 #include "Quantiles.h"
 #include "Spline.h"
 #include "Tracks.h"
+#include "TrialErrors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,35 +36,17 @@ constexpr std::size_t MostProbes = 20000;
 /** How far values may leave the range of known ones, in parts of it. */
 constexpr double RoomBeyond = 0.05;
 
-/** Trials count if there are so many lines and errors; errors of crossing lines, if so many. */
+/** Trials count if there are so many lines and errors, */
 constexpr Index LeastTracks = 4;
 /** and if so large a part of the known points is on lines that are straight over a gap. */
 constexpr double LeastPartOnLines = 0.5;
 constexpr std::size_t LeastErrors = 100;
-constexpr std::size_t LeastDirectErrors = 100;
 
-/** Where lines are left out, gaps are at least so many times as wide; else lines have crossed. */
+/** Where lines are left out, gaps are at least so many times as wide; or as they are, if at most. */
 constexpr double LeastWidening = 1.4;
-
-/**
- * The noise of an error, in the measure of noise: the square of the mean root of second
- * differences. For a normal distribution.
- */
-constexpr double NoiseOfMiss = 1.5;
+constexpr double MostUnwidened = 1.15;
 
 constexpr double StandardQuantile = 0.683;
-
-/** What the size of a standard normal number does not exceed with a probability. */
-double NormalQuantile(double share)
-{
-  double low = 0.0, high = 10.0;
-  for (int step = 0; step < 60; ++step)
-  {
-    const double middle = 0.5 * (low + high);
-    (std::erf(middle / std::sqrt(2.0)) < share ? low : high) = middle;
-  }
-  return low;
-}
 
 } // namespace
 
@@ -87,6 +70,7 @@ public:
 
   bool AreFound() const { return this->IsFound; }
   double Share() const { return this->SplineShare; }
+  double Outgrowth() const { return this->LeftOut.Outgrowth(); }
 
   std::vector<double> Apply(const Values& values, const Progress& progress) const
   {
@@ -111,12 +95,8 @@ public:
   /** What a share of errors does not exceed, at each new vertex. */
   std::vector<double> Bounds(double share) const
   {
-    const double noise = NormalQuantile(share) * NoiseOfMiss * this->Noise;
-    double factor = Carried(this->Errors, share, noise);
-    if (this->DirectErrors.size() >= LeastDirectErrors)
-    {
-      factor = std::sqrt(factor * Carried(this->DirectErrors, share, noise));
-    }
+    const double noise = this->LeftOut.NoiseFor(share);
+    const double factor = this->LeftOut.FactorFor(share);
     std::vector<double> result(this->NewScales);
     for (double& bound : result)
     {
@@ -126,24 +106,6 @@ public:
   }
 
 private:
-  struct ScaledError
-  {
-    double Size;
-    double Scale;
-  };
-
-  /** The factor of scales at which a share of errors is within noise and scale. */
-  static double Carried(const std::vector<ScaledError>& errors, double share, double noise)
-  {
-    std::vector<double> ratios;
-    for (const ScaledError& error : errors)
-    {
-      const double square = error.Size * error.Size - noise * noise;
-      ratios.push_back(square > 0.0 ? std::sqrt(square) / error.Scale : 0.0);
-    }
-    return QuantileByRank(std::move(ratios), share);
-  }
-
   /** A time that lines were left out. */
   struct Trial
   {
@@ -215,7 +177,7 @@ private:
     {
       return;
     }
-    this->Noise = this->Roughness().NoiseAlong(this->All);
+    this->LeftOut.Noise = this->Roughness().NoiseAlong(this->All);
     const std::vector<int> colors = ColorTracks(this->Lines, this->All.Triangles);
     std::vector<Trial> trials = this->LeaveOut(this->All, colors, stages.Next());
     this->SplineShare = this->BestShare(trials);
@@ -231,23 +193,46 @@ private:
       std::vector<double> nested = missed;
       if (isWider)
       {
-        nested = this->ErrorsAtKnown(this->LeaveOut(trial.Rest, trial.Colors, one, 2));
-      }
-      const std::vector<double> scales = this->Roughness().ScalesAt(
-        trial.Spots, trial.Rest, isWider ? trial.Gap : this->Gap, nested, this->Noise);
-      std::vector<ScaledError>& errors = isWider ? this->Errors : this->DirectErrors;
-      for (std::size_t i = 0; i < trial.Probes.size(); ++i)
-      {
-        const double size = std::fabs(trial.Misses[i] - this->SplineShare * trial.Bending[i]);
-        if (trial.Spots[i].IsInside && scales[i] > 0.0)
+        const std::vector<Trial> more = this->LeaveOut(trial.Rest, trial.Colors, one, 2);
+        nested = this->ErrorsAtKnown(more);
+        for (const Trial& another : more)
         {
-          errors.push_back({ size, scales[i] });
+          if (another.Gap >= LeastWidening * trial.Gap)
+          {
+            const std::vector<double> none(this->Count, NotANumber);
+            this->Measure(another, another.Gap, none, this->LeftOut.Wider);
+          }
         }
+        this->Measure(trial, trial.Gap, nested, this->LeftOut.Wide);
+      }
+      else if (trial.Gap <= MostUnwidened * this->Gap)
+      {
+        this->Measure(trial, this->Gap, nested, this->LeftOut.Direct);
       }
     }
     this->NewScales =
-      this->Roughness().ScalesAt(this->Spots, this->All, this->Gap, missed, this->Noise);
-    this->IsFound = this->Errors.size() >= LeastErrors;
+      this->Roughness().ScalesAt(this->Spots, this->All, this->Gap, missed, this->LeftOut.Noise);
+    this->IsFound = this->LeftOut.Wide.Errors.size() >= LeastErrors;
+    this->LeftOut.Carry(
+      LineRoughness::MeanOf(this->Roughness().Along(this->All, this->Gap)), this->SplineShare);
+  }
+
+  /** Adds the errors of a trial, with their scales for a median gap. */
+  void Measure(
+    const Trial& trial, double gap, const std::vector<double>& missed, ScaledErrors& measured) const
+  {
+    const LineRoughness roughness = this->Roughness();
+    const std::vector<double> scales =
+      roughness.ScalesAt(trial.Spots, trial.Rest, gap, missed, this->LeftOut.Noise);
+    for (std::size_t i = 0; i < trial.Probes.size(); ++i)
+    {
+      const double size = std::fabs(trial.Misses[i] - this->SplineShare * trial.Bending[i]);
+      if (trial.Spots[i].IsInside && scales[i] > 0.0)
+      {
+        measured.Errors.push_back({ size, scales[i] });
+      }
+    }
+    measured.Roughness.push_back(LineRoughness::MeanOf(roughness.Along(trial.Rest, gap)));
   }
 
   /** Triangulates known points, and prepares the spline. */
@@ -578,9 +563,7 @@ private:
   double Gap = 0.0;        ///< the median gap of these
   double SplineShare = 0.0;
   std::vector<double> NewScales;         ///< of new vertices
-  double Noise = 0.0;                    ///< square mean of the roots of its second differences
-  std::vector<ScaledError> Errors;       ///< of trials in wider gaps
-  std::vector<ScaledError> DirectErrors; ///< of lines that cross the gaps as they are
+  TrialErrors LeftOut;
 };
 
 BetweenLines::BetweenLines(
@@ -599,6 +582,11 @@ bool BetweenLines::AreFound() const
 double BetweenLines::Share() const
 {
   return this->Tried->Share();
+}
+
+double BetweenLines::Outgrowth() const
+{
+  return this->Tried->Outgrowth();
 }
 
 std::vector<double> BetweenLines::Apply(const Values& values, const Progress& progress) const

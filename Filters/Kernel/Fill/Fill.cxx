@@ -158,6 +158,7 @@ bool ElevateBetweenLines(const Mesh& mesh, const VertexStars* stars, double long
     }
   }
   report.Method = Interpolation::ThinPlate;
+  report.Outgrowth = lines.Outgrowth();
   filled.Errors = lines.StandardErrors();
   filled.HalfIntervals = lines.HalfIntervals(options.ConfidenceLevel);
   return true;

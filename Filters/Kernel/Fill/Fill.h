@@ -113,6 +113,7 @@ struct HoleReport
   double Spacing = 0.0; ///< as given, or the mean length of the edges (PatchPlan.h)
   Index NumberOfInsertedPoints = 0;
   Interpolation Method = Interpolation::NeighborMean; ///< as used; never Adaptive
+  double Outgrowth = 0.0;                             ///< BetweenLines::Outgrowth()
   bool NeedsMoreSurroundings = false; ///< not filled: its surroundings are too small
   Message Reason;                     ///< if Failed: without the hole's name
 };

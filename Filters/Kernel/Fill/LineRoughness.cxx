@@ -17,13 +17,19 @@ constexpr double NotANumber = std::numeric_limits<double>::quiet_NaN();
 /** A stretch of a line is straight if its ends are so far apart, in its length. */
 constexpr double LeastStraightness = 0.88;
 
-/** The shares of roughness near and in the neighbourhood; half of each by lines left out. */
-constexpr double ShareOfNear = 0.35;
-constexpr double ShareOfWide = 0.35;
-constexpr double ShareOfAll = 0.3;
+/** The shares of roughness over half the length near, and in the neighbourhood. */
+constexpr double ShareOfNear = 0.22;
+constexpr double ShareOfWide = 0.16;
+
+/** The shares of errors of lines that were left out, near and in the neighbourhood. */
+constexpr double ShareOfErrorsNear = 0.18;
+constexpr double ShareOfErrorsWide = 0.18;
 
 /** The power of roughness, in parts of the mean; with 1, intervals are too wide where it is large. */
-constexpr double RoughnessPower = 0.7;
+constexpr double RoughnessPower = 0.8;
+
+/** The width of a gap counts with this power, the median one with the rest, where it is narrow. */
+constexpr double PowerOfGap = 0.5;
 
 /** How far the neighbourhoods reach, in gaps: along a line, and the size of cells, of which nine. */
 constexpr double NearInGaps = 0.5;
@@ -309,33 +315,51 @@ double LineRoughness::ShapePower(const KnownPoints& known, double length, double
   return squares > 0.0 ? std::max(0.0, std::min(LargestShapePower, products / squares)) : 1.0;
 }
 
+/**
+ * What the known points near spots have, in parts of the mean over all spots inside.
+ * @param[in] roots  of the values at known points
+ */
+void LineRoughness::AddShare(double share, const std::vector<Spot>& spots,
+  const std::vector<double>& roots, std::vector<double>& sums) const
+{
+  std::vector<double> values(spots.size(), 0.0);
+  double mean = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < spots.size(); ++i)
+  {
+    if (spots[i].IsInside)
+    {
+      const double root = Linear(spots[i], roots);
+      values[i] = root * root;
+      mean += values[i];
+      count += 1.0;
+    }
+  }
+  for (std::size_t i = 0; i < spots.size() && mean > 0.0; ++i)
+  {
+    sums[i] += share * values[i] * count / mean;
+  }
+}
+
 /** The scales of spots, for a median gap. See above. */
 std::vector<double> LineRoughness::ScalesAt(const std::vector<Spot>& spots,
   const KnownPoints& known, double gap, const std::vector<double>& missed, double noise) const
 {
   const std::vector<double> rough = this->Along(known, gap);
+  const std::vector<double> ofHalves = this->Along(known, 0.5 * gap);
   const double all = MeanOf(rough);
-  const Means along = this->MeansOf(known, rough, gap);
-  Means across = along;
-  if (std::any_of(known.Numbers.begin(), known.Numbers.end(),
-        [&](Index number) { return !std::isnan(missed[number]); }))
-  {
-    across = this->MeansOf(known, missed, gap);
-    double sums[2] = { 0.0, 0.0 };
-    for (const Index number : known.Numbers)
-    {
-      sums[0] += along.Wide[number];
-      sums[1] += across.Wide[number];
-    }
-    const double factor = sums[1] > 0.0 ? sums[0] / sums[1] : 0.0;
-    for (std::vector<double>* values : { &across.Near, &across.Wide })
-    {
-      std::transform(values->begin(), values->end(), values->begin(),
-        [factor](double value) { return factor * value; });
-    }
-  }
+  const double half = MeanOf(ofHalves);
+  const Means along{ this->MeansOf(known, ofHalves, gap).Near,
+    this->MeansOf(known, rough, gap).Wide };
+  const bool haveErrors = std::any_of(known.Numbers.begin(), known.Numbers.end(),
+    [&](Index number) { return !std::isnan(missed[number]); });
+  const Means across = haveErrors ? this->MeansOf(known, missed, gap) : along;
+  std::vector<double> local(
+    spots.size(), 1.0 - ShareOfNear - ShareOfWide - ShareOfErrorsNear - ShareOfErrorsWide);
+  this->AddShare(ShareOfNear, spots, along.Near, local);
+  this->AddShare(ShareOfWide, spots, along.Wide, local);
+  this->AddShare(ShareOfErrorsNear, spots, across.Near, local);
+  this->AddShare(ShareOfErrorsWide, spots, across.Wide, local);
   const double power = this->ShapePower(known, gap, ShapeQuantileInMeans * noise);
-  const double half = MeanOf(this->Along(known, 0.5 * gap));
   const double growth =
     half > 0.0 && all > 0.0 ? std::max(0.0, std::min(LargestGapPower, std::log2(all / half))) : 0.0;
   std::vector<double> scales(spots.size(), NotANumber);
@@ -346,16 +370,10 @@ std::vector<double> LineRoughness::ScalesAt(const std::vector<Spot>& spots,
     {
       continue;
     }
-    const auto square = [&](const std::vector<double>& roots) {
-      const double root = Linear(spot, roots);
-      return root * root;
-    };
-    const double roughness = 0.5 * ShareOfNear * (square(along.Near) + square(across.Near)) +
-      0.5 * ShareOfWide * (square(along.Wide) + square(across.Wide)) + ShareOfAll * all;
-    const double even = all > 0.0 ? all * std::pow(roughness / all, RoughnessPower) : 0.0;
-    const double width = std::max(gap / WidestGap, std::min(gap * WidestGap, spot.Gap));
-    const double u = std::min(1.0, 2.0 * spot.Distance / spot.Gap);
-    scales[i] = std::pow(u * (2.0 - u), power) * std::pow(width / gap, growth) * even;
+    const double width = std::max(gap / WidestGap, std::min(gap * WidestGap, spot.Gap)) / gap;
+    const double u = std::min(1.0, 2.0 * spot.Distance / (gap * std::pow(width, PowerOfGap)));
+    scales[i] = std::pow(u * (2.0 - u), power) * std::pow(width, growth) * all *
+      std::pow(local[i], RoughnessPower);
   }
   return scales;
 }

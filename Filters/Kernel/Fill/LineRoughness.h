@@ -38,6 +38,9 @@ public:
   /** Of each known point the roughness along its line, over stretches of a length; or NaN. */
   std::vector<double> Along(const KnownPoints& known, double length) const;
 
+  /** The square of the mean root, which single large values do not determine; without NaN. */
+  static double MeanOf(const std::vector<double>& values);
+
   /** What of the roughness is noise, which is there near lines, too. */
   double NoiseAlong(const KnownPoints& known) const;
 
@@ -65,10 +68,11 @@ private:
   };
   Stretch StretchAt(Index track, Index place, double before, double behind) const;
   bool IsThere(const KnownPoints& known, Index track) const;
-  static double MeanOf(const std::vector<double>& values);
   Means MeansOf(const KnownPoints& known, const std::vector<double>& values, double gap) const;
   std::vector<double> MeansInCells(
     const KnownPoints& known, const std::vector<double>& values, double side) const;
+  void AddShare(double share, const std::vector<Spot>& spots, const std::vector<double>& roots,
+    std::vector<double>& sums) const;
   double ShapePower(const KnownPoints& known, double length, double noise) const;
 
   const PatchMesh& Patch;

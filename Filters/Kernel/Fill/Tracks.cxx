@@ -23,6 +23,10 @@ constexpr std::size_t LeastArm = 3;
 /** The direction of an arm is that to the vertex so many steps away. */
 constexpr int StepsOfDirection = 5;
 
+/** Meetings of arms that so many edges join are one, unless it had more of them than this. */
+constexpr std::size_t MostShared = 2;
+constexpr std::size_t MostMeetings = 10;
+
 /** The cosine of the angle between two arms that continue each other: 135 degrees at least. */
 constexpr double MostCosine = -0.7;
 
@@ -31,8 +35,21 @@ constexpr Index LeastVertices = 8;
 /** Tracks whose vertices are joined by fewer edges, of the shorter one's, are not side by side. */
 constexpr double LeastContact = 0.1;
 
-/** More colours are not needed. */
-constexpr int MostColors = 4;
+/** Of lines that do not cross others; more are not needed. Then that of those that do. */
+constexpr int MostColors = 3;
+constexpr int ColorOfCrossing = 3;
+
+/** 0 where both are the same. */
+Point2 UnitVector(const Point2& p, const Point2& q)
+{
+  const double length = std::hypot(q.X - p.X, q.Y - p.Y);
+  return { length > 0.0 ? (q.X - p.X) / length : 0.0, length > 0.0 ? (q.Y - p.Y) / length : 0.0 };
+}
+
+double Cosine(const Point2& a, const Point2& b)
+{
+  return a.X * b.X + a.Y * b.Y;
+}
 
 /** Joins, prunes and traces. */
 class TrackFinding
@@ -162,48 +179,133 @@ private:
     }
   }
 
+  /** A unit vector along an arm; 0 for a loop that comes back. */
+  Point2 DirectionOf(Index v, Index to) const
+  {
+    return UnitVector(this->Surface.PointOf(v),
+      this->Surface.PointOf(this->Follow(v, to, StepsOfDirection).back()));
+  }
+
+  /** An arm by its vertex and its number there. */
+  struct Arm
+  {
+    Index Vertex = None;
+    int Number = -1;
+  };
+
+  bool IsMeeting(Index v) const { return this->Arms[v].size() > 2; }
+
+  /**
+   * Lines that cross may share some edges. So meetings of arms that few edges join are one, of
+   * which only the arms that leave it have partners.
+   */
   void PairArms()
   {
-    const Mesh& mesh = this->Surface;
+    std::vector<char> isDone(this->Arms.size(), 0);
     this->Partners.resize(this->Arms.size());
-    for (Index v = 0; v < mesh.NumberOfPoints(); ++v)
+    for (std::size_t v = 0; v < this->Arms.size(); ++v)
     {
-      const std::vector<Index>& arms = this->Arms[v];
-      std::vector<int>& partners = this->Partners[v];
-      partners.assign(arms.size(), -1);
-      std::vector<Point2> directions;
-      for (const Index to : arms)
+      this->Partners[v].resize(this->Arms[v].size());
+    }
+    for (Index v = 0; v < static_cast<Index>(this->Arms.size()); ++v)
+    {
+      if (isDone[v])
       {
-        const Point2& p = mesh.PointOf(v);
-        const Point2& q = mesh.PointOf(this->Follow(v, to, StepsOfDirection).back());
-        const double length = std::hypot(q.X - p.X, q.Y - p.Y);
-        // A loop that comes back has none.
-        directions.push_back(
-          { length > 0.0 ? (q.X - p.X) / length : 0.0, length > 0.0 ? (q.Y - p.Y) / length : 0.0 });
+        continue;
       }
-      std::vector<std::tuple<double, int, int>> pairs;
-      for (int i = 0; i < static_cast<int>(arms.size()); ++i)
+      std::vector<Index> meetings{ v };
+      std::vector<Arm> leaving;
+      for (std::size_t m = 0; m < meetings.size() && meetings.size() <= MostMeetings; ++m)
       {
-        for (int k = i + 1; k < static_cast<int>(arms.size()); ++k)
+        for (int i = 0; i < static_cast<int>(this->Arms[meetings[m]].size()); ++i)
         {
-          const double cosine =
-            directions[i].X * directions[k].X + directions[i].Y * directions[k].Y;
-          if (arms.size() == 2 || cosine < MostCosine)
+          const Index end =
+            this->Follow(meetings[m], this->Arms[meetings[m]][i], MostShared).back();
+          if (!this->IsMeeting(v) || !this->IsMeeting(end))
           {
-            pairs.emplace_back(cosine, i, k);
+            leaving.push_back({ meetings[m], i });
+          }
+          else if (std::find(meetings.begin(), meetings.end(), end) == meetings.end())
+          {
+            meetings.push_back(end);
           }
         }
       }
-      std::sort(pairs.begin(), pairs.end());
-      for (const auto& [cosine, i, k] : pairs)
+      if (meetings.size() > MostMeetings)
       {
-        if (partners[i] < 0 && partners[k] < 0)
+        leaving.clear();
+        meetings.resize(1);
+        for (int i = 0; i < static_cast<int>(this->Arms[v].size()); ++i)
         {
-          partners[i] = k;
-          partners[k] = i;
+          leaving.push_back({ v, i });
+        }
+      }
+      for (const Index meeting : meetings)
+      {
+        isDone[meeting] = 1;
+      }
+      this->Pair(leaving);
+    }
+  }
+
+  /** Those that continue each other best first. */
+  void Pair(const std::vector<Arm>& arms)
+  {
+    std::vector<Point2> directions;
+    for (const Arm& arm : arms)
+    {
+      directions.push_back(this->DirectionOf(arm.Vertex, this->Arms[arm.Vertex][arm.Number]));
+    }
+    std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+    for (std::size_t i = 0; i < arms.size(); ++i)
+    {
+      for (std::size_t k = i + 1; k < arms.size(); ++k)
+      {
+        const double cosine = directions[i].X * directions[k].X + directions[i].Y * directions[k].Y;
+        if (!this->IsMeeting(arms[i].Vertex) || cosine < MostCosine)
+        {
+          pairs.emplace_back(cosine, i, k);
         }
       }
     }
+    std::sort(pairs.begin(), pairs.end());
+    for (const auto& [cosine, i, k] : pairs)
+    {
+      Arm& first = this->PartnerOf(arms[i]);
+      Arm& second = this->PartnerOf(arms[k]);
+      if (first.Vertex == None && second.Vertex == None)
+      {
+        first = arms[k];
+        second = arms[i];
+      }
+    }
+  }
+
+  Arm& PartnerOf(const Arm& arm) { return this->Partners[arm.Vertex][arm.Number]; }
+
+  /** Vertices from one meeting to another, which few edges join; without the first. */
+  std::vector<Index> PathBetween(Index from, Index to)
+  {
+    std::map<Index, Index> before{ { to, None } };
+    std::vector<Index>& reached = this->Reached;
+    reached.assign(1, to);
+    for (std::size_t k = 0; k < reached.size() && before.count(from) == 0; ++k)
+    {
+      for (const Index v : this->Arms[reached[k]])
+      {
+        if (before.emplace(v, reached[k]).second)
+        {
+          reached.push_back(v);
+        }
+      }
+    }
+    CountWork(reached.size());
+    std::vector<Index> path;
+    for (Index v = from; v != to; v = before.at(v))
+    {
+      path.push_back(before.at(v));
+    }
+    return path;
   }
 
   int ArmTo(Index from, Index to) const
@@ -226,29 +328,33 @@ private:
       {
         for (int arm = 0; arm < static_cast<int>(this->Arms[v].size()); ++arm)
         {
-          if (!isTraced[v][arm] && (!haveEnds || this->Partners[v][arm] < 0))
+          if (!isTraced[v][arm] && (!haveEnds || this->Partners[v][arm].Vertex == None))
           {
-            this->TraceOne(v, arm, isTraced);
+            this->TraceOne({ v, arm }, isTraced);
           }
         }
       }
     }
   }
 
-  void TraceOne(Index v, int arm, std::vector<std::vector<char>>& isTraced)
+  void TraceOne(Arm arm, std::vector<std::vector<char>>& isTraced)
   {
     std::vector<Index>& vertices = this->Result.Vertices;
     const std::size_t first = vertices.size();
-    vertices.push_back(v);
-    while (arm >= 0 && !isTraced[v][arm])
+    vertices.push_back(arm.Vertex);
+    while (arm.Vertex != None && !isTraced[arm.Vertex][arm.Number])
     {
-      isTraced[v][arm] = 1;
-      const Index next = this->Arms[v][arm];
-      const int back = this->ArmTo(next, v);
+      isTraced[arm.Vertex][arm.Number] = 1;
+      const Index next = this->Arms[arm.Vertex][arm.Number];
+      const int back = this->ArmTo(next, arm.Vertex);
       isTraced[next][back] = 1;
       vertices.push_back(next);
       arm = this->Partners[next][back];
-      v = next;
+      if (arm.Vertex != None && arm.Vertex != next)
+      {
+        const std::vector<Index> path = this->PathBetween(next, arm.Vertex);
+        vertices.insert(vertices.end(), path.begin(), path.end());
+      }
     }
     if (vertices.back() == vertices[first])
     {
@@ -264,12 +370,115 @@ private:
 
   const Mesh& Surface;
   std::vector<std::vector<Index>> Arms;   ///< of each vertex those that an edge joins it to
-  std::vector<std::vector<int>> Partners; ///< for each arm the number of the one that continues it
+  std::vector<std::vector<Arm>> Partners; ///< for each arm the one that continues it
   std::vector<int> Steps;                 ///< of AreNear(); 0 between calls
   std::vector<Index> Reached;
   const double Longest;
   Tracks Result;
 };
+
+std::vector<Index> FromLongest(const Tracks& tracks)
+{
+  std::vector<Index> order(tracks.Count());
+  for (Index t = 0; t < tracks.Count(); ++t)
+  {
+    order[t] = t;
+  }
+  std::stable_sort(
+    order.begin(), order.end(), [&](Index a, Index b) { return tracks.Size(a) > tracks.Size(b); });
+  return order;
+}
+
+/**
+ * Which tracks cross the others: of two that cross one does, and the other does not. Those that are
+ * longer in all do not.
+ */
+std::vector<char> FindCrossing(
+  const Tracks& tracks, const Mesh& mesh, const std::vector<Index>& vertexOf)
+{
+  // (vertex, track, direction there)
+  std::vector<std::tuple<Index, Index, Point2>> visits;
+  for (Index t = 0; t < tracks.Count(); ++t)
+  {
+    const auto at = [&](Index place) {
+      const Index v = tracks.Begin(t)[std::max(0, std::min(tracks.Size(t) - 1, place))];
+      return vertexOf.empty() ? v : vertexOf[v];
+    };
+    for (Index i = 0; i < tracks.Size(t); ++i)
+    {
+      const Index before = at(i - StepsOfDirection), behind = at(i + StepsOfDirection);
+      if (at(i) != None && before != None && behind != None)
+      {
+        visits.emplace_back(
+          tracks.Begin(t)[i], t, UnitVector(mesh.PointOf(before), mesh.PointOf(behind)));
+      }
+    }
+  }
+  std::stable_sort(visits.begin(), visits.end(),
+    [](const auto& a, const auto& b) { return std::get<0>(a) < std::get<0>(b); });
+  std::vector<std::vector<Index>> meet(tracks.Count());
+  for (std::size_t i = 0; i < visits.size(); ++i)
+  {
+    const auto& [v, t, direction] = visits[i];
+    for (std::size_t k = i + 1; k < visits.size() && std::get<0>(visits[k]) == v; ++k)
+    {
+      const auto& [same, other, across] = visits[k];
+      if (other != t && std::fabs(Cosine(direction, across)) < -MostCosine)
+      {
+        meet[t].push_back(other);
+        meet[other].push_back(t);
+      }
+    }
+  }
+  // Each is unlike most of those it meets. A track that turns a corner may be like some of them.
+  std::vector<char> isCrossing(tracks.Count(), 0), isReached(tracks.Count(), 0);
+  const auto isUnlikeMost = [&](Index t) {
+    int balance = 0;
+    for (const Index other : meet[t])
+    {
+      balance += !isReached[other] ? 0 : isCrossing[other] ? 1 : -1;
+    }
+    return balance < 0 || (balance == 0 && isCrossing[t]);
+  };
+  for (const Index first : FromLongest(tracks))
+  {
+    std::vector<Index> reached;
+    if (!isReached[first])
+    {
+      isReached[first] = 1;
+      reached.push_back(first);
+    }
+    for (std::size_t k = 0; k < reached.size(); ++k)
+    {
+      for (const Index other : meet[reached[k]])
+      {
+        if (!isReached[other])
+        {
+          isCrossing[other] = isUnlikeMost(other);
+          isReached[other] = 1;
+          reached.push_back(other);
+        }
+      }
+    }
+    for (int again = 0; again < 3; ++again)
+    {
+      for (const Index t : reached)
+      {
+        isCrossing[t] = isUnlikeMost(t);
+      }
+    }
+    std::size_t sizes[2] = { 0, 0 };
+    for (const Index t : reached)
+    {
+      sizes[isCrossing[t]] += tracks.Size(t);
+    }
+    for (const Index t : reached)
+    {
+      isCrossing[t] = sizes[1] > sizes[0] ? !isCrossing[t] : isCrossing[t];
+    }
+  }
+  return isCrossing;
+}
 } // namespace
 
 Tracks FindTracks(const Mesh& mesh, double longest, const Progress& progress)
@@ -308,11 +517,12 @@ std::vector<int> ColorTracks(
       ++contacts[{ std::min(a, b), std::max(a, b) }];
     }
   }
+  const std::vector<char> isCrossing = FindCrossing(tracks, mesh, vertexOf);
   std::vector<std::vector<std::pair<Index, int>>> beside(tracks.Count());
   for (const auto& [pair, count] : contacts)
   {
     const Index shorter = std::min(tracks.Size(pair.first), tracks.Size(pair.second));
-    if (count >= LeastContact * shorter)
+    if (count >= LeastContact * shorter && !isCrossing[pair.first] && !isCrossing[pair.second])
     {
       beside[pair.first].emplace_back(pair.second, count);
       beside[pair.second].emplace_back(pair.first, count);
@@ -320,15 +530,8 @@ std::vector<int> ColorTracks(
   }
   // From the longest track to those beside it, so that of parallel ones none is between two
   // that have begun differently.
-  std::vector<Index> order(tracks.Count());
-  for (Index t = 0; t < tracks.Count(); ++t)
-  {
-    order[t] = t;
-  }
-  std::stable_sort(
-    order.begin(), order.end(), [&](Index a, Index b) { return tracks.Size(a) > tracks.Size(b); });
   std::vector<char> isQueued(tracks.Count(), 0);
-  for (const Index first : order)
+  for (const Index first : FromLongest(tracks))
   {
     std::queue<Index> queue;
     if (isThere[first] && !isQueued[first])
@@ -355,7 +558,9 @@ std::vector<int> ColorTracks(
           queue.push(other);
         }
       }
-      colors[t] = static_cast<int>(std::min_element(conflicts, conflicts + MostColors) - conflicts);
+      colors[t] = isCrossing[t]
+        ? ColorOfCrossing
+        : static_cast<int>(std::min_element(conflicts, conflicts + MostColors) - conflicts);
     }
   }
   return colors;

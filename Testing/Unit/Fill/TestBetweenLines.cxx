@@ -254,6 +254,39 @@ TEST(BetweenLines, NoiseCountsNearLinesToo)
   EXPECT_GT(mean.Interval, 0.88);
 }
 
+TEST(BetweenLines, ErrorsThatOutgrowTheRoughnessAlongLinesAreReported)
+{
+  int reported[2] = { 0, 0 };
+  double mean = 0.0;
+  for (unsigned seed = 1; seed <= 20; ++seed)
+  {
+    for (const bool haveStripes : { false, true })
+    {
+      Random random(seed);
+      std::vector<double> levels;
+      for (int line = 0; line < 30; ++line)
+      {
+        levels.push_back(haveStripes ? 3.0 * random.Unit() : 0.0);
+      }
+      const auto striped = [&](const Point2& p) {
+        return 8.0 * std::sin(p.X / 15.0) * std::cos(p.Y / 19.0) +
+          levels[static_cast<std::size_t>(std::lround(p.Y / 5.0))];
+      };
+      const Outcome run = Filled(Survey(seed, Style::Straight, 5), striped);
+      const HoleReport& report = run.Patches.Reports[0];
+      EXPECT_TRUE(report.Outgrowth == 0.0 || report.Outgrowth > 1.5) << seed;
+      reported[haveStripes] += report.Outgrowth > 0.0 ? 1 : 0;
+      if (haveStripes)
+      {
+        mean += SharesOf(run, striped).Interval / 20.0;
+      }
+    }
+  }
+  EXPECT_LE(reported[false], 2);
+  EXPECT_GE(reported[true], 18);
+  EXPECT_GT(mean, 0.85);
+}
+
 TEST(BetweenLines, IntervalsAreWiderTheMoreOftenTheyHoldTheTruth)
 {
   double before = 0.0;

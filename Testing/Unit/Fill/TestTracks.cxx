@@ -105,6 +105,49 @@ TEST(Tracks, ThatCrossAreTwo)
   }
 }
 
+TEST(Tracks, ThatShareAFewVerticesAreTwo)
+{
+  // Of each two lines that cross, one steps aside where the other does, on the nodes of a lattice.
+  std::set<std::pair<int, int>> nodes;
+  for (int line = 0; line < 5; ++line)
+  {
+    for (int i = -5; i < 48; ++i)
+    {
+      nodes.emplace(i, 10 * line + (i < 10 * line ? 0 : 1));
+      nodes.emplace(10 * line + (i < 10 * line ? 0 : 1), i);
+    }
+  }
+  std::vector<Point2> points;
+  for (const auto& [x, y] : nodes)
+  {
+    points.push_back({ double(x), double(y) });
+  }
+  const Mesh mesh = Sorted(points);
+  const Tracks tracks = FindTracks(mesh, 2.5);
+  ASSERT_EQ(tracks.Count(), 10);
+  for (Index t = 0; t < 10; ++t)
+  {
+    const Point2 from = mesh.PointOf(*tracks.Begin(t));
+    const Point2 to = mesh.PointOf(*(tracks.End(t) - 1));
+    EXPECT_NEAR(std::max(std::fabs(to.X - from.X), std::fabs(to.Y - from.Y)), 52.0, 0.1) << t;
+  }
+  const std::vector<int> colors = ColorTracks(tracks, mesh);
+  for (Index t = 0; t < 10; ++t)
+  {
+    for (Index k = 0; k < t; ++k)
+    {
+      const auto isAlongX = [&](Index track) {
+        return mesh.PointOf(*(tracks.End(track) - 1)).X - mesh.PointOf(*tracks.Begin(track)).X >
+          9.0;
+      };
+      if (isAlongX(t) != isAlongX(k))
+      {
+        EXPECT_NE(colors[t], colors[k]);
+      }
+    }
+  }
+}
+
 TEST(Tracks, ThatComeBackHaveEachVertexOnce)
 {
   std::vector<Point2> points;
