@@ -208,7 +208,7 @@ class VirtualDisplay(Program):
         end = time.monotonic() + 300
         while not condition():
             self.assertLess(time.monotonic(), end)
-            time.sleep(0.01)
+            time.sleep(0.05)  # servers() looks at all processes
 
     def displays(self):
         return [n for n in os.listdir(self.folder) if n.startswith("reconstruct-display-")]

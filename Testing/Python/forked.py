@@ -20,6 +20,7 @@ import sys
 import tempfile
 
 import vtkelevationsurface.reading  # noqa: F401  (numpy and VTK, for the server too)
+from vtkelevationsurface.supervisor import end_with_parent
 
 PROGRAM = ("-m", "vtkelevationsurface")
 PATIENCE = 300  # seconds
@@ -49,6 +50,7 @@ def run_and_end(given):
     """run() in a process that then ends as python3 would, without winding up what was there before."""
     code = 1
     try:
+        end_with_parent()
         run(*given)
         code = 0
     except SystemExit as end:
@@ -98,6 +100,7 @@ def start():
     sys.stderr.flush()
     if os.fork() == 0:
         try:
+            end_with_parent()
             mine.close()
             serve(its)
         finally:
@@ -123,6 +126,7 @@ def python(*arguments, folder, environment=None, largest_file=None):
         try:
             code = pickle.loads(SERVER.recv(1 << 10))
         except (socket.timeout, EOFError) as error:
+            SERVER.close()  # so that no later call gets this one's answer
             raise AssertionError(f"{arguments}: no end in {PATIENCE} s") from error
         shown = []
         for name in streams[1:]:
