@@ -128,13 +128,13 @@ constexpr const char* SpacingsName = "Spacings";
 
 // Field data carry the two lists, since the near part travels as a data set anyway.
 void BoundaryZone::AddKnown(
-  const std::vector<Known>& states, const std::vector<double>& spacings, vtkPolyData* part)
+  const std::vector<TriangleState>& states, const std::vector<double>& spacings, vtkPolyData* part)
 {
   vtkNew<vtkUnsignedCharArray> ofTriangles;
   ofTriangles->SetName(StatesName);
   SetTuples(static_cast<vtkIdType>(states.size()), ofTriangles);
   std::transform(states.begin(), states.end(), ofTriangles->GetPointer(0),
-    [](Known state) { return static_cast<unsigned char>(state); });
+    [](TriangleState state) { return static_cast<unsigned char>(state); });
   part->GetFieldData()->AddArray(ofTriangles);
   vtkNew<vtkDoubleArray> ofPoints;
   ofPoints->SetName(SpacingsName);
@@ -151,7 +151,7 @@ bool BoundaryZone::TrimOutline(
   const TriangleList& list = this->Triangles.View;
   // What the parts know, put together by joined triangles and points. Triangles of the joined list
   // come part after part, and so do their states.
-  std::vector<Known> states;
+  std::vector<TriangleState> states;
   std::vector<double> spacings(list.Points.Count, std::numeric_limits<double>::quiet_NaN());
   for (std::size_t part = 0; part < this->GivenParts.size(); ++part)
   {
@@ -159,7 +159,8 @@ bool BoundaryZone::TrimOutline(
     vtkDataArray* const ofTriangles = known->GetArray(StatesName);
     for (vtkIdType i = 0; ofTriangles && i < ofTriangles->GetNumberOfTuples(); ++i)
     {
-      states.push_back(static_cast<Known>(static_cast<int>(ofTriangles->GetComponent(i, 0))));
+      states.push_back(
+        static_cast<TriangleState>(static_cast<int>(ofTriangles->GetComponent(i, 0))));
     }
     vtkDataArray* const ofPoints = known->GetArray(SpacingsName);
     for (vtkIdType i = 0; ofPoints && i < ofPoints->GetNumberOfTuples(); ++i)

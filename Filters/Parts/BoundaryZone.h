@@ -89,8 +89,8 @@ public:
    * @param[in] triangles    of the mesh
    */
   bool TrimOutline(std::int64_t innerPoints, std::int64_t triangles, const TrimOptions& options);
-  static void AddKnown(
-    const std::vector<Known>& states, const std::vector<double>& spacings, vtkPolyData* part);
+  static void AddKnown(const std::vector<TriangleState>& states,
+    const std::vector<double>& spacings, vtkPolyData* part);
 
   /** What goes back to each part, in the order of the parts given. */
   std::vector<TrimmedZone> Split(const Progress& progress) const;
