@@ -117,7 +117,7 @@ public:
    *   it, like a plate that bends as little as it can. Continues planes exactly.
    * - CUBIC_SPLINE: as THIN_PLATE, but smoother: better on calm terrain, worse on noise.
    * - ADAPTIVE: for each hole the one of MEMBRANE, THIN_PLATE and CUBIC_SPLINE that predicts the
-   *   surface around it best. The hole's boundary is moved to up to 32 places beside the hole,
+   *   surface around it best. The hole's boundary is moved to up to 16 places beside the hole,
    *   where the surface is known, and each method predicts what is inside. Methods that predict it
    *   about equally well are mixed; the fewer places there are, the more THIN_PLATE is preferred.
    *   Output 1 has the one with the largest share. Between survey lines (see OpenEdgeLength), lines

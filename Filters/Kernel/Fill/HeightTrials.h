@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace elevation
@@ -47,6 +48,9 @@ constexpr double NoiseShare = 0.8;
  */
 constexpr double HalfSizePenalty[3] = { 0.0, 0.2, 0.4 };
 
+/** Points at which splines are evaluated at all places between two reports. */
+constexpr std::size_t PointsPerStep = 1024;
+
 /** Smaller errors, relative to the range, are rounding. */
 constexpr double LeastError = 1e-9;
 
@@ -73,6 +77,19 @@ constexpr double LeastGrowth = 1.2;
 constexpr double MostGrowth = 8.0;
 constexpr int LeastPlacesForGrowth = 2;
 
+// By reversing the bits of k: 0, 1/2, 1/4, 3/4, ... of a turn, so that the first few places, which
+// may be enough, are around the hole.
+/** The k-th of 0 to count - 1, a power of two, in an order whose beginnings are evenly spread. */
+inline int Spread(int k, int count)
+{
+  int result = 0;
+  for (int bit = 1; bit < count; bit *= 2)
+  {
+    result = 2 * result + (k & bit ? 1 : 0);
+  }
+  return result;
+}
+
 inline bool AllFinite(const std::vector<double>& values)
 {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
@@ -96,13 +113,13 @@ public:
   }
 
   /**
-   * Tries the candidates where hole, ring and probes have been moved in a direction.
+   * Moves hole, ring and probes in a direction, for Compare().
    * @param angle      of the direction, in radians
    * @param size       1, or smaller: of the moved points
    * @param isCounted  else the place only shows how errors grow, from here to twice the size
    * @return false if a moved point misses the surface
    */
-  bool At(double angle, double size, bool isCounted, const Progress& progress)
+  bool At(double angle, double size, bool isCounted)
   {
     double smoothing = 0.0;
     if (!this->Move({ std::cos(angle), std::sin(angle) }, size, smoothing) ||
@@ -128,37 +145,60 @@ public:
     {
       value /= unit;
     }
-    // The smoothing is one half on average for points anywhere in triangles.
-    this->Places.push_back({ -std::log2(size), unit, isCounted });
-    // Either effect flattens the surface as seen by the moved points; the larger one counts.
-    const double halvings = std::max(smoothing, this->Places.back().Halvings);
-    double squares[3] = { 0.0, 0.0, 0.0 };
-    double least = std::numeric_limits<double>::infinity();
+    // Either effect flattens the surface as seen by the moved points; the larger one counts. The
+    // smoothing is one half on average for points anywhere in triangles.
+    const double halvings = -std::log2(size);
+    this->Places.push_back({ halvings, std::max(smoothing, halvings), unit, isCounted });
+    this->AllMoved.push_back(this->Moved);
+    return true;
+  }
+
+  /** Predicts the probes by the candidates at all places tried, and compares. */
+  void Compare(const Progress& progress)
+  {
+    const std::size_t places = this->Places.size();
+    const std::size_t probes = this->Probes.size();
+    if (places == 0)
+    {
+      return;
+    }
+    std::vector<double> squares[3];
+    std::vector<double> least(places, std::numeric_limits<double>::infinity());
     for (int method = 0; method < 3; ++method)
     {
       if (!this->Hole.IsCandidate[method])
       {
         continue;
       }
-      const std::vector<double> predicted = this->Predict(method, progress);
-      for (std::size_t k = 0; k < predicted.size(); ++k)
+      std::vector<double>& misses = this->Misses[method];
+      misses.resize(places * probes);
+      squares[method].assign(places, 0.0);
+      const std::vector<double> predicted =
+        this->Predict(method, progress.Between(method / 3.0, (method + 1) / 3.0));
+      for (std::size_t k = 0; k < places; ++k)
       {
-        const double error = predicted[k] - this->Moved[this->FirstProbe + k];
-        squares[method] += error * error;
-        this->Misses[method].push_back(error * unit);
+        for (std::size_t i = 0; i < probes; ++i)
+        {
+          const double error = predicted[i * places + k] - this->AllMoved[k][this->FirstProbe + i];
+          squares[method][k] += error * error;
+          misses[k * probes + i] = error * this->Places[k].Unit;
+        }
+        least[k] = std::min(least[k], squares[method][k]);
       }
-      least = std::min(least, squares[method]);
     }
-    // The noise is common to the methods, so it is subtracted from all of them before logarithms.
-    const double noise = NoiseShare * least;
-    for (int method = 0; method < 3 && isCounted; ++method)
+    for (int method = 0; method < 3; ++method)
     {
-      // A prediction that is exact up to rounding must not outweigh all other places.
-      const double square = squares[method] - noise + LeastError * LeastError;
-      this->Scores[method] -=
-        ObservationsPerPlace * (0.5 * std::log(square) + HalfSizePenalty[method] * halvings);
+      for (std::size_t k = 0; k < squares[method].size(); ++k)
+      {
+        const Place& place = this->Places[k];
+        // The noise is common to the methods, so it is subtracted from all of them before
+        // logarithms. A prediction that is exact up to rounding must not outweigh all other places.
+        const double square = squares[method][k] - NoiseShare * least[k] + LeastError * LeastError;
+        this->Scores[method] -= place.IsCounted ? ObservationsPerPlace *
+            (0.5 * std::log(square) + HalfSizePenalty[method] * place.Flattened)
+                                                : 0.0;
+      }
     }
-    return true;
   }
 
   /** The logarithms of the methods' shares, up to a common term. */
@@ -243,7 +283,8 @@ public:
 private:
   struct Place
   {
-    double Halvings; ///< of the size
+    double Halvings;  ///< of the size
+    double Flattened; ///< the same, or what comes of points that lie between those of the surface
     double Unit;     ///< range of the values there
     bool IsCounted;
   };
@@ -355,6 +396,21 @@ private:
     {
       this->Order.push_back(entry.second);
     }
+    // Of probes, the nearest one comes next.
+    std::vector<std::size_t> left(this->Probes.size());
+    std::iota(left.begin(), left.end(), this->FirstProbe);
+    while (!left.empty())
+    {
+      const Point2 last = this->Normalized[this->Order.back()];
+      const auto squareTo = [&](std::size_t i) {
+        const Point2& p = this->Normalized[i];
+        return (p.X - last.X) * (p.X - last.X) + (p.Y - last.Y) * (p.Y - last.Y);
+      };
+      const auto nearest = std::min_element(left.begin(), left.end(),
+        [&](std::size_t a, std::size_t b) { return squareTo(a) < squareTo(b); });
+      this->Order.push_back(*nearest);
+      left.erase(nearest);
+    }
   }
 
   /** Where a walk begins; independent of the order of points. */
@@ -422,7 +478,7 @@ private:
       std::find(this->Order.begin(), this->Order.end(), end) - this->Order.begin());
     for (std::size_t k = 0; k < this->Points.size(); ++k)
     {
-      if (!visit(k < this->FirstProbe ? this->Order[(first + k) % this->FirstProbe] : k))
+      if (!visit(this->Order[k < this->FirstProbe ? (first + k) % this->FirstProbe : k]))
       {
         return false;
       }
@@ -430,48 +486,65 @@ private:
     return true;
   }
 
-  /** The probes by the membrane, from values at the boundary. */
-  std::vector<double> PredictHarmonic(
-    const std::vector<double>& rim, const Progress& progress) const
+  /** Of all places, the values of some moved points: those of a point are together. */
+  template <typename IndexOf>
+  std::vector<double> Gathered(std::size_t count, IndexOf&& indexOf) const
   {
-    const std::vector<double> flat = this->Hole.Harmonic->Solve(rim, RoughAccuracy, progress);
-    std::vector<double> predicted;
-    for (const Index probe : this->Probes)
+    std::vector<double> result;
+    result.reserve(count * this->AllMoved.size());
+    for (std::size_t i = 0; i < count; ++i)
     {
-      predicted.push_back(flat[probe]);
+      for (const std::vector<double>& moved : this->AllMoved)
+      {
+        result.push_back(moved[indexOf(i)]);
+      }
     }
-    return predicted;
+    return result;
+  }
+
+  /** Adds the probes by the membrane, from values at the boundary. */
+  void AddHarmonic(
+    const std::vector<double>& rim, const Progress& progress, std::vector<double>& predicted) const
+  {
+    const std::size_t places = this->Places.size();
+    const std::vector<double> flat = this->Hole.Harmonic->Solve(rim, RoughAccuracy, progress);
+    for (std::size_t i = 0; i < predicted.size(); ++i)
+    {
+      predicted[i] += flat[this->Probes[i / places] * places + i % places];
+    }
   }
 
   /**
-   * The probes by a method: 0 is the membrane, then come the splines. The same as Heights::Apply(),
-   * for the probes alone and roughly.
+   * The probes by a method, at all places: 0 is the membrane, then come the splines. The same as
+   * Heights::Apply(), for the probes alone and roughly. All places at once, as what depends on
+   * relative positions alone is found once.
    */
   std::vector<double> Predict(int method, const Progress& progress) const
   {
-    std::vector<double> rim(
-      this->Moved.begin(), this->Moved.begin() + static_cast<std::ptrdiff_t>(this->Boundary));
+    const auto same = [](std::size_t i) { return i; };
+    std::vector<double> rim = this->Gathered(this->Boundary, same);
+    std::vector<double> predicted(this->Probes.size() * this->Places.size(), 0.0);
     if (method == 0)
     {
-      return this->PredictHarmonic(rim, progress);
+      this->AddHarmonic(rim, progress, predicted);
+      return predicted;
     }
     const Spline& spline = *this->Hole.Splines[method - 1];
-    std::vector<double> atCenters;
-    for (const Index i : this->CenterPlace)
-    {
-      atCenters.push_back(this->Moved[i]);
-    }
-    const Spline::Weights weights = spline.Interpolate(atCenters);
-    std::vector<double> predicted(this->Probes.size(), 0.0);
-    spline.Add(weights, &this->Normalized[this->FirstProbe], predicted.size(), predicted.data());
+    const Spline::Weights weights = spline.Interpolate(this->Gathered(
+      this->CenterPlace.size(), [this](std::size_t i) { return this->CenterPlace[i]; }));
+    spline.Add(weights, &this->Normalized[this->FirstProbe], this->Probes.size(), predicted.data());
     if (!this->Hole.AllBoundaryIsCenter)
     {
-      std::vector<double> there(this->Boundary, 0.0);
-      spline.Add(weights, this->Normalized.data(), there.size(), there.data());
+      std::vector<double> there(rim.size(), 0.0);
+      for (std::size_t i = 0; i < this->Boundary; i += PointsPerStep)
+      {
+        const std::size_t count = std::min(PointsPerStep, this->Boundary - i);
+        Report(progress, 0.0);
+        CountWork(count * this->CenterPlace.size());
+        spline.Add(weights, &this->Normalized[i], count, &there[i * this->Places.size()]);
+      }
       std::transform(rim.begin(), rim.end(), there.begin(), rim.begin(), std::minus<double>());
-      const std::vector<double> missed = this->PredictHarmonic(rim, progress);
-      std::transform(
-        predicted.begin(), predicted.end(), missed.begin(), predicted.begin(), std::plus<double>());
+      this->AddHarmonic(rim, progress, predicted);
     }
     return predicted;
   }
@@ -483,10 +556,11 @@ private:
   std::size_t FirstProbe = 0; ///< probes come last
   std::vector<Point2> Points;
   std::vector<Point2> Normalized;
-  std::vector<std::size_t> Order; ///< around the hole, of those that are not probes
+  std::vector<std::size_t> Order; ///< in which they are moved: around the hole, then probes
   std::vector<Index> CenterPlace; ///< index in Points of each centre
   std::vector<Index> Probes;      ///< numbers of new vertices
   std::vector<double> Moved;      ///< values where the points are moved to
+  std::vector<std::vector<double>> AllMoved; ///< the same for each place, scaled
   std::vector<double> Misses[3];  ///< errors of each method at all probes, place by place
   std::vector<Place> Places;
 };

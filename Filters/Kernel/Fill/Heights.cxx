@@ -48,7 +48,7 @@ constexpr double LeastDistance = 0.02;
 /**
  * Places where the methods are tried, and places that suffice with moved points at reduced size.
  */
-constexpr int NumberOfPlaces = 32;
+constexpr int NumberOfPlaces = 16;
 constexpr int NumberOfPlacesOfLargeHoles = 4;
 constexpr int EnoughPlaces = 4;
 constexpr double ReducedSizes[] = { 0.7, 0.5, 0.25 };
@@ -113,19 +113,6 @@ std::vector<Index> PartSizes(Index count, const std::vector<SlopingEdge>& edges,
     sizes[i] = ofRoot[RootOf(parents, i)];
   }
   return sizes;
-}
-
-// By reversing the bits of k: 0, 1/2, 1/4, 3/4, ... of a turn, so that the first few places, which
-// may be enough, are around the hole.
-/** The k-th of 0 to count - 1, a power of two, in an order whose beginnings are evenly spread. */
-int Spread(int k, int count)
-{
-  int result = 0;
-  for (int bit = 1; bit < count; bit *= 2)
-  {
-    result = 2 * result + (k & bit ? 1 : 0);
-  }
-  return result;
 }
 } // namespace
 
@@ -193,12 +180,16 @@ void Heights::CollectSlopes(const VertexStars& stars)
 {
   const IsLowerPoint isLower{ this->Surface };
   const auto isBefore = [&](const Pair& a, const Pair& b) { return isLower(a.Away, b.Away); };
-  std::vector<Pair> before;
+  // A ring is visited from its lowest point on. Rings are compared by ids, which is quicker.
+  const auto isIdBefore = [](const Pair& a, const Pair& b) { return a.Away < b.Away; };
   std::vector<Pair> last;
   for (const Index id : this->Patch.BoundaryIds)
   {
     last.push_back({ id, id });
   }
+  std::vector<Pair> lastById = last;
+  std::sort(lastById.begin(), lastById.end(), isIdBefore);
+  std::vector<Pair> beforeById;
   // The layer of the innermost new vertex: how many edges deep the hole is.
   const Index depth =
     this->Patch.Layers[this->Patch.Order.back() - this->Patch.NumberOfBoundaryVertices()];
@@ -215,23 +206,24 @@ void Heights::CollectSlopes(const VertexStars& stars)
       });
     }
     // Stable: of several pairs to the same point, the one that came from the lowest point counts.
-    std::stable_sort(found.begin(), found.end(), isBefore);
+    std::stable_sort(found.begin(), found.end(), isIdBefore);
     found.erase(std::unique(found.begin(), found.end(),
                   [](const Pair& a, const Pair& b) { return a.Away == b.Away; }),
       found.end());
     // A neighbour is in the same ring, the previous one or the next one.
     std::vector<Pair> next;
-    std::set_difference(
-      found.begin(), found.end(), last.begin(), last.end(), std::back_inserter(next), isBefore);
-    found.clear();
-    std::set_difference(
-      next.begin(), next.end(), before.begin(), before.end(), std::back_inserter(found), isBefore);
-    if (found.empty())
+    std::set_difference(found.begin(), found.end(), lastById.begin(), lastById.end(),
+      std::back_inserter(next), isIdBefore);
+    last.clear();
+    std::set_difference(next.begin(), next.end(), beforeById.begin(), beforeById.end(),
+      std::back_inserter(last), isIdBefore);
+    if (last.empty())
     {
       break;
     }
-    before = std::move(last);
-    last = std::move(found);
+    beforeById = std::move(lastById);
+    lastById = last;
+    std::sort(last.begin(), last.end(), isBefore);
     // The last ring that has points: the farthest evidence of how the surface slopes.
     this->Slopes = last;
   }
@@ -354,7 +346,6 @@ void Heights::ChooseCenters(
 std::unique_ptr<Spline> Heights::MakeSpline(int which) const
 {
   std::vector<Point2> centers;
-  centers.reserve(this->Centers.size());
   for (const Index place : this->Centers)
   {
     centers.push_back(this->Normalized(this->Surface.PointOf(this->KnownVertices[place])));
@@ -390,17 +381,14 @@ void Heights::TryBeside(Trials& trials, const Progress& progress) const
 {
   const bool isLarge = this->Harmonic && this->Harmonic->IsLarge();
   const int number = isLarge ? NumberOfPlacesOfLargeHoles : NumberOfPlaces;
-  double begun = 0.0;
   const auto tryAt = [&](double size, int wanted, bool isCounted) {
     int found = 0;
     for (int k = 0; k < number && found < wanted; ++k)
     {
-      const double done = begun + (1.0 - begun) * 0.8 * k / number;
-      Report(progress, done);
+      Report(progress, 0.0); // walks are short beside predictions
       const double angle = 2.0 * 3.14159265358979323846 * Spread(k, number) / number;
-      found += trials.At(angle, size, isCounted, progress.Between(done, done)) ? 1 : 0;
+      found += trials.At(angle, size, isCounted) ? 1 : 0;
     }
-    begun += (1.0 - begun) * 0.8;
     return found;
   };
   int places = tryAt(1.0, number, true);
@@ -422,6 +410,7 @@ void Heights::TryBeside(Trials& trials, const Progress& progress) const
   {
     tryAt(sizeForGrowth, LeastPlacesForGrowth, false);
   }
+  trials.Compare(progress);
 }
 
 /** Finds the candidates' shares, and their errors. */

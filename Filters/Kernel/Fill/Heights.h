@@ -33,7 +33,7 @@
  * quarter of the points that all edges join it to. Where the spline then misses the boundary, the
  * membrane continues the difference, so that patches always meet their boundary.
  *
- * Adaptive is a cross-validation. The boundary, the ring and some of the new points are moved to 32
+ * Adaptive is a cross-validation. The boundary, the ring and some of the new points are moved to 16
  * places around the hole (four for very large holes), as close to it as possible, and each method
  * predicts the surface at the moved new points from that at the others. Splines and membrane depend
  * only on relative positions, so the hole's factorizations serve at all places. A place counts if
@@ -74,7 +74,8 @@
  * depend on the order of points and triangles. Splines and Adaptive continue planes up to rounding.
  *
  * Cost, for n new points and c centres: NeighborMean and Membrane about linear in n; splines
- * c^3 + c n. Adaptive adds one prediction per method and place.
+ * c^3 + c n. Adaptive adds one prediction per method and place; all places share what depends on
+ * relative positions alone.
  *
  * [Nguyen] A Complete Method for Reconstructing an Elevation Surface of 3D Point Clouds.
  * [Pinkall, Polthier] Computing discrete minimal surfaces and their conjugates, 1993.

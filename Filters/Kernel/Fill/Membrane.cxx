@@ -67,18 +67,21 @@ std::vector<double> Membrane::Solve(
   const std::vector<double>& known, double accuracy, const Progress& progress) const
 {
   const Index size = this->Graph.NumberOfUnknowns();
-  Multigrid::Vector right = Multigrid::Vector::Zero(size);
+  const Eigen::Index sets = static_cast<Eigen::Index>(
+    known.size() / static_cast<std::size_t>(std::max<Index>(1, this->Graph.NumberOfKnown)));
+  const Eigen::Map<const Multigrid::Vectors> values(known.data(), this->Graph.NumberOfKnown, sets);
+  Multigrid::Vectors right = Multigrid::Vectors::Zero(size, sets);
   for (Index i = 0; i < size; ++i)
   {
     for (std::size_t k = this->Graph.Offsets[i]; k < this->Graph.Offsets[i + 1]; ++k)
     {
       if (this->Graph.Neighbors[k] < this->Graph.NumberOfKnown)
       {
-        right[i] += this->Graph.Weights[k] * known[this->Graph.Neighbors[k]];
+        right.row(i) += this->Graph.Weights[k] * values.row(this->Graph.Neighbors[k]);
       }
     }
   }
-  const Multigrid::Vector x = this->Equations->Solve(std::move(right), accuracy, progress);
+  const Multigrid::Vectors x = this->Equations->Solve(std::move(right), accuracy, progress);
   return std::vector<double>(x.data(), x.data() + x.size());
 }
 

@@ -51,8 +51,10 @@ public:
 
   /**
    * The values of the unknowns.
-   * @param[in] known     one value for each known vertex, finite, at most about 1e150
+   * @param[in] known     one value for each known vertex, finite, at most about 1e150; or several
+   *                      for each, one after another: so many problems, of which each costs less
    * @param[in] accuracy  relative to the known values; low accuracy is faster on large graphs only
+   * @return as many for each unknown, in its order
    */
   std::vector<double> Solve(const std::vector<double>& known, double accuracy = 1e-10,
     const Progress& progress = Progress()) const;

@@ -285,4 +285,45 @@ Vector Multigrid::Solve(Vector right, double accuracy, const Progress& progress)
   return x;
 }
 
+// One pass over the factor for all right-hand sides: each entry serves a whole row of them, which
+// vectorizes. Eigen passes over the factor once for each.
+Multigrid::Vectors Multigrid::Solve(Vectors right, double accuracy, const Progress& progress) const
+{
+  if (this->IsLarge() || right.cols() == 1)
+  {
+    const double count = static_cast<double>(right.cols());
+    for (Eigen::Index k = 0; k < right.cols(); ++k)
+    {
+      const double done = static_cast<double>(k);
+      right.col(k) = this->Solve(
+        Vector(right.col(k)), accuracy, progress.Between(done / count, (done + 1.0) / count));
+    }
+    return right;
+  }
+  using Factor = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
+  const Factor& factor = this->Coarsest.matrixL().nestedExpression();
+  Vectors x = this->Coarsest.permutationP() * right;
+  for (Index j = 0; j < factor.cols(); ++j)
+  {
+    // The diagonal comes first.
+    Factor::InnerIterator entry(factor, j);
+    x.row(j) /= entry.value();
+    for (++entry; entry; ++entry)
+    {
+      x.row(entry.row()) -= entry.value() * x.row(j);
+    }
+  }
+  for (Index j = factor.cols() - 1; j >= 0; --j)
+  {
+    Factor::InnerIterator entry(factor, j);
+    const double pivot = entry.value();
+    for (++entry; entry; ++entry)
+    {
+      x.row(j) -= entry.value() * x.row(entry.row());
+    }
+    x.row(j) /= pivot;
+  }
+  return this->Coarsest.permutationPinv() * x;
+}
+
 } // namespace elevation

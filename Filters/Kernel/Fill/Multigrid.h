@@ -40,6 +40,8 @@ class Multigrid
 public:
   using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor, Index>; ///< all of it, rows sorted
   using Vector = Eigen::VectorXd;
+  /** A column for each system; rows are together in memory. */
+  using Vectors = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
   /** @throws Aborted, std::bad_alloc */
   Multigrid(Matrix matrix, const Progress& progress);
@@ -49,6 +51,9 @@ public:
    * @param[in] accuracy  relative to the solution; low accuracy is faster for large systems only
    */
   Vector Solve(Vector right, double accuracy, const Progress& progress) const;
+
+  /** The same for several right-hand sides: small systems take little longer than for a few. */
+  Vectors Solve(Vectors right, double accuracy, const Progress& progress) const;
 
   /** Whether the system is too large to be factorised, so that a solution takes a while. */
   bool IsLarge() const { return this->Levels.size() > 1; }

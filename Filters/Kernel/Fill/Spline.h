@@ -42,7 +42,10 @@ public:
     Cubic
   };
 
-  /** The weights of the centres, then a, b and c of the plane. */
+  /**
+   * The weights of the centres, then a, b and c of the plane. Of several sets of values, the
+   * weights of all sets are together for each of these, as are the values for each centre and point.
+   */
   using Weights = std::vector<double>;
 
   /**
@@ -51,14 +54,19 @@ public:
    */
   bool Prepare(const std::vector<Point2>& centers, Kernel kernel);
 
-  /** @param[in] values  one per centre */
+  /** @param[in] values  one per centre; or several for each, of which each set costs less */
   Weights Interpolate(const std::vector<double>& values) const;
 
-  /** Adds the spline's values at count points to values. */
+  /** Adds the spline's values at count points to values: as many for each as there are sets. */
   void Add(const Weights& weights, const Point2* points, std::size_t count, double* values) const;
 
 private:
   using Matrix = Eigen::MatrixXd;
+  /** A column for each set; rows are together in memory. */
+  using Sets = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  void AddSets(
+    const Weights& weights, const Point2* points, std::size_t count, double* values) const;
 
   Kernel F = Kernel::ThinPlate;
   std::vector<double> X;

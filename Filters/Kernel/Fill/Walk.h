@@ -38,7 +38,6 @@ public:
   Walk(const Mesh& mesh, Index start, const Box& known)
     : Surface(mesh)
     , KnownArea(known)
-    , Triangle(start)
     , First(this->Lowest(start))
   {
   }
@@ -48,46 +47,36 @@ public:
   {
     // A limit in case rounding leads in a circle in spite of the changing first edge.
     constexpr int mostSteps = 1 << 16;
-    Index t = this->Triangle;
+    Index first = this->First;
     for (int step = 0; step < mostSteps; ++step)
     {
-      const Index first = this->Lowest(t);
-      const Point2& a = this->Surface.PointOf(this->Surface.Origin(first));
-      const Point2& b = this->Surface.PointOf(this->Surface.Destination(first));
-      const Point2& c = this->Surface.PointOf(this->Surface.Apex(first));
-      // Twice the areas that p makes with the three edges.
-      const double area = (b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X);
+      double w[3];
+      const double area = this->AreasWith(p, first, w);
       // A place outside by a billionth of the triangle counts as inside: values hardly differ.
       const double tolerance = -1e-9 * area;
-      const double w[3] = { (a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X),
-        (b.X - p.X) * (c.Y - p.Y) - (b.Y - p.Y) * (c.X - p.X),
-        (c.X - p.X) * (a.Y - p.Y) - (c.Y - p.Y) * (a.X - p.X) };
-      // The first edge to test changes with each step, so that the walk does not cycle.
-      int across = -1;
-      for (int k = 0; k < 3 && across < 0; ++k)
-      {
-        const int edge = (k + step) % 3;
-        across = w[edge] < tolerance ? edge : -1;
-      }
-      // Each corner's share is the area opposite to it: w[1] belongs to the edge opposite the
-      // first.
+      // The first edge to test changes with each step, so that the walk does not cycle. That by
+      // which it came is edge 0, and the place is on this side of it.
+      const int near = 1 + step % 2;
+      int across = w[near] < tolerance ? near : w[3 - near] < tolerance ? 3 - near : -1;
+      across = across < 0 && step == 0 && w[0] < tolerance ? 0 : across;
       if (across < 0)
       {
-        const double sum = w[0] + w[1] + w[2];
+        this->First = this->Lowest(Mesh::Triangle(first));
+        const double sum = this->AreasWith(p, this->First, w);
+        // Each corner's share is the area opposite to it: w[1] belongs to the edge opposite the
+        // first.
         for (int k = 0; k < 3; ++k)
         {
           this->Shares[k] = sum > 0.0 ? std::max(0.0, w[(k + 1) % 3] / sum) : 1.0 / 3.0;
         }
-        this->Triangle = t;
-        this->First = first;
         return true;
       }
-      const Index twin = this->Surface.Twin(HalfEdge(first, across));
+      const Index edge = HalfEdge(first, across);
+      first = this->Surface.Twin(edge);
       // At the border of the part, one end at least is where all is known: then it is the surface's
       // own.
-      if (twin == Mesh::Border)
+      if (first == Mesh::Border)
       {
-        const Index edge = HalfEdge(first, across);
         if (!this->IsKnown(this->Surface.Origin(edge)) &&
           !this->IsKnown(this->Surface.Destination(edge)))
         {
@@ -95,7 +84,6 @@ public:
         }
         return false;
       }
-      t = Mesh::Triangle(twin);
     }
     return false;
   }
@@ -114,7 +102,7 @@ public:
   /** A corner of the triangle of the last To(), and its weight: k is 0, 1 or 2. */
   Index CornerOf(int k) const { return this->Surface.Origin(HalfEdge(this->First, k)); }
   double ShareOf(int k) const { return this->Shares[k]; }
-  Index CurrentTriangle() const { return this->Triangle; }
+  Index CurrentTriangle() const { return Mesh::Triangle(this->First); }
 
   /** By how much the interpolation reduces the variance of uncorrelated noise; 0 at a corner. */
   double Smoothing() const
@@ -132,6 +120,18 @@ public:
   }
 
 private:
+  /** Twice the areas that a place makes with the edges, from one of them on. @return their sum */
+  double AreasWith(const Point2& p, Index first, double (&w)[3]) const
+  {
+    const Point2& a = this->Surface.PointOf(this->Surface.Origin(first));
+    const Point2& b = this->Surface.PointOf(this->Surface.Destination(first));
+    const Point2& c = this->Surface.PointOf(this->Surface.Apex(first));
+    w[0] = (a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X);
+    w[1] = (b.X - p.X) * (c.Y - p.Y) - (b.Y - p.Y) * (c.X - p.X);
+    w[2] = (c.X - p.X) * (a.Y - p.Y) - (c.Y - p.Y) * (a.X - p.X);
+    return w[0] + w[1] + w[2];
+  }
+
   bool IsKnown(Index vertex) const
   {
     return this->KnownArea.Contains(this->Surface.PointOf(vertex));
@@ -158,7 +158,6 @@ private:
 
   const Mesh& Surface;
   const Box& KnownArea;
-  Index Triangle;
   Index First; ///< the half-edge of the triangle that leaves its lowest corner
   double Shares[3] = { 1.0, 0.0, 0.0 };
 };

@@ -90,6 +90,37 @@ TEST(Membrane, IsHarmonicForAnySize)
   }
 }
 
+TEST(Membrane, SeveralSetsOfValuesAreAsEachAlone)
+{
+  // Factorised, and by multigrid.
+  for (const Index size : { 30, 130 })
+  {
+    const Frame frame(size, size);
+    const Membrane membrane(frame.Graph);
+    const std::vector<double> known = frame.Known();
+    std::vector<double> together;
+    for (const double value : known)
+    {
+      together.insert(together.end(), { value, 1.0 - value, value * value });
+    }
+    const std::vector<double> values = membrane.Solve(together);
+    ASSERT_EQ(values.size(), 3u * size * size);
+    for (std::size_t set = 0; set < 3; ++set)
+    {
+      std::vector<double> alone;
+      for (std::size_t i = set; i < together.size(); i += 3)
+      {
+        alone.push_back(together[i]);
+      }
+      const std::vector<double> expected = membrane.Solve(alone);
+      for (std::size_t i = 0; i < expected.size(); ++i)
+      {
+        ASSERT_NEAR(values[3 * i + set], expected[i], 1e-12) << size;
+      }
+    }
+  }
+}
+
 TEST(Membrane, IsSolvedFasterTheLessAccurate)
 {
   const Frame frame(300, 300);
