@@ -91,6 +91,7 @@ set(es_kernel_Fill
   Refinement
   Patch
   Neighbours
+  Crossings
   Tracks
   Heights
   LineRoughness
@@ -119,7 +120,7 @@ set(es_kernel_headers_Cells
   Cells)
 set(es_kernel_headers_Trim)
 set(es_kernel_headers_Fill
-  HeightTrials KnownPoints Quantiles Walk)
+  HeightTrials KnownPoints Overshoot Quantiles Walk)
 
 # The rooms around the kernel.
 set(es_outer_rooms Adapt Parts)

@@ -59,6 +59,7 @@
 #define elevation_Fill_BetweenLines_h
 
 #include "Kernel/Base/Base.h"
+#include "Overshoot.h"
 #include "Patch.h"
 #include "Walk.h"
 
@@ -87,8 +88,15 @@ public:
   /** The part of the spline's bending that is added; 0 to 1. */
   double Share() const;
 
-  /** One value for each new vertex; none if values at known points are not finite. */
-  std::vector<double> Apply(const Values& values, const Progress& progress = Progress()) const;
+  /** The sizes of differences where lines cross and disagree. */
+  const std::vector<double>& Misties() const;
+
+  /**
+   * One value for each new vertex; none if values at known points are not finite.
+   * @param[out] drawnBack  may be null; values that would be too far beyond those of lines
+   */
+  std::vector<double> Apply(const Values& values, const Progress& progress = Progress(),
+    DrawnBack* drawnBack = nullptr) const;
 
   /** The standard error of the elevation at each new vertex. */
   std::vector<double> StandardErrors() const;

@@ -47,6 +47,9 @@ constexpr double PointsPerTrial = 150.0;
 constexpr double LeastPointsRefused = 1e6;
 constexpr double MostPointsPerPoint = 10.0;
 
+/** How far elevations may leave the range of all, in parts of it. */
+constexpr double RoomBeyondAll = 0.05;
+
 constexpr double BytesPerPoint = 500.0; // of memory, while and after it is inserted
 
 /** What a thread takes at a time: patches of about this many points in all, or a larger one. */
@@ -146,7 +149,8 @@ bool ElevateBetweenLines(const Mesh& mesh, const VertexStars* stars, double long
   {
     return false;
   }
-  SetElevations(lines.Apply(elevation, progress.Between(0.6, 0.8)), patch);
+  SetElevations(lines.Apply(elevation, progress.Between(0.6, 0.8), &report.Drawn), patch);
+  report.Misties = lines.Misties();
   for (const Values& values : options.Attributes)
   {
     filled.Attributes.push_back(lines.Apply(values, progress.Between(0.8, 0.8)));
@@ -162,9 +166,23 @@ bool ElevateBetweenLines(const Mesh& mesh, const VertexStars* stars, double long
   return true;
 }
 
+/** Draws new elevations back to the range of the whole surface, and a little more. */
+void DrawBackTo(const ElevationRange& range, Patch& patch, HoleReport& report)
+{
+  const double room = RoomBeyondAll * (range.High - range.Low);
+  for (std::size_t i = 3 * patch.BoundaryIds.size() + 2; i < patch.Points.size(); i += 3)
+  {
+    double& z = patch.Points[i];
+    const double before = z;
+    z = DrawBack(z, range.Low, range.High, room);
+    report.Drawn.Add(before, z);
+  }
+}
+
 /** Finds elevations and attributes; of each attribute one vector, in the order of vertices. */
 void Elevate(const Mesh& mesh, const VertexStars* stars, const Values& elevation,
-  const FillOptions& options, const Progress& progress, FilledHole& filled, HoleReport& report)
+  const FillOptions& options, const ElevationRange& range, const Progress& progress,
+  FilledHole& filled, HoleReport& report)
 {
   Patch& patch = filled.Triangles;
   // The first values are the elevations, by which Adaptive chooses; attributes follow the same
@@ -182,6 +200,7 @@ void Elevate(const Mesh& mesh, const VertexStars* stars, const Values& elevation
       continue;
     }
     SetElevations(values, patch);
+    DrawBackTo(range, patch, report);
   }
   report.Method = heights.Used();
   filled.Errors = heights.StandardErrors();
@@ -262,6 +281,7 @@ public:
     this->Least = needsStars ? PointsPerTrial : PointsPerPatch;
     this->PlanAll();
     this->GrantPoints();
+    this->FindRange();
     // On a lattice they are there already, for the plans.
     if (this->AllWork > 0.0 && needsStars && !this->Stars)
     {
@@ -395,6 +415,22 @@ private:
     }
   }
 
+  /** Of what the triangles and the points inside of regions have. */
+  void FindRange()
+  {
+    this->Range = this->Context.Elevations;
+    if (!this->Range.IsEmpty() || !(this->AllWork > 0.0))
+    {
+      return;
+    }
+    const auto add = [this](Index id) { this->Range.Add(this->Points.Elevation(id)); };
+    const Holes& holes = this->GivenHoles;
+    std::for_each(this->Surface.Triangles.begin(), this->Surface.Triangles.end(), add);
+    std::for_each(holes.Walks.Vertices.begin(), holes.Walks.Vertices.end(), add);
+    std::for_each(holes.InnerEnds.begin(), holes.InnerEnds.end(), add);
+    CountWork(this->Surface.Triangles.size());
+  }
+
   /** The work for a hole, in points; 0 if it is not filled. */
   double WorkOf(Index hole) const
   {
@@ -521,7 +557,7 @@ private:
         !ElevateBetweenLines(this->Surface, this->Stars.get(), this->GivenHoles.LongestEdge,
           elevation, this->Options, progress.Between(0.5, 0.9), filled, report))
       {
-        Elevate(this->Surface, this->Stars.get(), elevation, this->Options,
+        Elevate(this->Surface, this->Stars.get(), elevation, this->Options, this->Range,
           progress.Between(mayHaveLines ? 0.9 : 0.5, 1.0), filled, report);
       }
     }
@@ -565,6 +601,7 @@ private:
   const int Threads;
   double Least = 0.0; ///< the fixed work for a patch
   double AllWork = 0.0;
+  ElevationRange Range;
   std::vector<PatchPlan> Plans;
   std::vector<char> HasRoom; ///< one a hole: 0 for regions whose patch would have no new point
   std::unique_ptr<VertexStars> Stars;

@@ -8,7 +8,9 @@
  * points and triangles to append, their values, and a report for every hole. For each hole:
  *   1. Measure it and compare with the limits; then compare what is expected of all.
  *   2. Place points and triangulate them (Patch.h).
- *   3. Find elevations, and other attributes in the same way (Heights.h).
+ *   3. Find elevations, and other attributes in the same way (Heights.h). Elevations that leave
+ *      the range of the whole surface by more than 2.5 % of it are drawn back (Overshoot.h), so
+ *      that none leaves it by more than 5 %.
  * Where a hole is a region of long triangles, the patch replaces them; of a region that is not
  * filled, the caller keeps them. They are no evidence: elevations are found from the other ones,
  *
@@ -38,7 +40,10 @@
 #include "Kernel/Mesh/Mesh.h"
 #include "Kernel/Messages/Messages.h"
 #include "Kernel/Triangulate/Triangulate.h"
+#include "Overshoot.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -93,6 +98,24 @@ struct FillOptions
   Progress Monitor;
 };
 
+/** The elevations of points of triangles; those that are not finite do not count. */
+struct ElevationRange
+{
+  double Low = std::numeric_limits<double>::infinity();
+  double High = -std::numeric_limits<double>::infinity();
+
+  bool IsEmpty() const { return this->Low > this->High; }
+  void Add(double elevation)
+  {
+    // Neither infinity nor NaN is compared.
+    if (std::isfinite(elevation))
+    {
+      this->Low = std::min(this->Low, elevation);
+      this->High = std::max(this->High, elevation);
+    }
+  }
+};
+
 /** What is known of a surface where only the triangles around some of its holes are there. */
 struct WholeSurface
 {
@@ -100,6 +123,7 @@ struct WholeSurface
   /** One a hole, in which all triangles that meet it are there. It contains the rim. */
   std::vector<Box> Surroundings;
   std::vector<double> Quotas; ///< one a hole: QuotasFor() all holes, after CheckEffort()
+  ElevationRange Elevations;  ///< that of all triangles; empty: it is looked for
 };
 
 struct HoleReport
@@ -113,6 +137,8 @@ struct HoleReport
   double Spacing = 0.0; ///< as given, or the mean length of the edges (PatchPlan.h)
   Index NumberOfInsertedPoints = 0;
   Interpolation Method = Interpolation::NeighborMean; ///< as used; never Adaptive
+  DrawnBack Drawn;                                    ///< elevations that overshot
+  std::vector<double> Misties; ///< by how much lines disagree that cross in it, where they do
   bool NeedsMoreSurroundings = false; ///< not filled: its surroundings are too small
   Message Reason;                     ///< if Failed: without the hole's name
 };

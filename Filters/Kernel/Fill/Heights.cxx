@@ -76,6 +76,12 @@ constexpr double LeastPart = 0.25;
 /** Accuracy of the membrane that bounds, on large patches. */
 constexpr double BoundAccuracy = 1e-4;
 
+/**
+ * How far slopes go on, in the lengths over which they are measured. Between survey lines far apart
+ * that is over single edges, where lines cross and disagree.
+ */
+constexpr double MostReach = 4.0;
+
 /** Slopes are measured over at most this many edges. */
 constexpr Index MostRings = 16;
 
@@ -578,14 +584,16 @@ std::vector<double> Heights::SplineSum(
 Heights::RimSlopes Heights::MeasureSlopes(const Values& values, double unit) const
 {
   std::vector<double> slopes;
+  std::vector<double> lengths;
   for (const Pair& pair : this->Slopes)
   {
     const Point2& a = this->Surface.PointOf(pair.Boundary);
     const Point2& b = this->Surface.PointOf(pair.Away);
+    lengths.push_back(std::hypot(b.X - a.X, b.Y - a.Y));
     // Of scaled values and lengths, so that it stays in the range of double; then for the caller's
     // unit of length.
-    const double slope = (values(pair.Boundary) - values(pair.Away)) / unit /
-      (std::hypot(b.X - a.X, b.Y - a.Y) * this->Scale);
+    const double slope =
+      (values(pair.Boundary) - values(pair.Away)) / unit / (lengths.back() * this->Scale);
     if (std::isfinite(slope))
     {
       slopes.push_back(this->Scale * slope);
@@ -596,6 +604,7 @@ Heights::RimSlopes Heights::MeasureSlopes(const Values& values, double unit) con
   std::transform(
     slopes.begin(), slopes.end(), slopes.begin(), [](double slope) { return std::fabs(slope); });
   result.Steepness = Median(std::move(slopes));
+  result.Reach = MostReach * Median(std::move(lengths));
   return result;
 }
 
@@ -626,7 +635,7 @@ void Heights::Bound(const std::vector<double>& scaled, const Values& values, dou
   {
     const Point2 p = this->Patch.At(boundary + static_cast<Index>(i));
     const Point2 q = this->Patch.At(this->Patch.Nearest[i]);
-    const double distance = std::hypot(p.X - q.X, p.Y - q.Y);
+    const double distance = std::min(std::hypot(p.X - q.X, p.Y - q.Y), slopes.Reach);
     const double rise = slopes.Inward * distance;
     if (!flat.empty())
     {

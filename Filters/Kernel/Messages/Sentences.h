@@ -193,6 +193,9 @@ ELEVATION_SENTENCE(
   RegionNotFilled, "Hole {hole} ({edges} edges) was not filled. {reason} It keeps its triangles.");
 ELEVATION_SENTENCE(
   MoreHolesNotFilled, "And {holes} more holes were not filled; see Status in output 1.");
+ELEVATION_SENTENCE(LinesDisagree,
+  "{crossings} crossings of survey lines disagree by up to {most} (median {median}). The points of "
+  "lines stay as they are; what is filled between lines goes between them there.");
 ELEVATION_SENTENCE(BordersMeet,
   "At {places} places a point lies inside a border edge or on another point, the first at point "
   "{point}; there the surface is not connected, so that an enclosed region may not be a hole. "
