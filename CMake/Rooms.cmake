@@ -91,6 +91,7 @@ set(es_kernel_Fill
   Refinement
   Patch
   Neighbours
+  Overshoot
   Crossings
   Tracks
   Heights
@@ -120,7 +121,7 @@ set(es_kernel_headers_Cells
   Cells)
 set(es_kernel_headers_Trim)
 set(es_kernel_headers_Fill
-  HeightTrials KnownPoints Overshoot Quantiles Walk)
+  HeightTrials KnownPoints Quantiles Walk)
 
 # The rooms around the kernel.
 set(es_outer_rooms Adapt Parts)

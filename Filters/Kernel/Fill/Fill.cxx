@@ -46,10 +46,6 @@ constexpr double PointsPerTrial = 150.0;
 /** What is refused by default: more points than this, and this many for each of the surface. */
 constexpr double LeastPointsRefused = 1e6;
 constexpr double MostPointsPerPoint = 10.0;
-
-/** How far elevations may leave the range of all, in parts of it. */
-constexpr double RoomBeyondAll = 0.05;
-
 constexpr double BytesPerPoint = 500.0; // of memory, while and after it is inserted
 
 /** What a thread takes at a time: patches of about this many points in all, or a larger one. */
@@ -166,27 +162,13 @@ bool ElevateBetweenLines(const Mesh& mesh, const VertexStars* stars, double long
   return true;
 }
 
-/** Draws new elevations back to the range of the whole surface, and a little more. */
-void DrawBackTo(const ElevationRange& range, Patch& patch, HoleReport& report)
-{
-  const double room = RoomBeyondAll * (range.High - range.Low);
-  for (std::size_t i = 3 * patch.BoundaryIds.size() + 2; i < patch.Points.size(); i += 3)
-  {
-    double& z = patch.Points[i];
-    const double before = z;
-    z = DrawBack(z, range.Low, range.High, room);
-    report.Drawn.Add(before, z);
-  }
-}
-
 /** Finds elevations and attributes; of each attribute one vector, in the order of vertices. */
 void Elevate(const Mesh& mesh, const VertexStars* stars, const Values& elevation,
   const FillOptions& options, const ElevationRange& range, const Progress& progress,
   FilledHole& filled, HoleReport& report)
 {
   Patch& patch = filled.Triangles;
-  // The first values are the elevations, by which Adaptive chooses; attributes follow the same
-  // choice.
+  // The first values are the elevations, by which Adaptive chooses; attributes follow.
   const Heights heights(mesh, stars, patch, options.Method, elevation, progress.Between(0.0, 0.5));
   const std::size_t count = options.Attributes.size() + 1;
   const Progress applying = progress.Between(0.5, 1.0);
@@ -199,8 +181,8 @@ void Elevate(const Mesh& mesh, const VertexStars* stars, const Values& elevation
       filled.Attributes.push_back(std::move(values));
       continue;
     }
+    report.Drawn = range.DrawBackTo(values);
     SetElevations(values, patch);
-    DrawBackTo(range, patch, report);
   }
   report.Method = heights.Used();
   filled.Errors = heights.StandardErrors();
@@ -281,7 +263,9 @@ public:
     this->Least = needsStars ? PointsPerTrial : PointsPerPatch;
     this->PlanAll();
     this->GrantPoints();
-    this->FindRange();
+    this->Range = this->Context.Elevations.IsEmpty()
+      ? RangeOf(this->Surface, this->GivenHoles, this->Points)
+      : this->Context.Elevations;
     // On a lattice they are there already, for the plans.
     if (this->AllWork > 0.0 && needsStars && !this->Stars)
     {
@@ -413,22 +397,6 @@ private:
           : MakeMessage<sentences::MoreThanAllPoints>(
               points, report.Spacing, MaximumNumberOfPoints, left));
     }
-  }
-
-  /** Of what the triangles and the points inside of regions have. */
-  void FindRange()
-  {
-    this->Range = this->Context.Elevations;
-    if (!this->Range.IsEmpty() || !(this->AllWork > 0.0))
-    {
-      return;
-    }
-    const auto add = [this](Index id) { this->Range.Add(this->Points.Elevation(id)); };
-    const Holes& holes = this->GivenHoles;
-    std::for_each(this->Surface.Triangles.begin(), this->Surface.Triangles.end(), add);
-    std::for_each(holes.Walks.Vertices.begin(), holes.Walks.Vertices.end(), add);
-    std::for_each(holes.InnerEnds.begin(), holes.InnerEnds.end(), add);
-    CountWork(this->Surface.Triangles.size());
   }
 
   /** The work for a hole, in points; 0 if it is not filled. */

@@ -42,8 +42,6 @@
 #include "Kernel/Triangulate/Triangulate.h"
 #include "Overshoot.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -96,24 +94,6 @@ struct FillOptions
   /** Threads to use; 0: all there are. The result is the same, byte for byte. */
   int NumberOfThreads = 1;
   Progress Monitor;
-};
-
-/** The elevations of points of triangles; those that are not finite do not count. */
-struct ElevationRange
-{
-  double Low = std::numeric_limits<double>::infinity();
-  double High = -std::numeric_limits<double>::infinity();
-
-  bool IsEmpty() const { return this->Low > this->High; }
-  void Add(double elevation)
-  {
-    // Neither infinity nor NaN is compared.
-    if (std::isfinite(elevation))
-    {
-      this->Low = std::min(this->Low, elevation);
-      this->High = std::max(this->High, elevation);
-    }
-  }
 };
 
 /** What is known of a surface where only the triangles around some of its holes are there. */

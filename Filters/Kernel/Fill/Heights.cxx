@@ -76,14 +76,9 @@ constexpr double LeastPart = 0.25;
 /** Accuracy of the membrane that bounds, on large patches. */
 constexpr double BoundAccuracy = 1e-4;
 
-/**
- * How far slopes go on, in the lengths over which they are measured. Between survey lines far apart
- * that is over single edges, where lines cross and disagree.
- */
-constexpr double MostReach = 4.0;
-
-/** Slopes are measured over at most this many edges. */
+/** Slopes are measured over at most so many edges; they count over so many times the length. */
 constexpr Index MostRings = 16;
+constexpr double MostReach = 4.0;
 
 constexpr Spline::Kernel Kernels[2] = { Spline::Kernel::ThinPlate, Spline::Kernel::Cubic };
 constexpr Interpolation Methods[3] = { Interpolation::Membrane, Interpolation::ThinPlate,
@@ -590,8 +585,7 @@ Heights::RimSlopes Heights::MeasureSlopes(const Values& values, double unit) con
     const Point2& a = this->Surface.PointOf(pair.Boundary);
     const Point2& b = this->Surface.PointOf(pair.Away);
     lengths.push_back(std::hypot(b.X - a.X, b.Y - a.Y));
-    // Of scaled values and lengths, so that it stays in the range of double; then for the caller's
-    // unit of length.
+    // Of scaled values and lengths, in the range of double; then for the caller's unit of length.
     const double slope =
       (values(pair.Boundary) - values(pair.Away)) / unit / (lengths.back() * this->Scale);
     if (std::isfinite(slope))
@@ -617,8 +611,7 @@ void Heights::Bound(const std::vector<double>& scaled, const Values& values, dou
 {
   const Index boundary = this->Patch.NumberOfBoundaryVertices();
   // The bounds are in the caller's units, so that rounding in scaled ones does not break them.
-  double lowest = values(this->KnownVertices[0]);
-  double highest = lowest;
+  double lowest = values(this->KnownVertices[0]), highest = lowest;
   for (Index i = 1; i < boundary; ++i)
   {
     lowest = std::min(lowest, values(this->KnownVertices[i]));

@@ -17,9 +17,11 @@
 #define elevation_Fill_Overshoot_h
 
 #include "Kernel/Base/Base.h"
+#include "Kernel/Mesh/Mesh.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace elevation
@@ -33,7 +35,8 @@ struct DrawnBack
 
   void Add(double before, double after)
   {
-    this->Count += after != before ? 1 : 0;
+    // NaN is neither.
+    this->Count += after < before || after > before ? 1 : 0;
     this->Most = std::max(this->Most, std::fabs(before - after));
   }
 };
@@ -52,6 +55,28 @@ inline double DrawBack(double value, double low, double high, double room)
   const double kept = free > 0.0 ? free + free * (rest / (rest + free)) : 0.0;
   return value > high ? high + kept : low - kept;
 }
+
+/** The elevations of a whole surface; those that are not finite do not count. */
+struct ElevationRange
+{
+  double Low = std::numeric_limits<double>::infinity();
+  double High = -std::numeric_limits<double>::infinity();
+
+  bool IsEmpty() const { return this->Low > this->High; }
+  void Add(double elevation)
+  {
+    if (std::isfinite(elevation))
+    {
+      this->Low = std::min(this->Low, elevation);
+      this->High = std::max(this->High, elevation);
+    }
+  }
+  /** Draws new elevations back: none leaves the range by more than a twentieth of it. */
+  DrawnBack DrawBackTo(std::vector<double>& elevations) const;
+};
+
+/** That of the points of triangles and holes; of regions, points inside count, too. */
+ElevationRange RangeOf(const Mesh& mesh, const Holes& holes, const PointView& points);
 
 /** The lowest and the highest of values near places: what is continuous between these. */
 class RangeNearby
