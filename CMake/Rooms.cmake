@@ -91,6 +91,8 @@ set(es_kernel_Fill
   Refinement
   Patch
   Neighbours
+  Overshoot
+  Crossings
   Tracks
   Heights
   LineRoughness

@@ -25,7 +25,8 @@
  * - 1, the report: the rim of each hole, filled or not, as a closed counter-clockwise line. Cell
  *   data: HoleId, Status (HoleStatusType) and StatusName, the same in words, Size (for comparison
  *   with MaximumHoleSize), NumberOfEdges, Perimeter, Area, NumberOfInsertedPoints, Interpolation
- *   (the one used) and InterpolationName ("" if nothing was inserted).
+ *   (the one used), InterpolationName ("" if nothing was inserted), NumberOfPointsDrawnBack and
+ *   LargestDrawBack (see InterpolationType).
  *
  * Field data of both: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
@@ -123,7 +124,10 @@ public:
    *   Output 1 has the one with the largest share. Between survey lines (see OpenEdgeLength), lines
    *   are left out instead, and predicted from the others: z is that of the plane triangles between
    *   lines, plus as large a part of what a thin plate bends from them as predicts the lines best.
-   *   It leaves the range of z of the lines by at most 5 % of it. Output 1 has THIN_PLATE.
+   *   Beyond the range of z of the lines near a place, z is compressed: it leaves this range by at
+   *   most a quarter, and that of all lines by at most 5 % of it. Where lines cross and disagree, as
+   *   a warning reports (LinesDisagree), the plate goes between them instead of through both; z of
+   *   the lines stays. Output 1 has THIN_PLATE.
    *
    * The splines may leave the range of z of the hole's boundary, as a lost summit did, by at most
    * the distance from the nearest boundary point times the median slope around the hole: upwards
@@ -131,7 +135,10 @@ public:
    * ADAPTIVE also stays within three times the median steepness, times that distance, of MEMBRANE.
    * Points around the hole that stand apart, as outliers and those beyond a cliff, are no part of
    * what is continued. So they and noise do not make hills. Slopes are those from the
-   * boundary to points half as many edges away as the middle of the hole is, 16 at most. Where the
+   * boundary to points half as many edges away as the middle of the hole is, 16 at most, and count
+   * four times as far as these points are away. No method leaves the range of z of the whole surface
+   * by more than 5 % of it: beyond 2.5 % z is compressed, so that the surface bends and is not cut
+   * off. Output 1 has how many points were drawn back, and by how much at most. Where the
    * points determine no spline, because they are nearly on one line, MEMBRANE is used; where z
    * around the hole is not finite, NEIGHBOR_MEAN.
    */
@@ -344,7 +351,8 @@ public:
    * whose text has the same for people, are invoked. Codes, besides those of data that are invalid,
    * which are "Words": NothingToFill, HoleNotFilled and RegionNotFilled (with a reason:
    * BordersTouch, SizeOutOfRange, MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall,
-   * PointsCoincide), MoreHolesNotFilled, ErrorsOutgrowRoughness, BordersMeet, TooManyPointsToFill,
+   * PointsCoincide), MoreHolesNotFilled, ErrorsOutgrowRoughness, LinesDisagree, BordersMeet,
+   * TooManyPointsToFill,
    * TooManyPointsByDefault,
    * InvalidOpenEdgeLength, InvalidHoleSize, InvalidHoleEdges, InvalidSpacing, InvalidConfidence,
    * InvalidInsertedPoints, InvalidExpectedPoints, InvalidThreads, InvalidPrecision, FoldsInSingle,

@@ -34,9 +34,11 @@ def hole_report(outlines, bridged, fill, why_opened=None, ranks=None):
                    that the boundary has cut out is found only if it is filled
     cut_out        count of those that stay open
     bridged_left   count of voids whose triangles are left as they are
+    drawn_back     of filled points that would be too far beyond the surface around: their count, and by
+                   how much z was drawn back at most
     """
     names = ("HoleId", "NumberOfEdges", "Perimeter", "Area", "Size", "NumberOfInsertedPoints",
-             "Interpolation")
+             "Interpolation", "NumberOfPointsDrawnBack", "LargestDrawBack")
     columns = [column_of(outlines, name).tolist() for name in names]
     statuses = words_of(outlines.GetCellData(), "StatusName")
     rows = zip(*columns, statuses, bridged.tolist(), *hole_places(outlines))
@@ -54,8 +56,10 @@ def hole_report(outlines, bridged, fill, why_opened=None, ranks=None):
             "box": box,
             "inserted_points": inserted,
             "interpolation": INTERPOLATIONS[way] if inserted else None,
+            "drawn_back": {"points": drawn, "most": most},
         }
-        for hole, edges, perimeter, area, size, inserted, way, status, bridged, centre, box in rows
+        for (hole, edges, perimeter, area, size, inserted, way, drawn, most,
+             status, bridged, centre, box) in rows
     ]
     by_status = {}
     for hole in holes:
@@ -71,6 +75,10 @@ def hole_report(outlines, bridged, fill, why_opened=None, ranks=None):
         "bridged_left": len(holes) - found - cut_out,
         "by_status": by_status,
         "inserted_points": sum(hole["inserted_points"] for hole in holes),
+        "drawn_back": {
+            "points": sum(hole["drawn_back"]["points"] for hole in holes),
+            "most": max((hole["drawn_back"]["most"] for hole in holes), default=0.0),
+        },
         "list": holes,
     }
 
@@ -160,6 +168,10 @@ def hole_lines(holes, line):
             f"gaps wider than {holes['open_edge_length']:.4g} are filled "
             f"({holes['open_edge_length_is']}); see {option('open_edge_length')}",
         )
+    drawn = holes["drawn_back"]
+    if drawn["points"]:
+        words = counted(drawn["points"], "filled point")
+        line("", f"{words} drawn back, by up to {drawn['most']:.4g}: beyond the heights around")
     if holes["cut_out"]:
         line("", f"{holes['cut_out']:,} cut out by the boundary stay open; see {option('fill_cut_outs')}")
     for status in holes["by_status"]:

@@ -336,6 +336,10 @@ void MakeReport(
     [](const HoleReport& report) { return report.NumberOfInsertedPoints; });
   add("Interpolation", vtkNew<vtkUnsignedCharArray>().Get(),
     [](const HoleReport& report) { return static_cast<unsigned char>(report.Method); });
+  add("NumberOfPointsDrawnBack", vtkNew<vtkIdTypeArray>().Get(),
+    [](const HoleReport& report) { return report.Drawn.Count; });
+  add("LargestDrawBack", vtkNew<vtkDoubleArray>().Get(),
+    [](const HoleReport& report) { return report.Drawn.Most; });
   add("InterpolationName", vtkNew<vtkStringArray>().Get(), [](const HoleReport& report) {
     // A patch without new points has nothing that was interpolated.
     return report.NumberOfInsertedPoints ? InterpolationNames[static_cast<int>(report.Method)] : "";
@@ -374,7 +378,7 @@ void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& o
 
 /*
  * The first few holes that failed, each with its reason; then how many more. Holes that a limit of
- * the user leaves out are no warning.
+ * the user leaves out are no warning. Then misties, those of all holes together.
  */
 std::vector<Message> WarningsOf(const FillResult& patches)
 {
@@ -411,6 +415,17 @@ std::vector<Message> WarningsOf(const FillResult& patches)
   {
     warnings.push_back(
       MakeMessage<sentences::ErrorsOutgrowRoughness>(outgrown, first, ToText(outgrowth, 2)));
+  }
+  std::vector<double> misties;
+  for (const HoleReport& report : patches.Reports)
+  {
+    misties.insert(misties.end(), report.Misties.begin(), report.Misties.end());
+  }
+  if (!misties.empty())
+  {
+    std::sort(misties.begin(), misties.end());
+    warnings.push_back(MakeMessage<sentences::LinesDisagree>(
+      misties.size(), ToText(misties.back(), 3), ToText(misties[misties.size() / 2], 3)));
   }
   if (holes.NumberOfContacts > 0)
   {

@@ -78,9 +78,11 @@ void FillParts::WithPart(int part, const Progress& progress, const Visit& visit)
 FillParts::KnownPart FillParts::Describe(int part, const FilledPart& one)
 {
   KnownPart known;
+  const DataSetPoints points = ViewPoints(one.Input);
   for (const Index corner : one.OwnMesh.Triangles)
   {
     known.Extent.Add(one.OwnMesh.PointOf(corner));
+    known.Elevations.Add(points.View.Elevation(corner));
   }
   known.Triangles = one.OwnMesh.NumberOfTriangles();
   known.Points = one.Input->GetNumberOfPoints();
@@ -151,6 +153,8 @@ void FillParts::FindHoles(int rimsPart)
     // Holes that were filled before keep their numbers (NextHole), wherever they are.
     Index& first = this->AllHoles.Result.FirstNumber;
     first = std::max(first, known.NextHole);
+    this->AllHoles.Elevations.Add(known.Elevations.Low);
+    this->AllHoles.Elevations.Add(known.Elevations.High);
   }
 }
 

@@ -99,6 +99,7 @@ private:
     vtkIdType LargestId = -1;
     Index NextHole = 0;
     double LargestHeight = 0.0; ///< of a long triangle
+    ElevationRange Elevations;  ///< of its triangles
   };
   /** Holes of one part, increasing, that are filled together. */
   struct Group

@@ -233,6 +233,7 @@ WholeSurface SurroundedHoles::KnownOf(const SharedHoles& all) const
 {
   WholeSurface whole;
   whole.FoundLattice = &all.Lattice;
+  whole.Elevations = all.Elevations;
   for (const Index hole : this->Numbers)
   {
     whole.Surroundings.push_back(all.BoxOf(hole));

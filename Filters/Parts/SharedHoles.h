@@ -38,10 +38,10 @@ struct FieldsOf<HoleReport>
   template <typename Report>
   static auto In(Report& report)
   {
-    auto& [status, edges, size, perimeter, area, spacing, inserted, method, outgrowth, more,
-      reason] = report;
-    return std::tie(
-      status, edges, size, perimeter, area, spacing, inserted, method, outgrowth, more, reason);
+    auto& [status, edges, size, perimeter, area, spacing, inserted, method, outgrowth, drawn,
+      misties, more, reason] = report;
+    return std::tie(status, edges, size, perimeter, area, spacing, inserted, method, outgrowth,
+      drawn.Count, drawn.Most, misties, more, reason);
   }
 };
 
@@ -64,6 +64,7 @@ struct SharedHoles
   Index FirstRegion = 0;           ///< its number as a hole
   LatticeSearch Lattice;
   std::vector<double> Quotas;
+  ElevationRange Elevations;             ///< of all triangles
   std::vector<vtkIdType> FirstNewPoints; ///< of each hole, and the number of all
 
   /** Finds and measures the holes of the border. @return false if borders touch */

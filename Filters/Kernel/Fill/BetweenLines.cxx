@@ -6,6 +6,7 @@
 #include "Kernel/Base/Base.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "LineRoughness.h"
+#include "Overshoot.h"
 #include "Quantiles.h"
 #include "Spline.h"
 #include "Tracks.h"
@@ -33,8 +34,12 @@ constexpr std::size_t PointsPerReport = 1024;
 /** Points of lines that are predicted each time that lines are left out; of more, every k-th. */
 constexpr std::size_t MostProbes = 20000;
 
-/** How far values may leave the range of known ones, in parts of it. */
+/** How far values may leave the range of known ones, in parts of it: of all, and of those near. */
 constexpr double RoomBeyond = 0.05;
+constexpr double RoomBeyondNear = 0.25;
+
+/** How often the spline is made to find out how rough elevations are beside misties. */
+constexpr int StepsToRoughness = 5;
 
 /** Trials count if there are so many lines and errors, */
 constexpr Index LeastTracks = 4;
@@ -72,7 +77,10 @@ public:
   double Share() const { return this->SplineShare; }
   double Outgrowth() const { return this->LeftOut.Outgrowth(); }
 
-  std::vector<double> Apply(const Values& values, const Progress& progress) const
+  const std::vector<double>& Misties() const { return this->MistieSizes; }
+
+  std::vector<double> Apply(
+    const Values& values, const Progress& progress, DrawnBack* drawnBack) const
   {
     const std::vector<double> known = this->ValuesOfKnown(values);
     if (known.empty())
@@ -81,13 +89,31 @@ public:
     }
     const auto range = std::minmax_element(known.begin(), known.end());
     const double room = RoomBeyond * (*range.second - *range.first);
+    const auto at = [this](std::size_t i) { return this->Patch.At(static_cast<Index>(i)); };
+    const RangeNearby nearby(this->Patch.BoundaryBox(), this->Count, this->Gap, at, known);
+    std::vector<double> lows, highs;
+    for (std::size_t i = 0; i < this->Count; ++i)
+    {
+      lows.push_back(nearby.LowAt(at(i)));
+      highs.push_back(nearby.HighAt(at(i)));
+    }
     std::vector<double> result = this->Bending(this->All, this->Spots, known, progress);
     for (std::size_t i = 0; i < result.size(); ++i)
     {
       const Spot& spot = this->Spots[i];
-      const double value = spot.IsInside ? Linear(spot, known) + this->SplineShare * result[i]
-                                         : known[this->Patch.Nearest[i]];
-      result[i] = std::max(*range.first - room, std::min(*range.second + room, value));
+      if (!spot.IsInside)
+      {
+        result[i] = known[this->Patch.Nearest[i]];
+        continue;
+      }
+      const double value = Linear(spot, known) + this->SplineShare * result[i];
+      const double low = Linear(spot, lows), high = Linear(spot, highs);
+      result[i] = DrawBack(DrawBack(value, low, high, RoomBeyondNear * (high - low)), *range.first,
+        *range.second, room);
+      if (drawnBack)
+      {
+        drawnBack->Add(value, result[i]);
+      }
     }
     return result;
   }
@@ -178,6 +204,7 @@ private:
       return;
     }
     this->LeftOut.Noise = this->Roughness().NoiseAlong(this->All);
+    this->SmoothMisties();
     const std::vector<int> colors = ColorTracks(this->Lines, this->All.Triangles);
     std::vector<Trial> trials = this->LeaveOut(this->All, colors, stages.Next());
     this->SplineShare = this->BestShare(trials);
@@ -264,17 +291,58 @@ private:
     }
     result.Triangles.ConnectTwins(0, stages.Next());
     this->ChooseCenters(result, stages.Next());
+    this->MakePlate(result);
+    return result;
+  }
+
+  /** With nuggets by misties, relative to the roughness of elevations. */
+  void MakePlate(KnownPoints& known) const
+  {
     std::vector<Point2> centers;
-    for (const Index number : result.Centers)
+    std::vector<double> nuggets;
+    for (const Index number : known.Centers)
     {
       centers.push_back(this->Normalized(this->Patch.At(number)));
+      if (this->PlateRoughness > 0.0)
+      {
+        nuggets.push_back(this->MistieSquares[number] / this->PlateRoughness);
+      }
     }
-    result.Plate = std::make_unique<Spline>();
-    if (!result.Plate->Prepare(centers, Spline::Kernel::ThinPlate))
+    known.Plate = std::make_unique<Spline>();
+    if (!known.Plate->Prepare(centers, Spline::Kernel::ThinPlate, nuggets))
     {
-      result.Plate.reset();
+      known.Plate.reset();
     }
-    return result;
+  }
+
+  /** Where lines disagree, the spline goes between them: it takes misties for errors of theirs. */
+  void SmoothMisties()
+  {
+    const std::vector<Mistie> misties =
+      FindMisties(this->All.Triangles, this->Lines, this->Elevations);
+    for (const Mistie& mistie : misties)
+    {
+      if (mistie.IsCertain())
+      {
+        this->MistieSizes.push_back(mistie.Size);
+      }
+    }
+    if (this->MistieSizes.empty())
+    {
+      return;
+    }
+    this->MistieSquares = VariancesOf(misties, this->All.Triangles, this->Lines, this->Elevations);
+    std::vector<double> atCenters;
+    for (const Index number : this->All.Centers)
+    {
+      atCenters.push_back(this->Elevations[number]);
+    }
+    // Exactly through misties the spline is steep, and seems rougher than the surface is.
+    for (int step = 0; step < StepsToRoughness && this->All.Plate; ++step)
+    {
+      this->PlateRoughness = this->All.Plate->Roughness(atCenters);
+      this->MakePlate(this->All);
+    }
   }
 
   /** Farthest points first; of points that are left, the same part as of all. */
@@ -562,6 +630,9 @@ private:
   std::vector<Spot> Spots; ///< new vertices among the triangles of all known points
   double Gap = 0.0;        ///< the median gap of these
   double SplineShare = 0.0;
+  std::vector<double> MistieSizes;
+  std::vector<double> MistieSquares;     ///< one a known point: the variance of its line's height
+  double PlateRoughness = 0.0;           ///< Spline::Roughness(); 0 without misties
   std::vector<double> NewScales;         ///< of new vertices
   TrialErrors LeftOut;
 };
@@ -589,9 +660,15 @@ double BetweenLines::Outgrowth() const
   return this->Tried->Outgrowth();
 }
 
-std::vector<double> BetweenLines::Apply(const Values& values, const Progress& progress) const
+const std::vector<double>& BetweenLines::Misties() const
 {
-  return this->Tried->Apply(values, progress);
+  return this->Tried->Misties();
+}
+
+std::vector<double> BetweenLines::Apply(
+  const Values& values, const Progress& progress, DrawnBack* drawnBack) const
+{
+  return this->Tried->Apply(values, progress, drawnBack);
 }
 
 std::vector<double> BetweenLines::StandardErrors() const

@@ -46,7 +46,6 @@ constexpr double PointsPerTrial = 150.0;
 /** What is refused by default: more points than this, and this many for each of the surface. */
 constexpr double LeastPointsRefused = 1e6;
 constexpr double MostPointsPerPoint = 10.0;
-
 constexpr double BytesPerPoint = 500.0; // of memory, while and after it is inserted
 
 /** What a thread takes at a time: patches of about this many points in all, or a larger one. */
@@ -147,7 +146,8 @@ bool ElevateBetweenLines(const Mesh& mesh, const VertexStars* stars, double long
   {
     return false;
   }
-  SetElevations(lines.Apply(elevation, stages.Next()), patch);
+  SetElevations(lines.Apply(elevation, stages.Next(), &report.Drawn), patch);
+  report.Misties = lines.Misties();
   for (const Values& values : options.Attributes)
   {
     filled.Attributes.push_back(lines.Apply(values, progress.Between(1.0, 1.0)));
@@ -166,7 +166,8 @@ bool ElevateBetweenLines(const Mesh& mesh, const VertexStars* stars, double long
 
 /** Finds elevations and attributes; of each attribute one vector, in the order of vertices. */
 void Elevate(const Mesh& mesh, const VertexStars* stars, const Values& elevation,
-  const FillOptions& options, const Progress& progress, FilledHole& filled, HoleReport& report)
+  const FillOptions& options, const ElevationRange& range, const Progress& progress,
+  FilledHole& filled, HoleReport& report)
 {
   Stages stages(progress, { 50, 50 });
   Patch& patch = filled.Triangles;
@@ -184,6 +185,7 @@ void Elevate(const Mesh& mesh, const VertexStars* stars, const Values& elevation
       filled.Attributes.push_back(std::move(values));
       continue;
     }
+    report.Drawn = range.DrawBackTo(values);
     SetElevations(values, patch);
   }
   report.Method = heights.Used();
@@ -265,6 +267,9 @@ public:
     this->Least = needsStars ? PointsPerTrial : PointsPerPatch;
     this->PlanAll(stages.Next());
     this->GrantPoints();
+    this->Range = this->Context.Elevations.IsEmpty()
+      ? RangeOf(this->Surface, this->GivenHoles, this->Points)
+      : this->Context.Elevations;
     // On a lattice they are there already, for the plans.
     const bool makesStars = this->AllWork > 0.0 && needsStars && !this->Stars;
     Stages later(stages.Next(), { makesStars ? 4.0 : 0.0, 94 });
@@ -527,8 +532,8 @@ private:
         !ElevateBetweenLines(this->Surface, this->Stars.get(), this->GivenHoles.LongestEdge,
           elevation, this->Options, betweenLines, filled, report))
       {
-        Elevate(this->Surface, this->Stars.get(), elevation, this->Options, stages.Next(), filled,
-          report);
+        Elevate(this->Surface, this->Stars.get(), elevation, this->Options, this->Range,
+          stages.Next(), filled, report);
       }
     }
     catch (const Error& error)
@@ -571,6 +576,7 @@ private:
   const int Threads;
   double Least = 0.0; ///< the fixed work for a patch
   double AllWork = 0.0;
+  ElevationRange Range;
   std::vector<PatchPlan> Plans;
   std::vector<char> HasRoom; ///< one a hole: 0 for regions whose patch would have no new point
   std::unique_ptr<VertexStars> Stars;

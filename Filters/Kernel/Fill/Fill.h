@@ -8,7 +8,9 @@
  * points and triangles to append, their values, and a report for every hole. For each hole:
  *   1. Measure it and compare with the limits; then compare what is expected of all.
  *   2. Place points and triangulate them (Patch.h).
- *   3. Find elevations, and other attributes in the same way (Heights.h).
+ *   3. Find elevations, and other attributes in the same way (Heights.h). Elevations that leave
+ *      the range of the whole surface by more than 2.5 % of it are drawn back (Overshoot.h), so
+ *      that none leaves it by more than 5 %.
  * Where a hole is a region of long triangles, the patch replaces them; of a region that is not
  * filled, the caller keeps them. They are no evidence: elevations are found from the other ones,
  *
@@ -38,6 +40,7 @@
 #include "Kernel/Mesh/Mesh.h"
 #include "Kernel/Messages/Messages.h"
 #include "Kernel/Triangulate/Triangulate.h"
+#include "Overshoot.h"
 
 #include <limits>
 #include <string>
@@ -100,6 +103,7 @@ struct WholeSurface
   /** One a hole, in which all triangles that meet it are there. It contains the rim. */
   std::vector<Box> Surroundings;
   std::vector<double> Quotas; ///< one a hole: QuotasFor() all holes, after CheckEffort()
+  ElevationRange Elevations;  ///< that of all triangles; empty: it is looked for
 };
 
 struct HoleReport
@@ -114,6 +118,8 @@ struct HoleReport
   Index NumberOfInsertedPoints = 0;
   Interpolation Method = Interpolation::NeighborMean; ///< as used; never Adaptive
   double Outgrowth = 0.0;                             ///< BetweenLines::Outgrowth()
+  DrawnBack Drawn;                                    ///< elevations that overshot
+  std::vector<double> Misties; ///< by how much lines disagree that cross in it, where they do
   bool NeedsMoreSurroundings = false; ///< not filled: its surroundings are too small
   Message Reason;                     ///< if Failed: without the hole's name
 };

@@ -76,8 +76,9 @@ constexpr double LeastPart = 0.25;
 /** Accuracy of the membrane that bounds, on large patches. */
 constexpr double BoundAccuracy = 1e-4;
 
-/** Slopes are measured over at most this many edges. */
+/** Slopes are measured over at most so many edges; they count over so many times the length. */
 constexpr Index MostRings = 16;
+constexpr double MostReach = 4.0;
 
 constexpr Spline::Kernel Kernels[2] = { Spline::Kernel::ThinPlate, Spline::Kernel::Cubic };
 constexpr Interpolation Methods[3] = { Interpolation::Membrane, Interpolation::ThinPlate,
@@ -567,14 +568,15 @@ std::vector<double> Heights::SplineSum(
 Heights::RimSlopes Heights::MeasureSlopes(const Values& values, double unit) const
 {
   std::vector<double> slopes;
+  std::vector<double> lengths;
   for (const Pair& pair : this->Slopes)
   {
     const Point2& a = this->Surface.PointOf(pair.Boundary);
     const Point2& b = this->Surface.PointOf(pair.Away);
-    // Of scaled values and lengths, so that it stays in the range of double; then for the caller's
-    // unit of length.
-    const double slope = (values(pair.Boundary) - values(pair.Away)) / unit /
-      (std::hypot(b.X - a.X, b.Y - a.Y) * this->Scale);
+    lengths.push_back(std::hypot(b.X - a.X, b.Y - a.Y));
+    // Of scaled values and lengths, in the range of double; then for the caller's unit of length.
+    const double slope =
+      (values(pair.Boundary) - values(pair.Away)) / unit / (lengths.back() * this->Scale);
     if (std::isfinite(slope))
     {
       slopes.push_back(this->Scale * slope);
@@ -585,6 +587,7 @@ Heights::RimSlopes Heights::MeasureSlopes(const Values& values, double unit) con
   std::transform(
     slopes.begin(), slopes.end(), slopes.begin(), [](double slope) { return std::fabs(slope); });
   result.Steepness = Median(std::move(slopes));
+  result.Reach = MostReach * Median(std::move(lengths));
   return result;
 }
 
@@ -597,8 +600,7 @@ void Heights::Bound(const std::vector<double>& scaled, const Values& values, dou
 {
   const Index boundary = this->Patch.NumberOfBoundaryVertices();
   // The bounds are in the caller's units, so that rounding in scaled ones does not break them.
-  double lowest = values(this->KnownVertices[0]);
-  double highest = lowest;
+  double lowest = values(this->KnownVertices[0]), highest = lowest;
   for (Index i = 1; i < boundary; ++i)
   {
     lowest = std::min(lowest, values(this->KnownVertices[i]));
@@ -615,7 +617,7 @@ void Heights::Bound(const std::vector<double>& scaled, const Values& values, dou
   {
     const Point2 p = this->Patch.At(boundary + static_cast<Index>(i));
     const Point2 q = this->Patch.At(this->Patch.Nearest[i]);
-    const double distance = std::hypot(p.X - q.X, p.Y - q.Y);
+    const double distance = std::min(std::hypot(p.X - q.X, p.Y - q.Y), slopes.Reach);
     const double rise = slopes.Inward * distance;
     if (!flat.empty())
     {

@@ -55,7 +55,8 @@
  * Adaptive also keeps within three times the median steepness, times that distance, of the
  * membrane. So single points and noise do not make hills. Slopes are those from the boundary to
  * points outside, half as many edges away as the middle of the hole is, at most 16: over short
- * distances, roughness would count as slope.
+ * distances, roughness would count as slope. They count up to four times as far from the boundary
+ * as the median pair of these points is apart.
  *
  * Standard errors. Each method but NeighborMean is tried beside the hole, also when it is not
  * chosen by trials. The errors of what is used, of a mixture those of the mixture, are sorted into
@@ -182,6 +183,7 @@ private:
   {
     double Inward = 0.0;    ///< rising towards the hole
     double Steepness = 0.0; ///< either way
+    double Reach = 0.0;     ///< how far from the boundary they count
   };
   RimSlopes MeasureSlopes(const Values& values, double unit) const;
   void Bound(const std::vector<double>& scaled, const Values& values, double middle, double unit,

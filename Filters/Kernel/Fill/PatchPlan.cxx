@@ -33,15 +33,23 @@ constexpr double LargestCellsPerTriangle = 1.75;
 
 /**
  * The median area of the surface's triangles at the vertices of a hole's boundary; infinite where
- * there are none.
+ * there are none. At a region those without an edge on the border: a line that jumps from row to row
+ * has small triangles, too, one beside the other, but no surface.
  */
 double MedianTriangleArea(
   const Mesh& mesh, const VertexStars& stars, const Holes& holes, Index hole)
 {
   std::vector<double> areas;
+  const bool isRegion = holes.IsRegion(hole);
   holes.VisitEdges(hole, [&](Index origin, Index) {
     const Point2& p = mesh.PointOf(origin);
     stars.Visit(mesh, origin, [&](Index h) {
+      const bool isOnBorder = mesh.Twin(h) == Mesh::Border ||
+        mesh.Twin(Mesh::Next(h)) == Mesh::Border || mesh.Twin(Mesh::Previous(h)) == Mesh::Border;
+      if (isRegion && isOnBorder)
+      {
+        return true;
+      }
       const Point2& a = mesh.PointOf(mesh.Destination(h));
       const Point2& b = mesh.PointOf(mesh.Apex(h));
       areas.push_back(0.5 * ((a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X)));

@@ -10,8 +10,9 @@
  *   Even    If the user sets a spacing: rows one spacing apart, every other one shifted by half a
  *           step, so that triangles are nearly equilateral.
  *   Nodes   If the hole's boundary lies on the surface's lattice, and the lattice is not thinned:
- *           the median area of the triangles at the boundary is at most 1.75 cells. The new points
- *           are the nodes inside. (A thinned lattice has many more nodes than points.)
+ *           the median area of the triangles at the boundary is at most 1.75 cells; of a region,
+ *           triangles with an edge on the border do not count. The new points are the nodes inside. (A
+ *           thinned lattice has many more nodes than points.)
  *   Graded  If the largest spacing is more than three times the least. The spacing at the boundary
  *           is the mean length of the eight edges around a place (of all, if a ring has fewer), at a
  *           point inside the mean length of its inner edges; inwards it grows by 0.2 times the

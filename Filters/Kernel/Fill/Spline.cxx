@@ -135,7 +135,8 @@ void AddKernel(Spline::Kernel kernel, double x, double y, double weight, const d
 }
 } // namespace
 
-bool Spline::Prepare(const std::vector<Point2>& centers, Kernel kernel)
+bool Spline::Prepare(
+  const std::vector<Point2>& centers, Kernel kernel, const std::vector<double>& nuggets)
 {
   const Eigen::Index n = static_cast<Eigen::Index>(centers.size());
   if (n < 3)
@@ -169,6 +170,7 @@ bool Spline::Prepare(const std::vector<Point2>& centers, Kernel kernel)
     // The diagonal is f(0) = 0. Entries above it are never read.
     a.col(i).tail(n - i).setZero();
     AddKernel(kernel, this->X[i], this->Y[i], 1.0, &this->X[i], &this->Y[i], n - i, &a(i, i));
+    a(i, i) += nuggets.empty() ? 0.0 : nuggets[i];
   }
   Eigen::VectorXd mirror(n);
   Eigen::VectorXd image(n);
@@ -195,6 +197,20 @@ bool Spline::Prepare(const std::vector<Point2>& centers, Kernel kernel)
   const Eigen::LLT<Eigen::Ref<Matrix>> inPlace(rest);
   return inPlace.info() == Eigen::Success &&
     a.diagonal().tail(n - 3).cwiseAbs2().minCoeff() > leastPivot;
+}
+
+double Spline::Roughness(const std::vector<double>& values) const
+{
+  const Eigen::Index n = this->Factor.rows();
+  if (n == 3)
+  {
+    return 0.0;
+  }
+  Eigen::VectorXd w = Eigen::Map<const Eigen::VectorXd>(values.data(), n);
+  w.applyOnTheLeft(this->Plane.householderQ().transpose());
+  Eigen::VectorXd rest = w.tail(n - 3);
+  this->Factor.bottomRightCorner(n - 3, n - 3).triangularView<Eigen::Lower>().solveInPlace(rest);
+  return rest.squaredNorm() / static_cast<double>(n - 3);
 }
 
 Spline::Weights Spline::Interpolate(const std::vector<double>& values) const

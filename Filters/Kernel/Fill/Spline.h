@@ -14,10 +14,14 @@
  * factorisation of the columns 1, x, y. In this basis the matrix is positive definite.
  * QR and Cholesky factorisation are Eigen's.
  *
+ * With a nugget l_j at a centre, the spline only comes near the value there: of all surfaces it has
+ * the least bending plus squares of what it misses, over l_j [Wahba].
+ *
  * Cost, for n centres: n^3 / 6 multiplications to set up, n^2 for each set of values, n for each
  * point; n^2 numbers in memory.
  *
  * [Duchon] Splines minimizing rotation-invariant semi-norms in Sobolev spaces, 1977.
+ * [Wahba] Spline Models for Observational Data, 1990.
  */
 #ifndef elevation_Fill_Spline_h
 #define elevation_Fill_Spline_h
@@ -50,9 +54,17 @@ public:
 
   /**
    * @param[in] centers  distinct, around the origin, with coordinates of size about 1
+   * @param[in] nuggets  one a centre, or none: the spline goes through the values
    * @return false if they do not determine a surface: fewer than three, or nearly in a line
    */
-  bool Prepare(const std::vector<Point2>& centers, Kernel kernel);
+  bool Prepare(const std::vector<Point2>& centers, Kernel kernel,
+    const std::vector<double>& nuggets = std::vector<double>());
+
+  /**
+   * How rough values are, in squares of them: for values that are drawn at random such that this
+   * spline predicts them best, the expected variance of a weight 1.
+   */
+  double Roughness(const std::vector<double>& values) const;
 
   /** @param[in] values  one per centre; or several for each, of which each set costs less */
   Weights Interpolate(const std::vector<double>& values) const;

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Tracks.h"
 
+#include "Quantiles.h"
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <queue>
 #include <tuple>
@@ -34,6 +37,15 @@ constexpr Index LeastVertices = 8;
 
 /** Tracks whose vertices are joined by fewer edges, of the shorter one's, are not side by side. */
 constexpr double LeastContact = 0.1;
+
+/** Lines agree if so small a part of their crossings seem to disagree. */
+constexpr double LeastDisagreeing = 0.1;
+
+/** By how much of their doubt misties seem larger than they are: squares of both are subtracted. */
+constexpr double PartOfDoubt = 0.5;
+
+/** Points are of another line if they are so many times as far off theirs as the median point. */
+constexpr double LargeOffset = 5.0;
 
 /** Of lines that do not cross others; more are not needed. Then that of those that do. */
 constexpr int MostColors = 3;
@@ -67,6 +79,7 @@ public:
   {
     this->Join(progress);
     this->Prune();
+    this->Result.Crossings = FindCrossings(this->Surface, this->Arms);
     this->PairArms();
     this->Trace();
     return std::move(this->Result);
@@ -484,6 +497,108 @@ std::vector<char> FindCrossing(
 Tracks FindTracks(const Mesh& mesh, double longest, const Progress& progress)
 {
   return TrackFinding(mesh, longest).Run(progress);
+}
+
+std::vector<Mistie> FindMisties(
+  const Mesh& mesh, const Tracks& tracks, const std::vector<double>& heights)
+{
+  std::vector<Mistie> misties;
+  for (const Crossing& crossing : tracks.Crossings)
+  {
+    misties.push_back(MistieAt(mesh, crossing, heights));
+  }
+  const auto isSeen = [](const Mistie& mistie) { return mistie.IsBeyondDoubt(); };
+  const double certain = static_cast<double>(std::count_if(
+    misties.begin(), misties.end(), [](const Mistie& mistie) { return mistie.IsCertain(); }));
+  if (certain < LeastDisagreeing * static_cast<double>(misties.size()) &&
+    std::none_of(misties.begin(), misties.end(), isSeen))
+  {
+    misties.clear();
+  }
+  return misties;
+}
+
+namespace
+{
+/** By how much each vertex of tracks is off the line between the two beside it; else 0. */
+std::vector<double> OffsetsOf(
+  const Mesh& mesh, const Tracks& tracks, const std::vector<double>& heights)
+{
+  std::vector<double> offsets(heights.size(), 0.0);
+  for (Index t = 0; t < tracks.Count(); ++t)
+  {
+    for (const Index* v = tracks.Begin(t) + 1; v + 1 < tracks.End(t); ++v)
+    {
+      const Point2& p = mesh.PointOf(*v);
+      const auto distanceTo = [&](Index other) {
+        const Point2& q = mesh.PointOf(other);
+        return std::hypot(q.X - p.X, q.Y - p.Y);
+      };
+      const double before = distanceTo(v[-1]), behind = distanceTo(v[1]);
+      const double even = (behind * heights[v[-1]] + before * heights[v[1]]) / (before + behind);
+      offsets[*v] = std::max(offsets[*v], std::fabs(heights[*v] - even));
+    }
+  }
+  return offsets;
+}
+} // namespace
+
+std::vector<double> VariancesOf(const std::vector<Mistie>& misties, const Mesh& mesh,
+  const Tracks& tracks, const std::vector<double>& heights)
+{
+  const std::size_t vertices = heights.size();
+  const auto squareOf = [](const Mistie& mistie) {
+    const double doubt = PartOfDoubt * mistie.Doubt;
+    return std::max(0.0, mistie.Size * mistie.Size - doubt * doubt);
+  };
+  std::vector<double> squares;
+  std::transform(misties.begin(), misties.end(), std::back_inserter(squares), squareOf);
+  const double usual = Median(squares);
+  std::vector<Index> trackOf(vertices, None);
+  for (Index t = 0; t < tracks.Count(); ++t)
+  {
+    std::for_each(tracks.Begin(t), tracks.End(t), [&](Index v) { trackOf[v] = t; });
+  }
+  std::vector<std::vector<double>> ofTracks(tracks.Count());
+  for (std::size_t i = 0; i < misties.size(); ++i)
+  {
+    for (const auto& line : tracks.Crossings[i].Arms)
+    {
+      for (const std::vector<Index>& arm : line)
+      {
+        const Index track = trackOf[arm.back()];
+        if (track != None)
+        {
+          ofTracks[track].push_back(squares[i]);
+        }
+      }
+    }
+  }
+  std::vector<double> variances(vertices, 0.5 * usual);
+  const auto raise = [&](Index v, double square) {
+    variances[v] = std::max(variances[v], 0.5 * square);
+  };
+  for (Index t = 0; t < tracks.Count(); ++t)
+  {
+    const double square = Median(ofTracks[t]);
+    std::for_each(tracks.Begin(t), tracks.End(t), [&](Index v) { raise(v, square); });
+  }
+  for (std::size_t i = 0; i < misties.size(); ++i)
+  {
+    for (const Index v : tracks.Crossings[i].Middle)
+    {
+      raise(v, squares[i]);
+    }
+  }
+  // Lines that cross at a small angle are close together for a while. What seems to be a line there
+  // goes to and fro between both.
+  const std::vector<double> offsets = OffsetsOf(mesh, tracks, heights);
+  const double large = LargeOffset * Median(offsets);
+  for (std::size_t v = 0; v < vertices; ++v)
+  {
+    raise(static_cast<Index>(v), offsets[v] > large ? offsets[v] * offsets[v] : 0.0);
+  }
+  return variances;
 }
 
 std::vector<int> ColorTracks(

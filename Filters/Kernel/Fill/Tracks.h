@@ -21,6 +21,7 @@
 #ifndef elevation_Fill_Tracks_h
 #define elevation_Fill_Tracks_h
 
+#include "Crossings.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
 
@@ -34,6 +35,7 @@ struct Tracks
 {
   std::vector<Index> Offsets{ 0 };
   std::vector<Index> Vertices;
+  std::vector<Crossing> Crossings; ///< where two of them cross
 
   Index Count() const { return static_cast<Index>(this->Offsets.size()) - 1; }
   Index Size(Index track) const { return this->Offsets[track + 1] - this->Offsets[track]; }
@@ -48,6 +50,23 @@ struct Tracks
  * @throws Aborted; std::bad_alloc
  */
 Tracks FindTracks(const Mesh& mesh, double longest, const Progress& progress = Progress());
+
+/**
+ * Of each crossing.
+ * @param[in] heights  one a vertex
+ * @return none if lines agree: if no mistie is beyond doubt, and fewer than a tenth are certain
+ */
+std::vector<Mistie> FindMisties(
+  const Mesh& mesh, const Tracks& tracks, const std::vector<double>& heights);
+
+/**
+ * The variance of the height of a line that misties show, one a vertex: of a track half the square
+ * of the median one; the median of all where nothing is known; of what is at a crossing that of this
+ * one if it is larger.
+ * @param[in] misties  as of FindMisties(), at least one certain
+ */
+std::vector<double> VariancesOf(const std::vector<Mistie>& misties, const Mesh& mesh,
+  const Tracks& tracks, const std::vector<double>& heights);
 
 /**
  * Colours tracks so that those side by side differ: of parallel ones every other has the same.

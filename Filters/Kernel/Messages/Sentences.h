@@ -195,11 +195,12 @@ ELEVATION_SENTENCE(
   MoreHolesNotFilled, "And {holes} more holes were not filled; see Status in output 1.");
 ELEVATION_SENTENCE(ErrorsOutgrowRoughness,
   "Between lines in {holes} of the holes, the first being hole {hole}, errors shrink less from "
-  "wide "
-  "gaps to narrow ones than the roughness along the lines, up to {factor} times. Stripes along "
-  "lines "
-  "do this, where each is a little too high or too low. FilledError and the interval are wider for "
-  "it, but may be too narrow.");
+  "wide gaps to narrow ones than the roughness along the lines, up to {factor} times. Stripes "
+  "along lines do this, where each is a little too high or too low. FilledError and the interval "
+  "are wider for it, but may be too narrow.");
+ELEVATION_SENTENCE(LinesDisagree,
+  "{crossings} crossings of survey lines disagree by up to {most} (median {median}). The points of "
+  "lines stay as they are; what is filled between lines goes between them there.");
 ELEVATION_SENTENCE(BordersMeet,
   "At {places} places a point lies inside a border edge or on another point, the first at point "
   "{point}; there the surface is not connected, so that an enclosed region may not be a hole. "

@@ -533,3 +533,32 @@ TEST(Regions, AreTheSameForAnyNumberOfThreadsAndOrderOfPoints)
     EXPECT_EQ(sorted(Fill(Delaunay(points), options, Slope, 0.07)), sorted(one));
   }
 }
+
+TEST(Regions, OfRowsThatJumpHaveNoMoreNewPointsThanThoseOfStraightRows)
+{
+  // Rows of a grid, every tenth, that are a node or two aside here and there.
+  const auto insertedFor = [](unsigned seed, int most) {
+    Random random(seed);
+    std::vector<Point2> points;
+    for (int row = 0; row < 80; row += 10)
+    {
+      for (int x = 0; x < 120; ++x)
+      {
+        const double aside = std::floor((2 * most + 1) * random.Unit()) - most;
+        points.push_back({ double(x), row + aside });
+      }
+    }
+    return double(Fill(Delaunay(points), FillOptions(), Slope, 2.5).Patches.NumberOfPoints());
+  };
+  const double straight = insertedFor(1, 0);
+  ASSERT_GT(straight, 100.0);
+  for (unsigned seed = 1; seed <= 5; ++seed)
+  {
+    for (const int most : { 1, 2 })
+    {
+      // Along them, points are further apart; all nodes would be twice as many.
+      EXPECT_LT(insertedFor(seed, most), 1.1 * straight) << seed << " " << most;
+      EXPECT_GT(insertedFor(seed, most), 0.3 * straight) << seed << " " << most;
+    }
+  }
+}

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Where survey lines cross, and by how much they disagree there: misties.
+ *
+ * In: points with the edges that join them along lines, their heights. Out: places where two lines
+ * cross, and the difference of their heights there.
+ *
+ *          b                 Near a crossing edges lead from one line to the other, so a point there
+ *          |                 (x) may be of either. From the points around it four arms lead away;
+ *   a--a--x-x--a--a          two and two continue each other. The height of a line at the crossing
+ *         x-x                is what its arms give on both sides, by linear interpolation.
+ *          |
+ *          b
+ *
+ * By how much arms may be wrong: by what a cubic through their slopes changes, and by their second
+ * differences. (On made surveys they are wrong by 0.4 times that, the median, and by 0.8 times at
+ * one crossing of ten.) Lines disagree where the difference is larger.
+ *
+ * Cost: linear.
+ */
+#ifndef elevation_Fill_Crossings_h
+#define elevation_Fill_Crossings_h
+
+#include "Kernel/Base/Base.h"
+#include "Kernel/Mesh/Mesh.h"
+
+#include <vector>
+
+namespace elevation
+{
+
+struct Crossing
+{
+  /** Vertices of both lines, on both sides, from the crossing outwards. */
+  std::vector<Index> Arms[2][2];
+  std::vector<Index> Middle; ///< those at the crossing, which may be of either line
+};
+
+/**
+ * Finds crossings of two lines.
+ * @param[in] neighbors  for each vertex those that an edge along a line joins it to, increasing
+ */
+std::vector<Crossing> FindCrossings(
+  const Mesh& mesh, const std::vector<std::vector<Index>>& neighbors);
+
+/** How the heights of two lines differ where they cross. */
+struct Mistie
+{
+  double Size = 0.0;
+  double Doubt = 0.0; ///< by how much the arms may be wrong
+
+  /** On made surveys whose lines agree, one crossing of a hundred seems to disagree. */
+  bool IsCertain() const { return this->Size > 1.25 * this->Doubt; }
+  bool IsBeyondDoubt() const { return this->Size > 3.0 * this->Doubt; }
+};
+
+/** @param[in] heights  one a vertex */
+Mistie MistieAt(const Mesh& mesh, const Crossing& crossing, const std::vector<double>& heights);
+
+} // namespace elevation
+
+#endif

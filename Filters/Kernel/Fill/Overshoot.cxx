@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Overshoot.h"
+
+namespace elevation
+{
+
+namespace
+{
+/** How far elevations may leave the range of all, in parts of it. */
+constexpr double RoomBeyondAll = 0.05;
+} // namespace
+
+DrawnBack ElevationRange::DrawBackTo(std::vector<double>& elevations) const
+{
+  DrawnBack drawn;
+  // Half of each, as the difference of two large values may overflow.
+  const double room = 2.0 * RoomBeyondAll * (0.5 * this->High - 0.5 * this->Low);
+  for (std::size_t i = 0; i < elevations.size() && !this->IsEmpty(); ++i)
+  {
+    double& elevation = elevations[i];
+    const double before = elevation;
+    elevation = DrawBack(before, this->Low, this->High, room);
+    drawn.Add(before, elevation);
+  }
+  return drawn;
+}
+
+ElevationRange RangeOf(const Mesh& mesh, const Holes& holes, const PointView& points)
+{
+  ElevationRange range;
+  for (const std::vector<Index>* ids : { &holes.Walks.Vertices, &holes.InnerEnds })
+  {
+    for (const Index id : *ids)
+    {
+      range.Add(points.Elevation(id));
+    }
+  }
+  CountWork(mesh.Triangles.size());
+  for (const Index id : mesh.Triangles)
+  {
+    range.Add(points.Elevation(id));
+  }
+  return range;
+}
+
+} // namespace elevation
