@@ -98,6 +98,7 @@ set(es_kernel_Fill
   LineRoughness
   TrialErrors
   BetweenLines
+  FilledHole
   Fill)
 
 # Headers without a source file.
