@@ -201,6 +201,13 @@ public:
     }
   }
 
+  /** The places that count. */
+  double NumberOfCounted() const
+  {
+    return static_cast<double>(std::count_if(
+      this->Places.begin(), this->Places.end(), [](const Place& p) { return p.IsCounted; }));
+  }
+
   /** The logarithms of the methods' shares, up to a common term. */
   double Scores[3];
 

@@ -53,6 +53,12 @@ constexpr int NumberOfPlacesOfLargeHoles = 4;
 constexpr int EnoughPlaces = 4;
 constexpr double ReducedSizes[] = { 0.7, 0.5, 0.25 };
 
+/**
+ * As how many independent errors those of a place count, where the ranks of errors make intervals.
+ * On VoidBench, with all of them 83 to 90 % of the true heights are inside, with 4 of them 90 to 95.
+ */
+constexpr double ErrorsPerPlace = 7.0;
+
 /** Smaller shares, relative to the largest, are not worth computing. */
 constexpr double LeastShare = 0.03;
 
@@ -382,14 +388,16 @@ void Heights::TryBeside(Trials& trials, const Progress& progress) const
 {
   const bool isLarge = this->Harmonic && this->Harmonic->IsLarge();
   const int number = isLarge ? NumberOfPlacesOfLargeHoles : NumberOfPlaces;
+  double begun = 0.0; // walks take the first half
   const auto tryAt = [&](double size, int wanted, bool isCounted) {
     int found = 0;
     for (int k = 0; k < number && found < wanted; ++k)
     {
-      Report(progress, 0.0); // walks are short beside predictions
+      Report(progress, 0.5 * (begun + (1.0 - begun) * 0.8 * k / number));
       const double angle = 2.0 * 3.14159265358979323846 * Spread(k, number) / number;
       found += trials.At(angle, size, isCounted) ? 1 : 0;
     }
+    begun += (1.0 - begun) * 0.8;
     return found;
   };
   int places = tryAt(1.0, number, true);
@@ -411,7 +419,7 @@ void Heights::TryBeside(Trials& trials, const Progress& progress) const
   {
     tryAt(sizeForGrowth, LeastPlacesForGrowth, false);
   }
-  trials.Compare(progress);
+  trials.Compare(progress.Between(0.5, 1.0));
 }
 
 /** Finds the candidates' shares, and their errors. */
@@ -449,6 +457,7 @@ void Heights::Choose(const VertexStars& stars, const Values& values, const Progr
   this->Method = Methods[best];
   this->ErrorCurve = trials.ErrorsByDistance(this->Shares);
   this->TrialErrors = trials.ErrorsInCurve(this->Shares);
+  this->TrialPlaces = trials.NumberOfCounted();
 }
 
 double Heights::ErrorAt(double distance) const
@@ -482,7 +491,10 @@ std::vector<double> Heights::HalfIntervals(double probability) const
   std::vector<double> result = this->StandardErrors();
   if (!this->TrialErrors.empty())
   {
-    const double factor = QuantileByRank(this->TrialErrors, probability);
+    // Errors at a place are alike, so a few places say less than their number of errors would.
+    const double independent = ErrorsPerPlace * this->TrialPlaces;
+    const double factor =
+      QuantileByRank(this->TrialErrors, probability + probability / independent);
     for (double& half : result)
     {
       half *= factor;

@@ -208,6 +208,7 @@ private:
   bool IsByTrials = false;                           ///< chosen by Adaptive
   bool IsCandidate[3] = { false, false, false };     ///< membrane and splines
   std::vector<std::pair<double, double>> ErrorCurve; ///< standard errors by distance
+  double TrialPlaces = 0.0;                          ///< how many of the trials count
   std::vector<double> TrialErrors; ///< sizes of errors of the trials, in standard errors
   std::unique_ptr<Membrane> Harmonic;
   std::unique_ptr<Spline> Splines[2];   ///< thin plate and cubic; those with a share

@@ -143,8 +143,8 @@ TEST(Trials, AdaptiveDoubtsWhatIsCalmBetweenPoints)
     return Fill(mesh, hills, Interpolation::Adaptive).Patches.Reports[0].Method;
   };
   // Else these would be the cubic spline and the thin plate.
-  EXPECT_EQ(used(0.0196), Interpolation::ThinPlate);
-  EXPECT_EQ(used(0.313), Interpolation::Membrane);
+  EXPECT_EQ(used(0.0243), Interpolation::ThinPlate);
+  EXPECT_EQ(used(0.357), Interpolation::Membrane);
 }
 
 TEST(Trials, OfAdaptiveStayCalmOnLevelNoise)
