@@ -56,7 +56,8 @@ def hole_report(outlines, bridged, fill, why_opened=None, ranks=None):
             "box": box,
             "inserted_points": inserted,
             "interpolation": INTERPOLATIONS[way] if inserted else None,
-            "drawn_back": {"points": drawn, "most": most},
+            "points_drawn_back": drawn,
+            "largest_draw_back": most,
         }
         for (hole, edges, perimeter, area, size, inserted, way, drawn, most,
              status, bridged, centre, box) in rows
@@ -76,8 +77,8 @@ def hole_report(outlines, bridged, fill, why_opened=None, ranks=None):
         "by_status": by_status,
         "inserted_points": sum(hole["inserted_points"] for hole in holes),
         "drawn_back": {
-            "points": sum(hole["drawn_back"]["points"] for hole in holes),
-            "most": max((hole["drawn_back"]["most"] for hole in holes), default=0.0),
+            "points": sum(hole["points_drawn_back"] for hole in holes),
+            "most": max((hole["largest_draw_back"] for hole in holes), default=0.0),
         },
         "list": holes,
     }

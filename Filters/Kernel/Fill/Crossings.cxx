@@ -183,27 +183,34 @@ Mistie MistieAt(const Mesh& mesh, const Crossing& crossing, const std::vector<do
     const double ends[2] = { heights[arms[0].front()], heights[arms[1].front()] };
     ofLines[line] = ends[0] + part * (ends[1] - ends[0]);
     // The slopes of both arms towards the other one, over the length between them.
-    double rises[2], roughness = 0.0, count = 0.0;
+    double rises[2], roughness = 0.0;
     for (int side = 0; side < 2; ++side)
     {
       const std::vector<Index>& arm = arms[side];
       rises[side] =
         (heights[arm[0]] - heights[arm[2]]) / (lengthOf(arm[0], arm[1]) + lengthOf(arm[1], arm[2]));
       rises[side] *= length;
+      // How far the arm, which is about as long as the way between both, is off a straight line.
+      std::vector<double> along{ 0.0 };
+      for (std::size_t i = 1; i < arm.size(); ++i)
+      {
+        along.push_back(along.back() + lengthOf(arm[i - 1], arm[i]));
+      }
+      double most = 0.0;
       for (std::size_t i = 1; i + 1 < arm.size(); ++i)
       {
-        const double before = lengthOf(arm[i - 1], arm[i]), behind = lengthOf(arm[i], arm[i + 1]);
+        const double share = along[i] / along.back();
         const double even =
-          (behind * heights[arm[i - 1]] + before * heights[arm[i + 1]]) / (before + behind);
-        roughness += std::fabs(heights[arm[i]] - even);
-        count += 1.0;
+          heights[arm.front()] + share * (heights[arm.back()] - heights[arm.front()]);
+        most = std::max(most, std::fabs(heights[arm[i]] - even));
       }
+      roughness += 0.5 * most * std::max(1.0, length / along.back());
     }
     // How far a cubic with these slopes is from the straight line.
     const double rise = ends[1] - ends[0];
     const double bend =
       part * (1.0 - part) * ((1.0 - part) * (rises[0] - rise) + part * (rise + rises[1]));
-    mayBeWrong += std::fabs(bend) + roughness / count;
+    mayBeWrong += std::fabs(bend) + roughness;
   }
   return { std::fabs(ofLines[0] - ofLines[1]), mayBeWrong };
 }

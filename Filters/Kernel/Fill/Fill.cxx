@@ -130,14 +130,15 @@ public:
 
   FillResult Run()
   {
-    Stages stages(this->Options.Monitor, { 2, 98 });
+    Stages stages(this->Options.Monitor, { 2, 1, 97 });
     // The neighbours' mean looks at the patch alone; all other methods are tried around the hole.
     const bool needsStars = this->Options.Method != Interpolation::NeighborMean;
     this->Least = needsStars ? PointsPerTrial : PointsPerPatch;
     this->PlanAll(stages.Next());
     this->GrantPoints();
+    const Progress ranging = stages.Next();
     this->Range = this->Context.Elevations.IsEmpty()
-      ? RangeOf(this->Surface, this->GivenHoles, this->Points)
+      ? RangeOf(this->Surface, this->GivenHoles, this->Points, ranging)
       : this->Context.Elevations;
     // On a lattice they are there already, for the plans.
     const bool makesStars = this->AllWork > 0.0 && needsStars && !this->Stars;

@@ -26,7 +26,8 @@ DrawnBack ElevationRange::DrawBackTo(std::vector<double>& elevations) const
   return drawn;
 }
 
-ElevationRange RangeOf(const Mesh& mesh, const Holes& holes, const PointView& points)
+ElevationRange RangeOf(
+  const Mesh& mesh, const Holes& holes, const PointView& points, const Progress& progress)
 {
   ElevationRange range;
   for (const std::vector<Index>* ids : { &holes.Walks.Vertices, &holes.InnerEnds })
@@ -36,11 +37,11 @@ ElevationRange RangeOf(const Mesh& mesh, const Holes& holes, const PointView& po
       range.Add(points.Elevation(id));
     }
   }
-  CountWork(mesh.Triangles.size());
-  for (const Index id : mesh.Triangles)
-  {
-    range.Add(points.Elevation(id));
-  }
+  ForEachStretch(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
+    std::for_each(mesh.Triangles.begin() + 3 * std::ptrdiff_t(begin),
+      mesh.Triangles.begin() + 3 * std::ptrdiff_t(end),
+      [&](Index id) { range.Add(points.Elevation(id)); });
+  });
   return range;
 }
 

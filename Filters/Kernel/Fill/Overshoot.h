@@ -76,7 +76,8 @@ struct ElevationRange
 };
 
 /** That of the points of triangles and holes; of regions, points inside count, too. */
-ElevationRange RangeOf(const Mesh& mesh, const Holes& holes, const PointView& points);
+ElevationRange RangeOf(
+  const Mesh& mesh, const Holes& holes, const PointView& points, const Progress& progress);
 
 /** The lowest and the highest of values near places: what is continuous between these. */
 class RangeNearby

@@ -12,7 +12,7 @@
 #include "Spline.h"
 
 #include "Kernel/Base/Base.h"
-#include "Kernel/Bins/Instructions.h"
+#include "Kernel/Bins/Bins.h"
 
 #include <algorithm>
 #include <cmath>

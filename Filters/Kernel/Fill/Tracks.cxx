@@ -42,7 +42,7 @@ constexpr double LeastContact = 0.1;
 constexpr double LeastDisagreeing = 0.1;
 
 /** By how much of their doubt misties seem larger than they are: squares of both are subtracted. */
-constexpr double PartOfDoubt = 0.5;
+constexpr double PartOfDoubt = 0.3;
 
 /** Points are of another line if they are so many times as far off theirs as the median point. */
 constexpr double LargeOffset = 5.0;

@@ -14,8 +14,9 @@ namespace elevation
 
 namespace
 {
-/** Errors of crossing lines count if there are so many; errors in gaps four times as wide, too. */
+/** Errors of crossing lines count if there are so many; those in gaps four times as wide, if more. */
 constexpr std::size_t LeastErrors = 100;
+constexpr std::size_t LeastWiderErrors = 1000;
 
 /** The weight of errors in gaps as they are, where lines cross; in the mean of logarithms. */
 constexpr double ShareOfDirect = 0.4;
@@ -94,7 +95,7 @@ void TrialErrors::Carry(double roughness, double bending)
     return;
   }
   double credit = 1.0;
-  if (this->Wider.Errors.size() >= LeastErrors)
+  if (this->Wider.Errors.size() >= LeastWiderErrors)
   {
     const double outgrowth = ratio / this->Wider.FactorFor(CarryQuantile, noise);
     if (outgrowth > LeastOutgrowth)
