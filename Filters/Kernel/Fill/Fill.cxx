@@ -30,7 +30,6 @@ namespace
 /** Outside this range, squares of lengths leave the range of double. */
 constexpr double LeastLength = 1e-150;
 constexpr double LargestLength = 1e150;
-
 /**
  * Patches of more than PointsAlone points (on one thread, a quarter of that) are made one by one
  * and report progress; others together, up to PointsTogether points per thread, which bounds the
@@ -72,7 +71,7 @@ bool IsMeasurable(double length)
   return length >= LeastLength && length <= LargestLength;
 }
 
-// Whole numbers without an exponent, as long as a double holds them exactly.
+// Without an exponent, as long as a double holds whole numbers exactly.
 std::string CountToText(double value)
 {
   return value < 1e15 ? std::to_string(std::llround(value)) : ToText(value);
@@ -263,9 +262,8 @@ public:
     this->Least = needsStars ? PointsPerTrial : PointsPerPatch;
     this->PlanAll();
     this->GrantPoints();
-    this->Range = this->Context.Elevations.IsEmpty()
-      ? RangeOf(this->Surface, this->GivenHoles, this->Points)
-      : this->Context.Elevations;
+    const ElevationRange& known = this->Context.Elevations;
+    this->Range = known.IsEmpty() ? RangeOf(this->Surface, this->GivenHoles, this->Points) : known;
     // On a lattice they are there already, for the plans.
     if (this->AllWork > 0.0 && needsStars && !this->Stars)
     {
@@ -525,7 +523,9 @@ private:
         !ElevateBetweenLines(this->Surface, this->Stars.get(), this->GivenHoles.LongestEdge,
           elevation, this->Options, progress.Between(0.5, 0.9), filled, report))
       {
-        Elevate(this->Surface, this->Stars.get(), elevation, this->Options, this->Range,
+        const bool isRegion = this->GivenHoles.IsRegion(hole);
+        Elevate(this->Surface, this->Stars.get(), elevation, this->Options,
+          isRegion ? this->Range : ElevationRange(),
           progress.Between(mayHaveLines ? 0.9 : 0.5, 1.0), filled, report);
       }
     }
