@@ -136,9 +136,10 @@ public:
    * Points around the hole that stand apart, as outliers and those beyond a cliff, are no part of
    * what is continued. So they and noise do not make hills. Slopes are those from the
    * boundary to points half as many edges away as the middle of the hole is, 16 at most, and count
-   * four times as far as these points are away. No method leaves the range of z of the whole surface
-   * by more than 5 % of it: beyond 2.5 % z is compressed, so that the surface bends and is not cut
-   * off. Output 1 has how many points were drawn back, and by how much at most. Where the
+   * four times as far as these points are away. In regions of OpenEdgeLength no method leaves the
+   * range of z of the whole surface by more than 5 % of it: beyond 2.5 % z is compressed, so that the
+   * surface bends and is not cut off. Output 1 has how many points were drawn back, and by how much
+   * at most. Where the
    * points determine no spline, because they are nearly on one line, MEMBRANE is used; where z
    * around the hole is not finite, NEIGHBOR_MEAN.
    */

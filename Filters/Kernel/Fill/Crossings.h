@@ -15,9 +15,9 @@
  *          b
  *
  * By how much arms may be wrong: by what a cubic through their slopes changes, and by how far they
- * are off straight lines themselves. Lines disagree where the difference is larger. (Of crossings of
- * lines that agree, on rough terrain and on made surveys, the median difference is 0.1 to 0.3 times
- * that, and nine of ten are below 0.9 times that.)
+ * are off straight lines themselves. Lines disagree where the difference is 0.6 times as large. (Of
+ * crossings of lines that agree, on rough terrain and on made surveys, the median difference is 0.1
+ * to 0.3 times that, and nine of ten are below 0.9 times that.)
  *
  * Cost: linear.
  */
@@ -52,8 +52,8 @@ struct Mistie
   double Size = 0.0;
   double Doubt = 0.0; ///< by how much the arms may be wrong
 
-  // Of lines that agree, up to eight crossings of a hundred have one; none has one beyond doubt.
-  bool IsCertain() const { return this->Size > this->Doubt; }
+  // Of lines that agree, up to 18 crossings of a hundred are as large; none is beyond doubt.
+  bool IsCertain() const { return this->Size > 0.6 * this->Doubt; }
   bool IsBeyondDoubt() const { return this->Size > 2.5 * this->Doubt; }
 };
 

@@ -30,7 +30,6 @@ namespace
 /** Outside this range, squares of lengths leave the range of double. */
 constexpr double LeastLength = 1e-150;
 constexpr double LargestLength = 1e150;
-
 /**
  * Patches of more than PointsAlone points (on one thread, a quarter of that) are made one by one
  * and report progress; others together, up to PointsTogether points per thread, which bounds the
@@ -72,7 +71,7 @@ bool IsMeasurable(double length)
   return length >= LeastLength && length <= LargestLength;
 }
 
-// Whole numbers without an exponent, as long as a double holds them exactly.
+// Without an exponent, as long as a double holds whole numbers exactly.
 std::string CountToText(double value)
 {
   return value < 1e15 ? std::to_string(std::llround(value)) : ToText(value);
@@ -402,8 +401,9 @@ private:
         !ElevateBetweenLines(this->Surface, this->Stars.get(), this->GivenHoles.LongestEdge,
           elevation, this->Options, betweenLines, filled, report))
       {
-        Elevate(this->Surface, this->Stars.get(), elevation, this->Options, this->Range,
-          stages.Next(), filled, report);
+        const bool isRegion = this->GivenHoles.IsRegion(hole);
+        Elevate(this->Surface, this->Stars.get(), elevation, this->Options,
+          isRegion ? this->Range : ElevationRange(), stages.Next(), filled, report);
       }
     }
     catch (const Error& error)

@@ -8,9 +8,9 @@
  * points and triangles to append, their values, and a report for every hole. For each hole:
  *   1. Measure it and compare with the limits; then compare what is expected of all.
  *   2. Place points and triangulate them (Patch.h).
- *   3. Find elevations, and other attributes in the same way (Heights.h). Elevations that leave
- *      the range of the whole surface by more than 2.5 % of it are drawn back (Overshoot.h), so
- *      that none leaves it by more than 5 %.
+ *   3. Find elevations, and other attributes in the same way (Heights.h). Elevations in
+ *      regions of long triangles that leave the range of the whole surface by more than 2.5 % of it
+ *      are drawn back (Overshoot.h), so that none leaves it by more than 5 %.
  * Where a hole is a region of long triangles, the patch replaces them; of a region that is not
  * filled, the caller keeps them. They are no evidence: elevations are found from the other ones,
  *

@@ -45,10 +45,9 @@ constexpr std::size_t MostCentersWithPointsInside = 1000;
 /** Centres closer together than this, in spacings, add nothing but rounding. */
 constexpr double LeastDistance = 0.02;
 
-/**
- * Places where the methods are tried, and places that suffice with moved points at reduced size.
- */
-constexpr int NumberOfPlaces = 16;
+/** Directions of places where methods are tried, places wanted, and enough at reduced size. */
+constexpr int NumberOfPlaces = 32;
+constexpr int PlacesWanted = 16;
 constexpr int NumberOfPlacesOfLargeHoles = 4;
 constexpr int EnoughPlaces = 4;
 constexpr double ReducedSizes[] = { 0.7, 0.5, 0.25 };
@@ -400,7 +399,7 @@ void Heights::TryBeside(Trials& trials, const Progress& progress) const
     begun += (1.0 - begun) * 0.8;
     return found;
   };
-  int places = tryAt(1.0, number, true);
+  int places = tryAt(1.0, PlacesWanted, true);
   double sizeForGrowth = 0.0;
   int placesForGrowth = 0;
   for (const double size : ReducedSizes)

@@ -38,8 +38,9 @@ constexpr Index LeastVertices = 8;
 /** Tracks whose vertices are joined by fewer edges, of the shorter one's, are not side by side. */
 constexpr double LeastContact = 0.1;
 
-/** Lines agree if so small a part of their crossings seem to disagree. */
-constexpr double LeastDisagreeing = 0.1;
+/** Lines agree if fewer crossings, or so small a part of them, seem to disagree. */
+constexpr double LeastDisagreeing = 0.25;
+constexpr double FewestDisagreeing = 2.0;
 
 /** By how much of their doubt misties seem larger than they are: squares of both are subtracted. */
 constexpr double PartOfDoubt = 0.3;
@@ -510,7 +511,8 @@ std::vector<Mistie> FindMisties(
   const auto isSeen = [](const Mistie& mistie) { return mistie.IsBeyondDoubt(); };
   const double certain = static_cast<double>(std::count_if(
     misties.begin(), misties.end(), [](const Mistie& mistie) { return mistie.IsCertain(); }));
-  if (certain < LeastDisagreeing * static_cast<double>(misties.size()) &&
+  const double least = LeastDisagreeing * static_cast<double>(misties.size());
+  if (certain < std::max(FewestDisagreeing, least) &&
     std::none_of(misties.begin(), misties.end(), isSeen))
   {
     misties.clear();

@@ -54,7 +54,8 @@ Tracks FindTracks(const Mesh& mesh, double longest, const Progress& progress = P
 /**
  * Of each crossing.
  * @param[in] heights  one a vertex
- * @return none if lines agree: if no mistie is beyond doubt, and fewer than a tenth are certain
+ * @return none if lines agree: if no mistie is beyond doubt, and fewer than a quarter, or two, are
+ * certain
  */
 std::vector<Mistie> FindMisties(
   const Mesh& mesh, const Tracks& tracks, const std::vector<double>& heights);
