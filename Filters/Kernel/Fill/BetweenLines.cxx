@@ -34,8 +34,7 @@ constexpr std::size_t PointsPerReport = 1024;
 /** Points of lines that are predicted each time that lines are left out; of more, every k-th. */
 constexpr std::size_t MostProbes = 20000;
 
-/** How far values may leave the range of known ones, in parts of it: of all, and of those near. */
-constexpr double RoomBeyond = 0.05;
+/** How far values may leave the range of known ones near them, in parts of it. */
 constexpr double RoomBeyondNear = 0.25;
 
 /** How often the spline is made to find out how rough elevations are beside misties. */
@@ -87,8 +86,8 @@ public:
     {
       return {};
     }
-    const auto range = std::minmax_element(known.begin(), known.end());
-    const double room = RoomBeyond * (*range.second - *range.first);
+    ElevationRange range;
+    std::for_each(known.begin(), known.end(), [&range](double value) { range.Add(value); });
     const auto at = [this](std::size_t i) { return this->Patch.At(static_cast<Index>(i)); };
     const RangeNearby nearby(this->Patch.BoundaryBox(), this->Count, this->Gap, at, known);
     std::vector<double> lows, highs;
@@ -108,8 +107,7 @@ public:
       }
       const double value = Linear(spot, known) + this->SplineShare * result[i];
       const double low = Linear(spot, lows), high = Linear(spot, highs);
-      result[i] = DrawBack(DrawBack(value, low, high, RoomBeyondNear * (high - low)), *range.first,
-        *range.second, room);
+      result[i] = range.DrawnBackTo(DrawBack(value, low, high, RoomBeyondNear * (high - low)));
       if (drawnBack)
       {
         drawnBack->Add(value, result[i]);

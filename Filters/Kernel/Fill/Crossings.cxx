@@ -45,10 +45,7 @@ std::vector<Index> FollowOut(const Neighbors& neighbors, Index from, Index to)
 
 Point2 DirectionOf(const Mesh& mesh, const std::vector<Index>& arm)
 {
-  const Point2& p = mesh.PointOf(arm.front());
-  const Point2& q = mesh.PointOf(arm.back());
-  const double length = std::hypot(q.X - p.X, q.Y - p.Y);
-  return { (q.X - p.X) / length, (q.Y - p.Y) / length };
+  return UnitVector(mesh.PointOf(arm.front()), mesh.PointOf(arm.back()));
 }
 
 /** Where on the way from a to b the one from c to d is crossed, in parts; NaN if nowhere. */
@@ -68,7 +65,7 @@ bool PairArms(const Mesh& mesh, const std::vector<std::vector<Index>>& arms, Cro
     for (std::size_t k = i + 1; k < arms.size(); ++k)
     {
       const Point2 v = DirectionOf(mesh, arms[k]);
-      const double cosine = u.X * v.X + u.Y * v.Y;
+      const double cosine = Cosine(u, v);
       if (cosine < MostCosine)
       {
         pairs.emplace_back(cosine, i, k);

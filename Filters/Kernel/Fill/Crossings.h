@@ -27,10 +27,24 @@
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
 
+#include <cmath>
 #include <vector>
 
 namespace elevation
 {
+
+/** The direction from one point to another; 0 where both are the same. */
+inline Point2 UnitVector(const Point2& p, const Point2& q)
+{
+  const double length = std::hypot(q.X - p.X, q.Y - p.Y);
+  return { length > 0.0 ? (q.X - p.X) / length : 0.0, length > 0.0 ? (q.Y - p.Y) / length : 0.0 };
+}
+
+/** Of the angle between two unit vectors. */
+inline double Cosine(const Point2& a, const Point2& b)
+{
+  return a.X * b.X + a.Y * b.Y;
+}
 
 struct Crossing
 {

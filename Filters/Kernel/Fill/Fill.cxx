@@ -30,6 +30,7 @@ namespace
 /** Outside this range, squares of lengths leave the range of double. */
 constexpr double LeastLength = 1e-150;
 constexpr double LargestLength = 1e150;
+
 /**
  * Patches of more than PointsAlone points (on one thread, a quarter of that) are made one by one
  * and report progress; others together, up to PointsTogether points per thread, which bounds the
@@ -45,6 +46,7 @@ constexpr double PointsPerTrial = 150.0;
 /** What is refused by default: more points than this, and this many for each of the surface. */
 constexpr double LeastPointsRefused = 1e6;
 constexpr double MostPointsPerPoint = 10.0;
+
 constexpr double BytesPerPoint = 500.0; // of memory, while and after it is inserted
 
 /** What a thread takes at a time: patches of about this many points in all, or a larger one. */

@@ -11,16 +11,21 @@ namespace
 constexpr double RoomBeyondAll = 0.05;
 } // namespace
 
+double ElevationRange::DrawnBackTo(double elevation) const
+{
+  // Half of each, as the difference of two large values may overflow.
+  const double room = 2.0 * RoomBeyondAll * (0.5 * this->High - 0.5 * this->Low);
+  return DrawBack(elevation, this->Low, this->High, room);
+}
+
 DrawnBack ElevationRange::DrawBackTo(std::vector<double>& elevations) const
 {
   DrawnBack drawn;
-  // Half of each, as the difference of two large values may overflow.
-  const double room = 2.0 * RoomBeyondAll * (0.5 * this->High - 0.5 * this->Low);
   for (std::size_t i = 0; i < elevations.size() && !this->IsEmpty(); ++i)
   {
     double& elevation = elevations[i];
     const double before = elevation;
-    elevation = DrawBack(before, this->Low, this->High, room);
+    elevation = this->DrawnBackTo(before);
     drawn.Add(before, elevation);
   }
   return drawn;

@@ -71,7 +71,9 @@ struct ElevationRange
       this->High = std::max(this->High, elevation);
     }
   }
-  /** Draws new elevations back: none leaves the range by more than a twentieth of it. */
+  /** A value no further than a twentieth of the range beyond it. */
+  double DrawnBackTo(double elevation) const;
+  /** Draws new elevations back in this way. */
   DrawnBack DrawBackTo(std::vector<double>& elevations) const;
 };
 

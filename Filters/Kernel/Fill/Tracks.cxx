@@ -52,18 +52,6 @@ constexpr double LargeOffset = 5.0;
 constexpr int MostColors = 3;
 constexpr int ColorOfCrossing = 3;
 
-/** 0 where both are the same. */
-Point2 UnitVector(const Point2& p, const Point2& q)
-{
-  const double length = std::hypot(q.X - p.X, q.Y - p.Y);
-  return { length > 0.0 ? (q.X - p.X) / length : 0.0, length > 0.0 ? (q.Y - p.Y) / length : 0.0 };
-}
-
-double Cosine(const Point2& a, const Point2& b)
-{
-  return a.X * b.X + a.Y * b.Y;
-}
-
 /** Joins, prunes and traces. */
 class TrackFinding
 {
@@ -275,7 +263,7 @@ private:
     {
       for (std::size_t k = i + 1; k < arms.size(); ++k)
       {
-        const double cosine = directions[i].X * directions[k].X + directions[i].Y * directions[k].Y;
+        const double cosine = Cosine(directions[i], directions[k]);
         if (!this->IsMeeting(arms[i].Vertex) || cosine < MostCosine)
         {
           pairs.emplace_back(cosine, i, k);
@@ -390,6 +378,28 @@ private:
   const double Longest;
   Tracks Result;
 };
+
+/**
+ * The track of each of so many vertices, or None.
+ * @param[in] vertexOf  as of ColorTracks()
+ */
+std::vector<Index> TracksOfVertices(
+  const Tracks& tracks, std::size_t vertices, const std::vector<Index>& vertexOf = {})
+{
+  std::vector<Index> trackOf(vertices, None);
+  for (Index t = 0; t < tracks.Count(); ++t)
+  {
+    for (const Index* v = tracks.Begin(t); v != tracks.End(t); ++v)
+    {
+      const Index vertex = vertexOf.empty() ? *v : vertexOf[*v];
+      if (vertex != None)
+      {
+        trackOf[vertex] = t;
+      }
+    }
+  }
+  return trackOf;
+}
 
 std::vector<Index> FromLongest(const Tracks& tracks)
 {
@@ -556,11 +566,7 @@ std::vector<double> VariancesOf(const std::vector<Mistie>& misties, const Mesh& 
   std::vector<double> squares;
   std::transform(misties.begin(), misties.end(), std::back_inserter(squares), squareOf);
   const double usual = Median(squares);
-  std::vector<Index> trackOf(vertices, None);
-  for (Index t = 0; t < tracks.Count(); ++t)
-  {
-    std::for_each(tracks.Begin(t), tracks.End(t), [&](Index v) { trackOf[v] = t; });
-  }
+  const std::vector<Index> trackOf = TracksOfVertices(tracks, vertices);
   std::vector<std::vector<double>> ofTracks(tracks.Count());
   for (std::size_t i = 0; i < misties.size(); ++i)
   {
@@ -606,19 +612,8 @@ std::vector<double> VariancesOf(const std::vector<Mistie>& misties, const Mesh& 
 std::vector<int> ColorTracks(
   const Tracks& tracks, const Mesh& mesh, const std::vector<Index>& vertexOf)
 {
-  std::vector<Index> trackOf(mesh.NumberOfPoints(), None);
+  const std::vector<Index> trackOf = TracksOfVertices(tracks, mesh.NumberOfPoints(), vertexOf);
   std::vector<int> colors(tracks.Count(), None);
-  for (Index t = 0; t < tracks.Count(); ++t)
-  {
-    for (const Index* v = tracks.Begin(t); v != tracks.End(t); ++v)
-    {
-      const Index vertex = vertexOf.empty() ? *v : vertexOf[*v];
-      if (vertex != None)
-      {
-        trackOf[vertex] = t;
-      }
-    }
-  }
   std::map<std::pair<Index, Index>, int> contacts;
   std::vector<char> isThere(tracks.Count(), 0);
   for (const Index h : Counted(mesh.NumberOfHalfEdges()))
