@@ -7,6 +7,7 @@ They are forked by a server, which is forked itself where this module is importe
 have threads, of which a fork has none.
 """
 
+import atexit
 import contextlib
 import faulthandler
 import gc
@@ -111,6 +112,7 @@ def start():
 
 
 SERVER = start()
+atexit.register(SERVER.close)
 
 
 def python(*arguments, folder, environment=None, largest_file=None):
