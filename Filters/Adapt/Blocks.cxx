@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 /*
- * AddPlaces() goes down the trees of the input and of all outputs at the same time, which have the
+ * AddLeaves() goes down the trees of the input and of all outputs at the same time, which have the
  * same structure. VTK's iterators go through one tree, and name no blocks.
  */
 #include "Blocks.h"
@@ -122,11 +122,11 @@ std::string ChildName(vtkDataObjectTree* tree, unsigned int i)
 }
 
 /**
- * Adds the places of a tree, depth first: the order of the input's leaves.
+ * Adds the leaves of a tree, depth first: the order of the input's leaves.
  * @param[in] name,path  those of the tree; empty for the whole input
  */
-void AddPlaces(vtkDataObjectTree* input, const std::vector<vtkDataObjectTree*>& outputs,
-  const std::string& name, const std::string& path, std::vector<Place>& places)
+void AddLeaves(vtkDataObjectTree* input, const std::vector<vtkDataObjectTree*>& outputs,
+  const std::string& name, const std::string& path, std::vector<Leaf>& leaves)
 {
   const unsigned int count = NumberOfChildren(input);
   const bool arePartitions = vtkPartitionedDataSet::SafeDownCast(input) != nullptr;
@@ -152,30 +152,30 @@ void AddPlaces(vtkDataObjectTree* input, const std::vector<vtkDataObjectTree*>& 
       {
         ofChild.push_back(vtkDataObjectTree::SafeDownCast(Child(output, i)));
       }
-      AddPlaces(tree, ofChild, childName, childPath, places);
+      AddLeaves(tree, ofChild, childName, childPath, leaves);
       continue;
     }
     // Partitions share the path of what they are partitions of.
-    Place place{ child, {}, childName, arePartitions ? path : childPath,
+    Leaf leaf{ child, {}, childName, arePartitions ? path : childPath,
       arePartitions ? name : childName };
     for (vtkDataObjectTree* output : outputs)
     {
       const auto data = vtkSmartPointer<vtkPolyData>::New();
       SetChild(output, i, data);
-      place.Outputs.push_back(data);
+      leaf.Outputs.push_back(data);
     }
-    places.push_back(place);
+    leaves.push_back(leaf);
   }
 }
 } // namespace
 
-std::vector<Place> ListPlaces(vtkDataObject* input, vtkInformationVector* outputs)
+std::vector<Leaf> ListLeaves(vtkDataObject* input, vtkInformationVector* outputs)
 {
   auto* const tree = vtkDataObjectTree::SafeDownCast(input);
   if (!tree)
   {
-    // Not a composite: one place without a name, since messages need none.
-    Place whole{ input, {}, "", "", "" };
+    // Not a composite: one leaf without a name, since messages need none.
+    Leaf whole{ input, {}, "", "", "" };
     for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
     {
       whole.Outputs.push_back(vtkPolyData::GetData(outputs, port));
@@ -186,13 +186,13 @@ std::vector<Place> ListPlaces(vtkDataObject* input, vtkInformationVector* output
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     trees.push_back(vtkDataObjectTree::GetData(outputs, port));
-    // The structure has the names, and no data sets: these come as places are found.
+    // The structure has the names, and no data sets: these come as leaves are found.
     trees.back()->CopyStructure(tree);
     trees.back()->GetFieldData()->PassData(tree->GetFieldData());
   }
-  std::vector<Place> places;
-  AddPlaces(tree, trees, "", "", places);
-  return places;
+  std::vector<Leaf> leaves;
+  AddLeaves(tree, trees, "", "", leaves);
+  return leaves;
 }
 
 /*

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The blocks of a composite input and their places in the outputs. Private to the module.
+ * The blocks of a composite input and the outputs that belong to each. Private to the module.
  *
  *     input                                         Path   Name in messages
  *     [0] "north"  vtkPartitionedDataSet  [0]       0      Block 0 ("north"), partition 0
@@ -10,7 +10,7 @@
  *     [1] vtkPartitionedDataSet, one partition      1      Block 1
  *     [2] vtkMultiBlockDataSet            [0]       2.0    Block 2.0
  *
- * Numbers are places in the tree, empty ones included: so a block has the same path on all ranks.
+ * Numbers are positions in the tree, empty ones included: so a block has the same path on all ranks.
  */
 #ifndef Blocks_h
 #define Blocks_h
@@ -27,8 +27,8 @@
 namespace elevation
 {
 
-/** A data set of the input, and the output of each port that stands in the same place. */
-struct Place
+/** A data set of the input, and the output of each port that belongs to it. */
+struct Leaf
 {
   vtkDataObject* Input;
   std::vector<vtkPolyData*> Outputs;
@@ -58,9 +58,9 @@ int MakeOutputs(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
 /**
  * Gives composite outputs the structure of the input, its names and field data, with an empty
- * vtkPolyData for each data set, and lists these. Empty places stay empty.
+ * vtkPolyData for each data set, and lists these. Empty leaves of the tree stay empty.
  */
-std::vector<Place> ListPlaces(vtkDataObject* input, vtkInformationVector* outputs);
+std::vector<Leaf> ListLeaves(vtkDataObject* input, vtkInformationVector* outputs);
 
 /**
  * A second input: itself, or the data sets of a composite in one.

@@ -37,9 +37,9 @@ struct FieldsOf<BlockShare>
   }
 };
 
-bool HasPoints(const Place& place)
+bool HasPoints(const Leaf& leaf)
 {
-  auto* const points = vtkPointSet::SafeDownCast(place.Input);
+  auto* const points = vtkPointSet::SafeDownCast(leaf.Input);
   return points && points->GetNumberOfPoints() > 0;
 }
 
@@ -48,16 +48,16 @@ bool HasPoints(const Place& place)
  * gathered, so that least is sent.
  */
 std::map<std::string, int> FindSpread(
-  const std::vector<Place>& places, const Ranks& ranks, std::set<std::string>& occupied)
+  const std::vector<Leaf>& leaves, const Ranks& ranks, std::set<std::string>& occupied)
 {
   std::map<std::string, vtkIdType> own; // sizes
-  for (const Place& place : places)
+  for (const Leaf& leaf : leaves)
   {
-    // An empty place does not make a block spread.
-    if (HasPoints(place))
+    // An empty leaf does not make a block spread.
+    if (HasPoints(leaf))
     {
-      own[place.Path] += place.Input->GetNumberOfElements(vtkDataObject::POINT) +
-        place.Input->GetNumberOfElements(vtkDataObject::CELL);
+      own[leaf.Path] += leaf.Input->GetNumberOfElements(vtkDataObject::POINT) +
+        leaf.Input->GetNumberOfElements(vtkDataObject::CELL);
     }
   }
   std::vector<BlockShare> shares;
@@ -83,51 +83,51 @@ std::map<std::string, int> FindSpread(
   return spread;
 }
 
-std::vector<vtkPointSet*> PartsOf(const std::vector<Place*>& places)
+std::vector<vtkPointSet*> PartsOf(const std::vector<Leaf*>& leaves)
 {
   std::vector<vtkPointSet*> parts;
-  for (const Place* place : places)
+  for (const Leaf* leaf : leaves)
   {
-    if (HasPoints(*place))
+    if (HasPoints(*leaf))
     {
-      parts.push_back(vtkPointSet::SafeDownCast(place->Input));
+      parts.push_back(vtkPointSet::SafeDownCast(leaf->Input));
     }
   }
   return parts;
 }
 
-Place* FirstWithPoints(const std::vector<Place*>& places)
+Leaf* FirstWithPoints(const std::vector<Leaf*>& leaves)
 {
-  const auto first = std::find_if(
-    places.begin(), places.end(), [](const Place* place) { return HasPoints(*place); });
-  return first == places.end() ? nullptr : *first;
+  const auto first =
+    std::find_if(leaves.begin(), leaves.end(), [](const Leaf* leaf) { return HasPoints(*leaf); });
+  return first == leaves.end() ? nullptr : *first;
 }
 
-// The input stays the caller's: a place gets another data set.
-void Empty(const std::vector<Place*>& places)
+// The input stays the caller's: a leaf gets another data set.
+void Empty(const std::vector<Leaf*>& leaves)
 {
-  for (Place* place : places)
+  for (Leaf* leaf : leaves)
   {
-    if (HasPoints(*place))
+    if (HasPoints(*leaf))
     {
-      place->Made = EmptyCopy(vtkPointSet::SafeDownCast(place->Input));
-      place->Input = place->Made;
+      leaf->Made = EmptyCopy(vtkPointSet::SafeDownCast(leaf->Input));
+      leaf->Input = leaf->Made;
     }
   }
 }
 
-void GatherBlock(const std::vector<Place*>& places, int home, PartKind kind, const Ranks& ranks,
+void GatherBlock(const std::vector<Leaf*>& leaves, int home, PartKind kind, const Ranks& ranks,
   const Progress& progress, std::vector<Message>& warnings)
 {
   const vtkSmartPointer<vtkPolyData> whole =
-    Gather(PartsOf(places), kind, home, ranks, progress, warnings);
-  Place* const first = FirstWithPoints(places);
+    Gather(PartsOf(leaves), kind, home, ranks, progress, warnings);
+  Leaf* const first = FirstWithPoints(leaves);
   // On the home rank, which has points of the block, as it has most of it.
   if (whole)
   {
     CopyMark(first->Input, whole);
   }
-  Empty(places);
+  Empty(leaves);
   if (whole)
   {
     first->Made = whole;

@@ -4,8 +4,8 @@
  * @file
  * The blocks of the input that have points on several ranks. Private to the module.
  *
- * A block is known on all ranks by its path in the composite (Place::Path). Ranks may have
- * different trees; those that lack a block just have no place for it.
+ * A block is known on all ranks by its path in the composite (Leaf::Path). Ranks may have
+ * different trees; those that lack a block just have no leaf for it.
  */
 #ifndef BlocksOnRanks_h
 #define BlocksOnRanks_h
@@ -20,9 +20,9 @@
 
 namespace elevation
 {
-struct Place;
+struct Leaf;
 
-bool HasPoints(const Place& place);
+bool HasPoints(const Leaf& leaf);
 
 /**
  * All ranks have to call it.
@@ -30,22 +30,22 @@ bool HasPoints(const Place& place);
  * @return the blocks that have points on several ranks, and the rank with most of each
  */
 std::map<std::string, int> FindSpread(
-  const std::vector<Place>& places, const Ranks& ranks, std::set<std::string>& occupied);
+  const std::vector<Leaf>& leaves, const Ranks& ranks, std::set<std::string>& occupied);
 
-/** Of the places of a block on this rank: the parts with points. */
-std::vector<vtkPointSet*> PartsOf(const std::vector<Place*>& places);
+/** Of the leaves of a block on this rank: the parts with points. */
+std::vector<vtkPointSet*> PartsOf(const std::vector<Leaf*>& leaves);
 
-/** The first place with points; nullptr if none has. */
-Place* FirstWithPoints(const std::vector<Place*>& places);
+/** The first leaf with points; nullptr if none has. */
+Leaf* FirstWithPoints(const std::vector<Leaf*>& leaves);
 
-/** Leaves no points in the places. */
-void Empty(const std::vector<Place*>& places);
+/** Takes all points out of the leaves. */
+void Empty(const std::vector<Leaf*>& leaves);
 
 /**
- * Gathers a block: the first place with points on the rank @a home has it then, all others have no
+ * Gathers a block: the first leaf with points on the rank @a home has it then, all others have no
  * points. All ranks have to call it. @throws as Gather()
  */
-void GatherBlock(const std::vector<Place*>& places, int home, PartKind kind, const Ranks& ranks,
+void GatherBlock(const std::vector<Leaf*>& leaves, int home, PartKind kind, const Ranks& ranks,
   const Progress& progress, std::vector<Message>& warnings);
 
 } // namespace elevation

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 /*
- * A place is a data set of this rank's input with its outputs (Blocks.h); a block is what all
- * ranks' places of one path are together. On one rank each place is a block of its own.
+ * A leaf is a data set of this rank's input with its outputs (Blocks.h); a block is what all
+ * ranks' leaves of one path are together. On one rank each leaf is a block of its own.
  *
  * Failures: what a block throws is kept as an error of the block, and the other blocks go on. What
  * is thrown outside of blocks, as by a second input that cannot be read, ends the run. An abort
@@ -42,9 +42,9 @@ namespace elevation
 namespace
 {
 /** Whether it can have no points: it is an image, say, and an error. */
-bool IsOtherType(const Place& place)
+bool IsOtherType(const Leaf& leaf)
 {
-  return !vtkPointSet::SafeDownCast(place.Input);
+  return !vtkPointSet::SafeDownCast(leaf.Input);
 }
 
 /** The type of the first input, in any block: what the filter named first in FillInput(). */
@@ -57,7 +57,7 @@ const char* RequiredType(vtkAlgorithm* filter)
  * Warns that a block has been gathered, if it has cells or there is another reason to warn. A block
  * without cells loses nothing by it.
  */
-void WarnOfGathering(Place* home, const Message& why)
+void WarnOfGathering(Leaf* home, const Message& why)
 {
   if (home && (!why.IsEmpty() || home->Input->GetNumberOfElements(vtkDataObject::CELL) > 0))
   {
@@ -82,9 +82,9 @@ bool IsStoppedBefore(vtkAlgorithm* filter, vtkInformationVector** inputs)
   return false;
 }
 
-void EmptyOutputs(const Place& place)
+void EmptyOutputs(const Leaf& leaf)
 {
-  for (vtkPolyData* output : place.Outputs)
+  for (vtkPolyData* output : leaf.Outputs)
   {
     output->Initialize();
   }
@@ -101,7 +101,7 @@ void EmptyOutputs(const Place& place)
 void KeepUsed(vtkPolyData* surface, const Ranks& ranks, const Progress& progress)
 {
   std::vector<char> areUsed;
-  // Of points of others that are used here. Without ids, points at one place are known by their
+  // Of points of others that are used here. Without ids, points at one position are known by their
   // order, as in CommonPoints: the last number counts those before.
   using UsedKey = std::array<std::int64_t, 4>;
   std::vector<UsedKey> keys;
@@ -139,7 +139,7 @@ void KeepUsed(vtkPolyData* surface, const Ranks& ranks, const Progress& progress
       };
       return has({ { key[0], key[1], key[2], 0 } }) && has(next(key));
     };
-    // A point that is used here may be the one; then no other at its place stays.
+    // A point that is used here may be the one; then no other at its position stays.
     forEach(false, true, [&](char, const PointKey& key) { isUsedBy(key); });
     forEach(false, false, [&](char& isUsed, const PointKey& key) { isUsed = isUsedBy(key); });
     if (hasPoints)
@@ -178,11 +178,11 @@ int FilterRun::Run(const std::function<void(Block&)>& body)
   }
   try
   {
-    std::vector<Place> places;
+    std::vector<Leaf> leaves;
     ranks.Agree(
-      [&] { places = ListPlaces(vtkDataObject::GetData(this->Inputs[0]), this->Outputs); });
+      [&] { leaves = ListLeaves(vtkDataObject::GetData(this->Inputs[0]), this->Outputs); });
     const vtkSmartPointer<vtkPolyData> second = this->ShareSecond(ranks);
-    this->RunPlaces(places, ranks, second, body);
+    this->RunLeaves(leaves, ranks, second, body);
   }
   catch (const std::exception& error)
   {
@@ -234,17 +234,17 @@ vtkSmartPointer<vtkPolyData> FilterRun::ShareSecond(const Ranks& ranks) const
   return second;
 }
 
-bool FilterRun::ShouldReport(const Place& place, const Ranks& ranks) const
+bool FilterRun::ShouldReport(const Leaf& leaf, const Ranks& ranks) const
 {
   // A block that is empty on all ranks is reported on by rank 0, so that somebody is.
-  return HasPoints(place) || IsOtherType(place) ||
-    (ranks.OwnRank() == 0 && this->Occupied.count(place.Path) == 0);
+  return HasPoints(leaf) || IsOtherType(leaf) ||
+    (ranks.OwnRank() == 0 && this->Occupied.count(leaf.Path) == 0);
 }
 
 double FilterRun::GatherSpreadBlocks(
-  std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress)
+  std::vector<Leaf>& leaves, const Ranks& ranks, vtkPolyData* second, const Progress& progress)
 {
-  const std::map<std::string, int> spread = FindSpread(places, ranks, this->Occupied);
+  const std::map<std::string, int> spread = FindSpread(leaves, ranks, this->Occupied);
   // Gathering alone is short; the filter's own way on ranks is nearly all of the work.
   const double share = this->Spread ? 0.9 : 0.1;
   double done = 0.0;
@@ -254,14 +254,14 @@ double FilterRun::GatherSpreadBlocks(
     const double next = done + share / static_cast<double>(spread.size());
     const Progress ofBlock = progress.Between(done, next);
     done = next;
-    std::vector<Place*> own;
-    for (Place& place : places)
+    std::vector<Leaf*> own;
+    for (Leaf& leaf : leaves)
     {
-      // A rank may have several places of a block: partitions. An image among them is an error
+      // A rank may have several leaves of a block: partitions. An image among them is an error
       // later.
-      if (place.Path == block.first && !IsOtherType(place))
+      if (leaf.Path == block.first && !IsOtherType(leaf))
       {
-        own.push_back(&place);
+        own.push_back(&leaf);
       }
     }
     try
@@ -285,25 +285,25 @@ double FilterRun::GatherSpreadBlocks(
     catch (const std::exception& error) // on all ranks
     {
       this->AddMessages(own, { MessageOf(error) }, this->Errors);
-      for (Place* place : own)
+      for (Leaf* leaf : own)
       {
-        elevation::EmptyOutputs(*place);
-        place->IsDone = true;
+        elevation::EmptyOutputs(*leaf);
+        leaf->IsDone = true;
       }
     }
   }
   return done;
 }
 
-void FilterRun::AddMessages(const std::vector<Place*>& places, const std::vector<Message>& messages,
+void FilterRun::AddMessages(const std::vector<Leaf*>& leaves, const std::vector<Message>& messages,
   std::vector<Message>& all) const
 {
-  for (std::size_t i = 0; i < messages.size() && !places.empty(); ++i)
+  for (std::size_t i = 0; i < messages.size() && !leaves.empty(); ++i)
   {
     all.push_back(messages[i]);
-    // Ranks without a place say nothing: OnFirst() would keep the same message twice, with and
+    // Ranks without a leaf say nothing: OnFirst() would keep the same message twice, with and
     // without the name.
-    all.back().SetBlock(places.front()->BlockName);
+    all.back().SetBlock(leaves.front()->BlockName);
   }
 }
 
@@ -332,30 +332,30 @@ vtkSmartPointer<vtkPointSet> FilterRun::Prepared(
 
 /** Makes the parts of a block what the filter works on. */
 void FilterRun::PrepareParts(
-  const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second)
+  const std::vector<Leaf*>& leaves, const Ranks& ranks, vtkPolyData* second)
 {
   std::vector<Message> warnings;
   std::vector<vtkIdType> counts(1, 0);
-  for (vtkPointSet* part : PartsOf(places))
+  for (vtkPointSet* part : PartsOf(leaves))
   {
     counts[0] += part->GetNumberOfPoints();
   }
   counts = ranks.Collect(counts);
-  // The place of a point in the block is counted over ranks, and over partitions within a rank.
+  // The index of a point in the block is counted over ranks, and over partitions within a rank.
   vtkIdType first = std::accumulate(counts.begin(), counts.begin() + ranks.OwnRank(), vtkIdType(0));
   ranks.Agree([&] {
-    for (Place* place : places)
+    for (Leaf* leaf : leaves)
     {
-      if (HasPoints(*place))
+      if (HasPoints(*leaf))
       {
-        auto* const points = vtkPointSet::SafeDownCast(place->Input);
-        place->Made = this->Prepared(points, second, first, warnings);
+        auto* const points = vtkPointSet::SafeDownCast(leaf->Input);
+        leaf->Made = this->Prepared(points, second, first, warnings);
         first += points->GetNumberOfPoints();
-        place->Input = place->Made;
+        leaf->Input = leaf->Made;
       }
     }
   });
-  this->AddMessages(places, warnings, this->Warnings);
+  this->AddMessages(leaves, warnings, this->Warnings);
 }
 
 /**
@@ -411,11 +411,11 @@ void FilterRun::FinishOutputs(Block& block, const Ranks& ranks) const
 }
 
 /*
- * The result goes to the outputs of the first place with points, or of any; the other places of the
+ * The result goes to the outputs of the first leaf with points, or of any; the other leaves of the
  * block on this rank, partitions, become empty: they are the parts of one surface.
  */
-bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
-  vtkPolyData* second, const Progress& progress, Message& whyGathered)
+bool FilterRun::RunSpread(const std::vector<Leaf*>& leaves, const Ranks& ranks, vtkPolyData* second,
+  const Progress& progress, Message& whyGathered)
 {
   if (!this->Spread)
   {
@@ -425,11 +425,11 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
   Block block{ nullptr, second, {}, progress, {} };
   // Kept alive here: a block only points to its input.
   vtkSmartPointer<vtkPointSet> own;
-  ranks.Agree([&] { own = JoinHere(PartsOf(places), this->InputKind(), block.Warnings); });
+  ranks.Agree([&] { own = JoinHere(PartsOf(leaves), this->InputKind(), block.Warnings); });
   block.Input = own;
-  // A rank without points of the block may get some, if it has a place for them.
-  Place* home = FirstWithPoints(places);
-  home = home || places.empty() ? home : places.front();
+  // A rank without points of the block may get some, if it has a leaf for them.
+  Leaf* home = FirstWithPoints(leaves);
+  home = home || leaves.empty() ? home : leaves.front();
   if (home)
   {
     block.Outputs = home->Outputs;
@@ -448,9 +448,9 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
     whyGathered = block.WhyGathered;
     return false;
   }
-  this->AddMessages(places, block.Warnings, this->Warnings);
-  // The other places of the block have nothing to work on any more.
-  Empty(places);
+  this->AddMessages(leaves, block.Warnings, this->Warnings);
+  // The other leaves of the block have nothing to work on any more.
+  Empty(leaves);
   if (home)
   {
     home->IsDone = true;
@@ -464,40 +464,40 @@ PartKind FilterRun::InputKind() const
                                                                   : PartKind::Points;
 }
 
-void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second,
+void FilterRun::RunLeaves(std::vector<Leaf>& leaves, const Ranks& ranks, vtkPolyData* second,
   const std::function<void(Block&)>& body)
 {
   const Progress ofAll = ProgressOf(this->Filter);
   const Progress progress =
-    ofAll.Between(this->GatherSpreadBlocks(places, ranks, second, ofAll), 1.0);
+    ofAll.Between(this->GatherSpreadBlocks(leaves, ranks, second, ofAll), 1.0);
   // The 1 is for blocks without points: the sum must not be 0.
-  const auto workOf = [](const Place& place) {
-    auto* const points = vtkPointSet::SafeDownCast(place.Input);
+  const auto workOf = [](const Leaf& leaf) {
+    auto* const points = vtkPointSet::SafeDownCast(leaf.Input);
     return 1.0 + (points ? points->GetNumberOfPoints() : 0);
   };
   double all = 0.0, done = 0.0;
-  for (const Place& place : places)
+  for (const Leaf& leaf : leaves)
   {
-    all += workOf(place);
+    all += workOf(leaf);
   }
-  for (const Place& place : places)
+  for (const Leaf& leaf : leaves)
   {
     if (this->IsAborted)
     {
       break;
     }
     // Also where nothing is made: a filter after this one must not warn of it again.
-    std::for_each(place.Outputs.begin(), place.Outputs.end(), MarkAsReported);
+    std::for_each(leaf.Outputs.begin(), leaf.Outputs.end(), MarkAsReported);
     // A rank without points has the rest of the outputs, and leaves the messages to the others.
-    const bool isReported = this->ShouldReport(place, ranks);
-    const double next = done + workOf(place);
-    Block block{ nullptr, isReported ? second : nullptr, place.Outputs,
+    const bool isReported = this->ShouldReport(leaf, ranks);
+    const double next = done + workOf(leaf);
+    Block block{ nullptr, isReported ? second : nullptr, leaf.Outputs,
       progress.Between(done / all, next / all), {} };
     done = next;
     Message error;
     try
     {
-      error = place.IsDone ? Message() : this->RunPlace(place, block, body);
+      error = leaf.IsDone ? Message() : this->RunLeaf(leaf, block, body);
     }
     catch (const Aborted&)
     {
@@ -509,9 +509,9 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
       continue;
     }
     // On how the data came here: before what the filter says of them.
-    if (!place.Warning.IsEmpty())
+    if (!leaf.Warning.IsEmpty())
     {
-      block.Warnings.insert(block.Warnings.begin(), place.Warning);
+      block.Warnings.insert(block.Warnings.begin(), leaf.Warning);
     }
     // What was warned of before an error is about a result that is not there.
     if (!error.IsEmpty())
@@ -521,29 +521,28 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
     std::vector<Message>& all = error.IsEmpty() ? this->Warnings : this->Errors;
     for (Message& message : block.Warnings)
     {
-      message.SetBlock(place.Name);
+      message.SetBlock(leaf.Name);
       all.push_back(message);
     }
   }
   this->ShareResults(ranks);
 }
 
-Message FilterRun::RunPlace(
-  const Place& place, Block& block, const std::function<void(Block&)>& body)
+Message FilterRun::RunLeaf(const Leaf& leaf, Block& block, const std::function<void(Block&)>& body)
 {
   Message message;
   try
   {
     const char* const required = RequiredType(this->Filter);
     // The executive checks the type of the whole input alone, and a composite may have anything.
-    if (!place.Input->IsA(required))
+    if (!leaf.Input->IsA(required))
     {
-      throw Error(std::string("It is a ") + place.Input->GetClassName() + ", but a " + required +
+      throw Error(std::string("It is a ") + leaf.Input->GetClassName() + ", but a " + required +
         " is needed.");
     }
     std::vector<Message> warnings;
     const vtkSmartPointer<vtkPointSet> input =
-      this->Prepared(vtkPointSet::SafeDownCast(place.Input), block.Second, 0, warnings);
+      this->Prepared(vtkPointSet::SafeDownCast(leaf.Input), block.Second, 0, warnings);
     block.Input = input;
     this->CountIfDone([&] {
       body(block);
@@ -562,7 +561,7 @@ Message FilterRun::RunPlace(
   {
     message = MessageOf(error);
   }
-  elevation::EmptyOutputs(place);
+  elevation::EmptyOutputs(leaf);
   return message;
 }
 

@@ -7,9 +7,9 @@
  *
  * The way of a run; all ranks are together at the steps with a star, of several ranks:
  *
- *     * list the places of the input in the outputs (Blocks.h); share the second input
+ *     * list the leaves of the input in the outputs (Blocks.h); share the second input
  *     * for each block with points on several ranks: Spread, or gather it to one of them
- *       for each place of this rank: prepare the input, call the body, finish the outputs
+ *       for each leaf of this rank: prepare the input, call the body, finish the outputs
  *     * add up the results, and whether any rank was aborted
  *     * report: rank 0 for all
  *
@@ -36,7 +36,7 @@ namespace elevation
 {
 class Ranks;
 enum class PartKind;
-struct Place;
+struct Leaf;
 
 /** What is worked on at a time: the input, or one block of it. */
 struct Block
@@ -78,7 +78,7 @@ public:
   std::string Second; ///< what messages call input 1
   /**
    * Of how many first outputs points that no cell has are removed. Then points have original ids
-   * (UsedPoints.h): on several ranks global ids or places in the input, rank after rank.
+   * (UsedPoints.h): on several ranks global ids or indices in the input, rank after rank.
    */
   int CleanedOutputs = 0;
   int Precision = 2;        ///< OutputPointsPrecision
@@ -92,7 +92,7 @@ public:
   /**
    * The filter's own way to work on a block that is spread over ranks, instead of gathering it and
    * running the body there; may be empty. All ranks call it for the same blocks in the same order.
-   * Input is this rank's part, maybe without points; Outputs are none where the block has no place
+   * Input is this rank's part, maybe without points; Outputs are none where the block has no leaf
    * on this rank.
    * It throws on all ranks or on none, with the same message (Ranks::Agree).
    * @return on all ranks, false to have the block gathered, with a warning
@@ -110,32 +110,32 @@ private:
    * The second input in one, of all ranks, in double precision; nullptr: none. All ranks call it.
    */
   vtkSmartPointer<vtkPolyData> ShareSecond(const Ranks& ranks) const;
-  /** Whether this rank gives the messages of a place: of one block, one rank does. */
-  bool ShouldReport(const Place& place, const Ranks& ranks) const;
+  /** Whether this rank gives the messages of a leaf: of one block, one rank does. */
+  bool ShouldReport(const Leaf& leaf, const Ranks& ranks) const;
   /** Works on the blocks that are spread over ranks. @return the progress that has been made */
   double GatherSpreadBlocks(
-    std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress);
-  /** What the filter works on. @param[in] first  place of the first point in the block */
+    std::vector<Leaf>& leaves, const Ranks& ranks, vtkPolyData* second, const Progress& progress);
+  /** What the filter works on. @param[in] first  index of the first point in the block */
   vtkSmartPointer<vtkPointSet> Prepared(
     vtkPointSet* input, vtkPolyData* second, vtkIdType first, std::vector<Message>& warnings) const;
-  void PrepareParts(const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second);
+  void PrepareParts(const std::vector<Leaf*>& leaves, const Ranks& ranks, vtkPolyData* second);
   void CountIfDone(const std::function<void()>& work) const;
   /** After a body: removes unused points, and rounds. All ranks that have the block call it. */
   void FinishOutputs(Block& block, const Ranks& ranks) const;
   /** Works on a block by Spread. @return false on all ranks if it has to be gathered */
-  bool RunSpread(const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second,
+  bool RunSpread(const std::vector<Leaf*>& leaves, const Ranks& ranks, vtkPolyData* second,
     const Progress& progress, Message& whyGathered);
   /** Adds messages of this rank about a block that is spread, with the name of the block. */
-  void AddMessages(const std::vector<Place*>& places, const std::vector<Message>& messages,
+  void AddMessages(const std::vector<Leaf*>& leaves, const std::vector<Message>& messages,
     std::vector<Message>& all) const;
   /** Whether the first input is a mesh, or points whose cells do not count. */
   PartKind InputKind() const;
-  void RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second,
+  void RunLeaves(std::vector<Leaf>& leaves, const Ranks& ranks, vtkPolyData* second,
     const std::function<void(Block&)>& body);
   /**
-   * Calls the body for a place. @return the error, if any; outputs are empty then. @throws Aborted
+   * Calls the body for a leaf. @return the error, if any; outputs are empty then. @throws Aborted
    */
-  Message RunPlace(const Place& place, Block& block, const std::function<void(Block&)>& body);
+  Message RunLeaf(const Leaf& leaf, Block& block, const std::function<void(Block&)>& body);
   /** Adds up results and aborts of all ranks; after an abort anywhere, all outputs become empty. */
   void ShareResults(const Ranks& ranks);
   bool IsAbortReported() const;

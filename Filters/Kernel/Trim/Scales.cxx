@@ -6,8 +6,8 @@
 // 1. LonelyVertices() and AreFew(): are there lines of points at all? Mostly not, and all is 1.
 // 2. OutsideCores(): vertices outside of what is surface at scale 1 are thin.
 // 3. ThinTriangles: measures the triangles with a thin corner, joins vertices along the lines to
-//    parts, and lists what happens as the length grows, each event at its length.
-// 4. JoiningParts: goes through the events. Parts join, touch cores and get open triangles; each
+//    groups, and lists what happens as the length grows, each event at its length.
+// 4. VertexGroups: goes through the events. Groups join, touch cores and get open triangles; each
 //    becomes a surface gradually, and the integral of what it lacks is its scale.
 //
 //    . . . . . . . .      Along the lines, edges are about one spacing long. Triangles between the
@@ -39,17 +39,17 @@ constexpr std::size_t LonelyGroup = 30;
 // A core: at least so many inner vertices, and at least so many for each other one.
 constexpr Index LeastInner = 50;
 constexpr Index InnerPerOther = 2;
-// Edges that join vertices, and parts to cores, from the start are shorter than this.
+// Edges that join vertices, and groups to cores, from the start are shorter than this.
 constexpr double LongestShortEdge = 6.0; // spacings
 // The unit of lengths and areas, in spacings.
 constexpr double UnitSpacings = 2.0;
-// The width that a part needs to be a surface, in units: so much at least, and so much for what the
+// The width that a group needs to be a surface, in units: so much at least, and so much for what the
 // length is above 1.
 constexpr double LeastWidth = 1.2;
 constexpr double WidthPerLength = 2.5;
 // The area that each point of a surface has, in square units.
 constexpr double PointShare = 0.2;
-// The greatest length at which touching a core makes a part a surface.
+// The greatest length at which touching a core makes a group a surface.
 constexpr double LongestJoin = 5.0;
 
 // 0 up to half of what is asked for, 1 from all of it on; rising evenly between, so that the scale
@@ -136,21 +136,21 @@ IdSet OutsideCores(
   return outside;
 }
 
-/** Parts of thin vertices. Two that join become a new one. */
-class JoiningParts
+/** Groups of thin vertices. Two that join become a new one. */
+class VertexGroups
 {
 public:
-  /** Adds a part of vertices that belong together from the start. @return its number */
+  /** Adds a group of vertices that belong together from the start. @return its number */
   Index Add(Index points, bool isAttached)
   {
-    JoiningPart part;
-    part.Points = points;
-    part.IsAttached = isAttached;
-    return this->Add(part);
+    VertexGroup group;
+    group.Points = points;
+    group.IsAttached = isAttached;
+    return this->Add(group);
   }
 
   /**
-   * The part of which the first is and that of the second become one, at a length; nothing if they
+   * The group of which the first is and that of the second become one, at a length; nothing if they
    * are one already.
    */
   void Join(Index a, Index b, double length)
@@ -164,50 +164,50 @@ public:
     // Both have grown by themselves up to here.
     this->Grow(a, length);
     this->Grow(b, length);
-    JoiningPart& p = this->Parts[a];
-    JoiningPart& q = this->Parts[b];
-    JoiningPart sum;
+    VertexGroup& p = this->Groups[a];
+    VertexGroup& q = this->Groups[b];
+    VertexGroup sum;
     sum.Points = p.Points + q.Points;
     sum.Area = p.Area + q.Area;
     sum.Border = p.Border + q.Border;
-    // Of two parts, the one that is more of a surface takes the other along.
+    // Of two groups, the one that is more of a surface takes the other along.
     sum.Surface = std::max(p.Surface, q.Surface);
     sum.Length = length;
     sum.IsAttached = p.IsAttached || q.IsAttached;
     // The history of both stays with them. The scale of a vertex is summed up along its parents.
-    p.Parent = q.Parent = static_cast<Index>(this->Parts.size());
+    p.Parent = q.Parent = static_cast<Index>(this->Groups.size());
     this->Tops[a] = this->Tops[b] = this->Add(sum);
   }
 
-  /** Records that a part touches a core, at a length up to LongestJoin. */
-  void Touch(Index part, double length)
+  /** Records that a group touches a core, at a length up to LongestJoin. */
+  void Touch(Index group, double length)
   {
-    const Index top = this->TopOf(part);
+    const Index top = this->TopOf(group);
     // What is attached to a core by a short edge, like a track that leaves it, must become a
     // surface by itself.
-    if (!this->Parts[top].IsAttached)
+    if (!this->Groups[top].IsAttached)
     {
       this->Grow(top, length);
-      this->Parts[top].Surface = 1.0;
-      this->Parts[top].Best = this->Parts[top].Integral;
+      this->Groups[top].Surface = 1.0;
+      this->Groups[top].Best = this->Groups[top].Integral;
     }
   }
 
   /** Adds an open triangle. */
-  void Open(Index part, double area, double border)
+  void Open(Index group, double area, double border)
   {
     // The border of the union of open triangles: edges between two of them have been subtracted.
-    JoiningPart& top = this->Parts[this->TopOf(part)];
+    VertexGroup& top = this->Groups[this->TopOf(group)];
     top.Area += area;
     top.Border += border;
   }
 
   /** Call this when everything up to a length has been added. */
-  void Finish(Index part, double length)
+  void Finish(Index group, double length)
   {
-    const Index top = this->TopOf(part);
+    const Index top = this->TopOf(group);
     this->Grow(top, length);
-    JoiningPart& grown = this->Parts[top];
+    VertexGroup& grown = this->Groups[top];
     const double asked = std::max(LeastWidth, WidthPerLength * (length - 1.0));
     // Twice the area over the border is the width of a long strip.
     const double width = grown.Border > 0.0 ? 2.0 * grown.Area / grown.Border : 0.0;
@@ -221,22 +221,22 @@ public:
     }
   }
 
-  /** The scale of each part, by number. */
+  /** The scale of each group, by number. */
   std::vector<float> Scales(bool hasCore) const
   {
-    const auto isTop = [](const JoiningPart& part) { return part.Parent == None; };
+    const auto isTop = [](const VertexGroup& group) { return group.Parent == None; };
     const bool hasSurface = hasCore ||
-      std::any_of(this->Parts.begin(), this->Parts.end(),
-        [&](const JoiningPart& part) { return isTop(part) && part.Surface == 1.0; });
-    std::vector<double> sums(this->Parts.size());
-    std::vector<double> surface(this->Parts.size());
+      std::any_of(this->Groups.begin(), this->Groups.end(),
+        [&](const VertexGroup& group) { return isTop(group) && group.Surface == 1.0; });
+    std::vector<double> sums(this->Groups.size());
+    std::vector<double> surface(this->Groups.size());
     // Parents have higher numbers, so they come first.
-    for (std::size_t i = this->Parts.size(); i-- > 0;)
+    for (std::size_t i = this->Groups.size(); i-- > 0;)
     {
-      const JoiningPart& part = this->Parts[i];
-      // Of a part that is not a surface, only what comes before its last join.
-      surface[i] = !isTop(part) ? surface[part.Parent] : hasSurface ? part.Surface : 1.0;
-      sums[i] = !isTop(part) ? part.Integral + sums[part.Parent] : hasSurface ? part.Best : 0.0;
+      const VertexGroup& group = this->Groups[i];
+      // Of a group that is not a surface, only what comes before its last join.
+      surface[i] = !isTop(group) ? surface[group.Parent] : hasSurface ? group.Surface : 1.0;
+      sums[i] = !isTop(group) ? group.Integral + sums[group.Parent] : hasSurface ? group.Best : 0.0;
     }
     std::vector<float> scales;
     for (std::size_t i = 0; i < sums.size(); ++i)
@@ -249,10 +249,10 @@ public:
 
 private:
   /**
-   * A part from when it is made until it joins another one. Lengths and areas are in units of the
+   * A group from when it is made until it joins another one. Lengths and areas are in units of the
    * triangles: two spacings, Units.
    */
-  struct JoiningPart
+  struct VertexGroup
   {
     Index Points = 0;
     double Area = 0.0;     ///< of open triangles, in square units
@@ -265,23 +265,23 @@ private:
     Index Parent = None;
   };
 
-  Index Add(const JoiningPart& part)
+  Index Add(const VertexGroup& group)
   {
-    this->Parts.push_back(part);
+    this->Groups.push_back(group);
     this->Tops.push_back(static_cast<Index>(this->Tops.size()));
     return this->Tops.back();
   }
-  Index TopOf(Index part) { return RootOf(this->Tops, part); }
-  // Adds to the integral what the part has lacked since the last change.
-  void Grow(Index part, double length)
+  Index TopOf(Index group) { return RootOf(this->Tops, group); }
+  // Adds to the integral what the group has lacked since the last change.
+  void Grow(Index group, double length)
   {
-    JoiningPart& grown = this->Parts[part];
+    VertexGroup& grown = this->Groups[group];
     grown.Integral += (1.0 - grown.Surface) * (length - grown.Length);
     grown.Length = length;
   }
 
-  std::vector<JoiningPart> Parts;
-  std::vector<Index> Tops; ///< union-find: what a part has become
+  std::vector<VertexGroup> Groups;
+  std::vector<Index> Tops; ///< union-find: what a group has become
 };
 
 /** The triangles with a thin corner, and what happens to them as the length grows. */
@@ -307,13 +307,13 @@ public:
     this->FindGroups(stages.Next());
     this->FindEvents(stages.Next());
     this->FollowEvents(stages.Next());
-    const std::vector<float> ofParts = this->Parts.Scales(hasCore);
+    const std::vector<float> ofGroups = this->Groups.Scales(hasCore);
     std::vector<float> scales(this->List.Points.Count, 1.0f);
     for (Index v = 0; v < this->Surface.NumberOfPoints(); ++v)
     {
       if (this->IsThin(v))
       {
-        scales[this->Surface.IdOf(v)] = ofParts[this->PartOf[v]];
+        scales[this->Surface.IdOf(v)] = ofGroups[this->GroupOf[v]];
       }
     }
     return scales;
@@ -385,7 +385,7 @@ private:
     });
   }
 
-  /** Finds the parts that short edges join. */
+  /** Finds the groups that short edges join. */
   void FindGroups(const Progress& progress)
   {
     const Index count = this->Surface.NumberOfPoints();
@@ -425,20 +425,20 @@ private:
       sizes[root] += this->IsThin(v);
       isAttached[root] |= isAttached[v];
     }
-    this->PartOf.assign(count, None);
+    this->GroupOf.assign(count, None);
     for (Index v = 0; v < count; ++v)
     {
       const Index root = RootOf(parents, v); // comes first
       if (this->IsThin(v))
       {
-        this->PartOf[v] =
-          root == v ? this->Parts.Add(sizes[v], isAttached[v] != 0) : this->PartOf[root];
+        this->GroupOf[v] =
+          root == v ? this->Groups.Add(sizes[v], isAttached[v] != 0) : this->GroupOf[root];
       }
     }
   }
 
   /**
-   * Lists what happens as the length grows: a triangle joins the parts of its thin corners, or
+   * Lists what happens as the length grows: a triangle joins the groups of its thin corners, or
    * touches a core, at its own length; it opens when all triangles around one of its thin corners
    * have been added.
    */
@@ -450,13 +450,13 @@ private:
         for (Index t = begin; t < end; ++t)
         {
           int thinCorners = 0;
-          Index part = None;
+          Index group = None;
           bool joins = false;
           double open = std::numeric_limits<double>::infinity();
           this->VisitThinCorners(t, [&](Index v) {
             ++thinCorners;
-            joins = joins || (part != None && this->PartOf[v] != part);
-            part = this->PartOf[v];
+            joins = joins || (group != None && this->GroupOf[v] != group);
+            group = this->GroupOf[v];
             open = std::min(open, this->LongestAt[v]);
           });
           if (joins)
@@ -498,7 +498,7 @@ private:
 
   /**
    * Goes through the events by length. Those of one length happen together; then it is measured how
-   * much of a surface the parts have become that got open triangles.
+   * much of a surface the groups have become that got open triangles.
    */
   void FollowEvents(const Progress& progress)
   {
@@ -511,7 +511,7 @@ private:
       // count.
       for (; event != this->Events.end() && event->Length == first->Length; ++event)
       {
-        CountWork(20); // of the triangle and the parts that it joins
+        CountWork(20); // of the triangle and the groups that it joins
         ReportStep(progress, done.Count(), this->Events.size());
         done.Add();
         this->Follow(*event, isOpen);
@@ -520,33 +520,33 @@ private:
       {
         if (first->What == Kind::Open)
         {
-          this->Parts.Finish(this->PartAt(first->Triangle), first->Length);
+          this->Groups.Finish(this->GroupAt(first->Triangle), first->Length);
         }
       }
     }
   }
 
-  /** The part of a thin corner. */
-  Index PartAt(Index t) const
+  /** The group of a thin corner. */
+  Index GroupAt(Index t) const
   {
-    Index part = None;
-    this->VisitThinCorners(t, [&](Index v) { part = this->PartOf[v]; });
-    return part;
+    Index group = None;
+    this->VisitThinCorners(t, [&](Index v) { group = this->GroupOf[v]; });
+    return group;
   }
 
   void Follow(const Event& event, std::vector<char>& isOpen)
   {
     const Index t = event.Triangle;
-    const Index part = this->PartAt(t);
-    // With three different parts, two joins; equal ones do nothing.
+    const Index group = this->GroupAt(t);
+    // With three different groups, two joins; equal ones do nothing.
     if (event.What == Kind::Join)
     {
       this->VisitThinCorners(
-        t, [&](Index v) { this->Parts.Join(part, this->PartOf[v], event.Length); });
+        t, [&](Index v) { this->Groups.Join(group, this->GroupOf[v], event.Length); });
     }
     else if (event.What == Kind::Touch)
     {
-      this->Parts.Touch(part, event.Length);
+      this->Groups.Touch(group, event.Length);
     }
     else
     {
@@ -562,8 +562,8 @@ private:
         border += isInside ? -this->LengthOf(twin) / this->Units[Mesh::Triangle(twin)]
                            : this->LengthOf(h) / this->Units[t];
       }
-      this->Parts.Open(
-        part, this->List.SquareShare(this->Partial.Triangles[t], this->Units[t]), border);
+      this->Groups.Open(
+        group, this->List.SquareShare(this->Partial.Triangles[t], this->Units[t]), border);
     }
   }
 
@@ -576,9 +576,9 @@ private:
   std::vector<double> Units;
   std::vector<double> Lengths;   ///< in units
   std::vector<double> LongestAt; ///< one per vertex; infinite unless all around it is thin
-  std::vector<Index> PartOf;     ///< one per thin vertex
+  std::vector<Index> GroupOf;    ///< one per thin vertex
   std::vector<Event> Events;
-  JoiningParts Parts;
+  VertexGroups Groups;
 };
 
 } // namespace
