@@ -13,7 +13,7 @@ import xml.etree.ElementTree as ElementTree
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-from Python import look  # noqa: E402
+from Python import first_view  # noqa: E402
 from Python.description import DESCRIBED, titled  # noqa: E402
 
 TAGS = {"double": "Double", "int": "Int", "bool": "Int", "string": "String"}
@@ -121,16 +121,16 @@ def add_result(parent, given):
 def add_look(parent, given):
     """The element that has ElevationLook.cxx give a representation its first look."""
     made = element(element(parent, "Hints"), "InitializationHelper", **{
-        "class": "vtkSMElevationLook", "bearing": str(look.BEARING), "height": str(look.HEIGHT)})
+        "class": "vtkSMElevationLook", "bearing": str(first_view.BEARING), "height": str(first_view.HEIGHT)})
     if given.get("line_width"):
         made.set("line_width", given.get("line_width"))
     if given.get("of") == "elevations":
-        made.set("land", " ".join(look.LAND))
-        made.set("sea", " ".join(look.SEA))
+        made.set("land", " ".join(first_view.LAND))
+        made.set("sea", " ".join(first_view.SEA))
     elif given.get("of") == "holes":
         made.set("array", "StatusName")
-        made.set("words", ",".join(look.STATUS))
-        made.set("colours", " ".join(look.STATUS.values()))
+        made.set("words", ",".join(first_view.STATUS))
+        made.set("colours", " ".join(first_view.STATUS.values()))
 
 
 def add(parent, given, place):

@@ -44,6 +44,7 @@ from .algorithm_base import (
 from .blocks import parts_of, put_parts, surfaces_of
 from .clouds import ReadOptions, cells_of, joined, keep_points, notes_on, set_crs
 from .description import DESCRIBED
+from .exaggeration import point_exaggeration, surface_exaggeration
 from .inputs import cloud_of, lines_of
 from .messages import ElevationSurfaceError, Reason, counted, counted_reason
 from .names import argument, option
@@ -52,7 +53,6 @@ from .properties import PROPERTIES, checked
 from .ranks import agreed, controller_of, shared, together
 from .reading import read, read_boundary, read_faults
 from .reconstruction import NAMES, reconstruct_cloud
-from .relief import point_exaggeration, surface_exaggeration
 from .report import crs_name
 from .spreading import gather_points
 

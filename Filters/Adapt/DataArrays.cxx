@@ -230,22 +230,22 @@ vtkIdType IdAt(vtkDataArray* ids, vtkIdType i)
   return plain ? plain->GetValue(i) : ids->GetVariantValue(i).ToTypeInt64();
 }
 
-vtkIdType PlaceOfLargest(vtkDataArray* ids)
+vtkIdType IndexOfLargest(vtkDataArray* ids)
 {
-  vtkIdType place = -1, largest = -1;
+  vtkIdType index = -1, largest = -1;
   for (vtkIdType i = 0; ids && i < ids->GetNumberOfTuples(); ++i)
   {
     const vtkIdType id = IdAt(ids, i);
-    place = id > largest ? i : place;
+    index = id > largest ? i : index;
     largest = std::max(largest, id);
   }
-  return place;
+  return index;
 }
 
 vtkIdType LargestId(vtkDataArray* ids)
 {
-  const vtkIdType place = PlaceOfLargest(ids);
-  return place < 0 ? -1 : IdAt(ids, place);
+  const vtkIdType largest = IndexOfLargest(ids);
+  return largest < 0 ? -1 : IdAt(ids, largest);
 }
 
 bool CanNumber(vtkAbstractArray* array, vtkIdType largest, vtkIdType count)

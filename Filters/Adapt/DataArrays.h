@@ -54,7 +54,7 @@ bool IsIdArray(vtkDataSetAttributes* data, vtkAbstractArray* array);
 /** An id of an array of any integers. */
 vtkIdType IdAt(vtkDataArray* ids, vtkIdType i);
 /** The tuple with the largest id; -1: there is none from 0 on, or no array. */
-vtkIdType PlaceOfLargest(vtkDataArray* ids);
+vtkIdType IndexOfLargest(vtkDataArray* ids);
 /** The largest id, or -1. */
 vtkIdType LargestId(vtkDataArray* ids);
 /** Whether an array of ids has @a count numbers after the largest, which may be elsewhere. */

@@ -76,12 +76,12 @@ void FilledPart::ListShared(bool byIds)
   {
     if (mayBeShared[i])
     {
-      this->Shared.Places.push_back(static_cast<Index>(i));
+      this->Shared.Indices.push_back(static_cast<Index>(i));
       this->Shared.OnBoundary.push_back(marks && marks->GetValue(static_cast<vtkIdType>(i)) != 0);
     }
   }
-  // In this order: TakeMarks() and Sort() need places and keys.
-  this->Shared.Keys = KeysOf(this->Input, byIds, &this->Shared.Places);
+  // In this order: TakeMarks() and Sort() need indices and keys.
+  this->Shared.Keys = KeysOf(this->Input, byIds, &this->Shared.Indices);
   this->Shared.TakeMarks(this->Input);
   this->Shared.Sort(this->AreUsed);
 }
@@ -95,10 +95,10 @@ std::vector<char> FilledPart::AreOthers() const
   {
     areOthers[i] = IsCopy(marks, static_cast<vtkIdType>(i));
   }
-  for (std::size_t i = 0; i < this->Shared.Places.size(); ++i)
+  for (std::size_t i = 0; i < this->Shared.Indices.size(); ++i)
   {
     // For points that may be shared, what ranks have found out together replaces the mark.
-    areOthers[this->Shared.Places[i]] = this->Shared.AreCopies[i];
+    areOthers[this->Shared.Indices[i]] = this->Shared.AreCopies[i];
   }
   return areOthers;
 }
@@ -140,18 +140,18 @@ void FilledPart::FindCorners()
 {
   const Index first = static_cast<Index>(this->Filled.Keys.size());
   const Index own = static_cast<Index>(this->Input->GetNumberOfPoints());
-  this->PlaceOf.assign(this->Filled.Keys.size(), None);
+  this->IndexOf.assign(this->Filled.Keys.size(), None);
   this->Added.clear();
   std::map<PointKey, Index> added; // a point may be there several times
   // Beyond the first new point, a corner is one that the patch itself has made.
-  const auto place = [&](Index corner) {
-    if (corner < first && this->PlaceOf[corner] == None)
+  const auto setIndex = [&](Index corner) {
+    if (corner < first && this->IndexOf[corner] == None)
     {
       const PointKey& key = this->Filled.Keys[corner];
       const Index here = this->Shared.Find(key);
       const Index next = own + static_cast<Index>(this->Added.size());
       const bool isNew = here == None && added.emplace(key, next).second;
-      this->PlaceOf[corner] = here != None ? here : added[key];
+      this->IndexOf[corner] = here != None ? here : added[key];
       if (isNew)
       {
         this->Added.push_back(corner);
@@ -159,8 +159,9 @@ void FilledPart::FindCorners()
     }
   };
   const FillResult& patches = this->Filled.Patches;
-  std::for_each(patches.Triangles.begin(), patches.Triangles.end(), place);
-  std::for_each(patches.NearestBoundaryPoints.begin(), patches.NearestBoundaryPoints.end(), place);
+  std::for_each(patches.Triangles.begin(), patches.Triangles.end(), setIndex);
+  std::for_each(
+    patches.NearestBoundaryPoints.begin(), patches.NearestBoundaryPoints.end(), setIndex);
 }
 
 vtkIdType FilledPart::OtherCount() const
@@ -182,7 +183,7 @@ vtkSmartPointer<vtkPolyData> FilledPart::WithCorners(bool areMarked, const Progr
   {
     if (this->Shared.AreCopies[i])
     {
-      points.OfOthers.push_back(this->Shared.Places[i]);
+      points.OfOthers.push_back(this->Shared.Indices[i]);
     }
   }
   // Each is another part's, and a ghost here.
@@ -198,7 +199,7 @@ vtkSmartPointer<vtkPolyData> FilledPart::WithCorners(bool areMarked, const Progr
 }
 
 /**
- * The patches among those of all holes, by the places of the input's points. MakeSurface() then
+ * The patches among those of all holes, by the indices of the input's points. MakeSurface() then
  * does for a part what it does for a surface: holes of other parts just have no points and
  * triangles here.
  */
@@ -209,10 +210,10 @@ FillResult FilledPart::PlacedPatches(const SharedHoles& all, vtkPolyData* input)
   to.Points = from.Points;
   to.StandardErrors = from.StandardErrors;
   to.HalfIntervals = from.HalfIntervals;
-  const Index first = static_cast<Index>(this->PlaceOf.size());
+  const Index first = static_cast<Index>(this->IndexOf.size());
   const Index firstNew = static_cast<Index>(input->GetNumberOfPoints());
   const auto placed = [&](Index id) {
-    return id < first ? this->PlaceOf[id] : firstNew + id - first;
+    return id < first ? this->IndexOf[id] : firstNew + id - first;
   };
   std::transform(
     from.Triangles.begin(), from.Triangles.end(), std::back_inserter(to.Triangles), placed);
@@ -328,12 +329,12 @@ void WriteRims(
   }
   const vtkSmartPointer<vtkPolyData> joined = Append(points);
   const std::vector<PointKey> keys = KeysOf(joined, all.ByIds, nullptr);
-  std::vector<Index> places(all.Border.Keys.size(), 0);
+  std::vector<Index> indices(all.Border.Keys.size(), 0);
   for (std::size_t i = keys.size(); i-- > 0;) // of several, the first
   {
-    places[all.Border.Find(keys[i])] = static_cast<Index>(i);
+    indices[all.Border.Find(keys[i])] = static_cast<Index>(i);
   }
-  const vtkSmartPointer<vtkPolyData> rims = ChosenPoints(joined, places);
+  const vtkSmartPointer<vtkPolyData> rims = ChosenPoints(joined, indices);
   // Each is there once.
   rims->GetPointData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
   MakeReport(rims, all.Result, progress, output);

@@ -5,8 +5,8 @@
  * A part of a surface whose holes are filled (FillParts.h): what is read of it, and how it is
  * written. Private to the module.
  *
- * A point is known by three numbers: its place in the input; its place in the surrounding of the
- * holes whose patches the part gets, with Filled.Keys; and the place in the output that PlaceOf
+ * A point is known by three numbers: its index in the input; its index in the surrounding of the
+ * holes whose patches the part gets, with Filled.Keys; and the index in the output that IndexOf
  * gives it:
  *
  *     input's points | Added: corners of others | new points of patches     the output's points
@@ -51,10 +51,10 @@ struct FilledPart
   PointView OwnPoints(Buffer<double>& kept) const;
   vtkIdType OwnCount() const; ///< of these
 
-  /** Corners of the patches that the part does not have; then PlaceOf is known. */
+  /** Corners of the patches that the part does not have; then IndexOf is known. */
   void FindCorners();
   std::vector<Index> Added;   ///< corners, points of the surrounding of the holes
-  std::vector<Index> PlaceOf; ///< of points of the surrounding, after the input's points
+  std::vector<Index> IndexOf; ///< of points of the surrounding, after the input's points
   /** How many points are other parts' in the output, as far as it is not marked in the input. */
   vtkIdType OtherCount() const;
 

@@ -4,14 +4,14 @@
  * A part is put together from what lies in its boxes, in memory once and in files at each use:
  *
  *     rows of OwnPoints   -- sorted by ids -->   OwnPoints
- *     corners of Settled  (places)       ----->  triangles of the cell    \
- *     FromSeams  (numbers)  -- PlaceOf -->       appended to them          > Result
- *     Changed    (numbers)  -- PlaceOf -->       written over some         /
+ *     corners of Settled  (indices)      ----->  triangles of the cell    \
+ *     FromSeams  (numbers)  -- IndexOf -->       appended to them          > Result
+ *     Changed    (numbers)  -- IndexOf -->       written over some         /
  *     rows of Corners                    ----->  Others, in the order of OtherNumbers
  *
  * In memory the first two are in Part already, since a cell's result is moved there as it is made.
  *
- * The rows of Corners need no numbers of their own. A part asks each owner for places in increasing
+ * The rows of Corners need no numbers of their own. A part asks each owner for indices in increasing
  * order; the answers lie in the box in the order of the ranks that sent them, and a rank's parts
  * answer in their order. So the rows come in the order of OtherNumbers, which ListOthersOf() makes
  * again from the triangles.
@@ -20,7 +20,7 @@
  *
  *     Settled   | duplicates, not finite, unused points, reasons |   the first stretch
  *               | corners ...                                    |   none without a triangle
- *     OnSeam    | places, increasing |
+ *     OnSeam    | indices, increasing |
  *               | their rows         |
  */
 #include "PartStore.h"
@@ -42,7 +42,7 @@ const std::vector<std::string>& BoxNames()
 }
 
 // Points that came twice go; so counts are known only when all are there. In files none can come
-// twice where ids are places, and nothing is read.
+// twice where ids are indices, and nothing is read.
 void PartStore::Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const Progress& progress)
 {
   this->Part.OwnPoints = PointTable(this->Part.Kinds);
@@ -57,10 +57,10 @@ void PartStore::Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const 
         // Written back sorted and without repeated points: later reads find all in order.
         const PointTable own = this->ReadOwn(part, ofPart).OwnPoints;
         counts[part] = static_cast<vtkIdType>(own.Count());
-        std::vector<vtkIdType> places(own.Count());
-        std::iota(places.begin(), places.end(), vtkIdType(0));
+        std::vector<vtkIdType> indices(own.Count());
+        std::iota(indices.begin(), indices.end(), vtkIdType(0));
         this->Crew.At(part, OwnPoints).Clear();
-        this->AddOwn(part, own.Pack(places));
+        this->AddOwn(part, own.Pack(indices));
         return;
       }
       // A step of memory alone: the one part of this rank.
@@ -106,7 +106,7 @@ void PartStore::CheckCount(std::size_t count) const
 
 /**
  * The points that a part owns, from its files. With several ranks these are in the order in which
- * slices came; numbers are places in the order of ids, so that is made again.
+ * slices came; numbers are indices in the order of ids, so that is made again.
  */
 SurfacePart PartStore::ReadOwn(int part, const Progress& progress) const
 {
@@ -142,30 +142,30 @@ void PartStore::KeepSettled(int part, const SurfacePart& own, SettledCell& settl
   box.Append(std::move(unused));
   box.Append(result.Triangles.data(), result.Triangles.size() * sizeof(Index));
   // A corner of another part's triangle is on the seam of its own (Pieces.h).
-  std::vector<vtkIdType> places(settled.Seam.Ids.begin(), settled.Seam.Ids.end());
+  std::vector<vtkIdType> indices(settled.Seam.Ids.begin(), settled.Seam.Ids.end());
   const GlobalId first = this->FirstOf(part);
-  std::for_each(places.begin(), places.end(), [first](vtkIdType& number) { number -= first; });
+  std::for_each(indices.begin(), indices.end(), [first](vtkIdType& number) { number -= first; });
   this->Crew.At(part, OnSeam).Clear();
-  this->KeepForOthers(part, own, std::move(places));
+  this->KeepForOthers(part, own, std::move(indices));
 }
 
-void PartStore::KeepForOthers(int part, const SurfacePart& own, std::vector<vtkIdType>&& places)
+void PartStore::KeepForOthers(int part, const SurfacePart& own, std::vector<vtkIdType>&& indices)
 {
   if (!this->Crew.IsInFiles())
   {
     return;
   }
-  // Lines may add points to those of the seam. Rows are packed again, in the order of all places.
-  const std::vector<vtkIdType> before = this->ReadForOthers(part).Places;
-  places.insert(places.end(), before.begin(), before.end());
-  std::sort(places.begin(), places.end());
-  places.erase(std::unique(places.begin(), places.end()), places.end());
+  // Lines may add points to those of the seam. Rows are packed again, in the order of all indices.
+  const std::vector<vtkIdType> before = this->ReadForOthers(part).Indices;
+  indices.insert(indices.end(), before.begin(), before.end());
+  std::sort(indices.begin(), indices.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
   Inbox& onSeam = this->Crew.At(part, OnSeam);
   onSeam.Clear();
   Bytes list;
-  AppendList(list, places);
+  AppendList(list, indices);
   onSeam.Append(std::move(list));
-  onSeam.Append(own.OwnPoints.Pack(places));
+  onSeam.Append(own.OwnPoints.Pack(indices));
 }
 
 // The box has two stretches, as written above, or none.
@@ -176,25 +176,26 @@ PartStore::RowsForOthers PartStore::ReadForOthers(int part) const
   {
     const std::vector<Bytes> stretches = this->Crew.At(part, OnSeam).Copy();
     const char* from = stretches.at(0).data();
-    TakeList(from, read.Places);
+    TakeList(from, read.Indices);
     read.OnSeam = PointTable(this->Part.Kinds);
     read.OnSeam.Unpack(stretches.data() + 1, stretches.size() - 1);
   }
   return read;
 }
 
-Bytes PartStore::PackForOthers(const RowsForOthers& rows, std::vector<vtkIdType>&& places) const
+Bytes PartStore::PackForOthers(const RowsForOthers& rows, std::vector<vtkIdType>&& indices) const
 {
   if (!this->Crew.IsInFiles())
   {
-    return this->Part.OwnPoints.Pack(places);
+    return this->Part.OwnPoints.Pack(indices);
   }
-  for (vtkIdType& place : places)
+  for (vtkIdType& index : indices)
   {
-    // The table has rows of the seam alone. Each place asked for is one of them: see KeepSettled().
-    place = std::lower_bound(rows.Places.begin(), rows.Places.end(), place) - rows.Places.begin();
+    // The table has rows of the seam alone. Each index asked for is one of them: see KeepSettled().
+    index =
+      std::lower_bound(rows.Indices.begin(), rows.Indices.end(), index) - rows.Indices.begin();
   }
-  return rows.OnSeam.Pack(places);
+  return rows.OnSeam.Pack(indices);
 }
 
 SurfacePart PartStore::ReadWhole(int part, const Progress& progress) const
@@ -252,12 +253,12 @@ void PartStore::PutTogether(int part, const Progress& progress, SurfacePart& who
   whole.Others.Unpack(this->Crew.At(part, Corners).Copy());
   this->CheckCount(whole.OwnPoints.Count() + whole.Others.Count());
   AppendTriangles(ValuesIn<GlobalTriangle>(this->Crew.At(part, FromSeams)), first, progress, whole);
-  // After the seams' triangles: a place counts them too. Lines change corners, never the number.
+  // After the seams' triangles: an index counts them too. Lines change corners, never the number.
   for (const ChangedTriangle& changed : ValuesIn<ChangedTriangle>(this->Crew.At(part, Changed)))
   {
     std::transform(changed.Corners.begin(), changed.Corners.end(),
       whole.Result.Triangles.data() + 3 * changed.Triangle,
-      [&](GlobalId number) { return static_cast<Index>(whole.PlaceOf(number, first)); });
+      [&](GlobalId number) { return static_cast<Index>(whole.IndexOf(number, first)); });
   }
 }
 

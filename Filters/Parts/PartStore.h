@@ -15,18 +15,18 @@
  *   box        what is in it                          written by           read by
  *   OwnPoints  rows of points                         pass 1, lines        2, 6, for output
  *   Settled    unused points; then corners, as        pass 2, in files     6, for output
- *              places among the own points
- *   OnSeam     places of the seam's points, and       pass 2, lines, in    5
+ *              indices among the own points
+ *   OnSeam     indices of the seam's points, and      pass 2, lines, in    5
  *              their rows: others may ask for these   files
  *   FromSeams  in pass 3, the seam of the other half  the other half       3
  *              of a cell; then triangles, by numbers  pass 4               5, 6, for output
- *   Requests   the part that asks, and places         pass 5               5, 6
+ *   Requests   the part that asks, and indices        pass 5               5, 6
  *   Corners    rows of points of other parts          pass 5               6, for output
  *   Meeting    of the first part: triangles that      lines                lines
  *              meet lines
  *   Changed    what has become of triangles that      lines                5, 6, for output
  *              meet lines
- *   Covered    places with a triangle elsewhere       pass 6               6
+ *   Covered    indices with a triangle elsewhere      pass 6               6
  *
  * Cost: reading is linear; a part that is read takes twice the memory of its rows for a while.
  */
@@ -160,17 +160,17 @@ public:
    * Keeps further own points for which other parts may ask. In memory it does nothing, as there any
    * own point can be asked for.
    */
-  void KeepForOthers(int part, const SurfacePart& own, std::vector<vtkIdType>&& places);
+  void KeepForOthers(int part, const SurfacePart& own, std::vector<vtkIdType>&& indices);
 
   /** What other parts may ask for; in memory, nothing is read. */
   struct RowsForOthers
   {
     PointTable OnSeam;             ///< from files
-    std::vector<vtkIdType> Places; ///< of these, increasing
+    std::vector<vtkIdType> Indices; ///< of these, increasing
   };
   RowsForOthers ReadForOthers(int part) const;
   /** Packs own points that another part asks for: in files, points on the seam. */
-  Bytes PackForOthers(const RowsForOthers& rows, std::vector<vtkIdType>&& places) const;
+  Bytes PackForOthers(const RowsForOthers& rows, std::vector<vtkIdType>&& indices) const;
 
   /** The numbers of other parts' points that are corners of triangles from seams, or changed. */
   std::vector<GlobalId> ListOthersOf(int part) const;

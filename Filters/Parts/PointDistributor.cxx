@@ -8,7 +8,7 @@
  *
  * The samples differ too. At once, the number of points is known, and one point of each stretch of
  * some is taken, so that each part gets about 1,000, all of which all ranks get. In slices, a hash
- * of the place decides, and the sample is thinned whenever it is too large; it is the same however
+ * of the index decides, and the sample is thinned whenever it is too large; it is the same however
  * the slices are cut.
  */
 #include "PointDistributor.h"
@@ -42,8 +42,8 @@ constexpr vtkIdType PointsInStretch = 1 << 20; // of slices, and in a file
 constexpr std::size_t MostSampled = 1 << 19;   // of slices
 constexpr vtkIdType SamplePerPart = 1000;      // of points that come at once
 
-/** A place of the stretch [0, size) by such a rule. */
-vtkIdType PlaceInStretch(vtkIdType stretch, vtkIdType size)
+/** An index of the stretch [0, size) by such a rule. */
+vtkIdType IndexInStretch(vtkIdType stretch, vtkIdType size)
 {
   return static_cast<vtkIdType>((HashOf(stretch) >> 16) % static_cast<std::uint64_t>(size));
 }
@@ -55,7 +55,7 @@ bool AreSame(const std::vector<ArrayKind>& kinds, const std::vector<ArrayKind>& 
 {
   return std::equal(kinds.begin(), kinds.end(), others.begin(), others.end(),
     [](const ArrayKind& kind, const ArrayKind& other) {
-      // Whether ids are given may not change either: numbers that are places would meet given ones.
+      // Whether ids are given may not change either: numbers that are indices would meet given ones.
       constexpr int ids = vtkDataSetAttributes::GLOBALIDS;
       return kind.Name == other.Name && kind.Type == other.Type &&
         kind.Components == other.Components && (kind.Attribute == ids) == (other.Attribute == ids);
@@ -167,17 +167,17 @@ void PointDistributor::Add(vtkPointSet* points, const Progress& progress)
   for (vtkIdType first = 0; first < count; first += PointsInStretch)
   {
     Report(progress, static_cast<double>(first) / static_cast<double>(count));
-    std::vector<vtkIdType> places;
+    std::vector<vtkIdType> indices;
     for (vtkIdType at = first; at < std::min(first + PointsInStretch, count); ++at)
     {
       if (!IsCopy(this->Rows.Marks(), at))
       {
-        places.push_back(at);
+        indices.push_back(at);
       }
     }
-    const Bytes packed = this->Rows.Pack(places);
+    const Bytes packed = this->Rows.Pack(indices);
     // Short slices share a file until it has as much as a stretch: not a file for each slice.
-    if (this->InLastStretch + static_cast<vtkIdType>(places.size()) > PointsInStretch ||
+    if (this->InLastStretch + static_cast<vtkIdType>(indices.size()) > PointsInStretch ||
       this->Stretches.empty())
     {
       this->Stretches.emplace_back(
@@ -185,27 +185,27 @@ void PointDistributor::Add(vtkPointSet* points, const Progress& progress)
       this->InLastStretch = 0;
     }
     this->Stretches.back().Append(packed.data(), packed.size());
-    this->InLastStretch += static_cast<vtkIdType>(places.size());
-    this->SampleStretch(places);
+    this->InLastStretch += static_cast<vtkIdType>(indices.size());
+    this->SampleStretch(indices);
   }
-  // Also points of other ranks, so that a place stays that in the input.
+  // Also points of other ranks, so that an index stays that in the input.
   this->OwnCount += count;
   this->Rows = PointTable();
 }
 
 /**
- * A hash of its place decides whether a point is in the sample; of one too large each other goes,
+ * A hash of its index decides whether a point is in the sample; of one too large each other goes,
  * as the mask gets another bit: what remains is what the longer mask would have chosen from the
  * start.
  */
-void PointDistributor::SampleStretch(const std::vector<vtkIdType>& places)
+void PointDistributor::SampleStretch(const std::vector<vtkIdType>& indices)
 {
-  for (const vtkIdType at : places)
+  for (const vtkIdType at : indices)
   {
-    const vtkIdType place = this->OwnCount + at;
-    if (((HashOf(place) >> 20) & this->SampleMask) == 0 && this->Rows.IsFinite(at))
+    const vtkIdType index = this->OwnCount + at;
+    if (((HashOf(index) >> 20) & this->SampleMask) == 0 && this->Rows.IsFinite(at))
     {
-      this->Sample.push_back({ place, { this->Rows.At(at)[0], this->Rows.At(at)[1] } });
+      this->Sample.push_back({ index, { this->Rows.At(at)[0], this->Rows.At(at)[1] } });
     }
   }
   while (this->Sample.size() > MostSampled)
@@ -220,7 +220,7 @@ void PointDistributor::KeepSample()
 {
   const auto out =
     std::remove_if(this->Sample.begin(), this->Sample.end(), [this](const SampledPoint& point) {
-      return ((HashOf(point.Place) >> 20) & this->SampleMask) != 0;
+      return ((HashOf(point.Position) >> 20) & this->SampleMask) != 0;
     });
   this->Sample.erase(out, this->Sample.end());
 }
@@ -251,7 +251,7 @@ void PointDistributor::NumberPoints(SurfacePart& common)
   common.Kinds =
     CommonArrays(this->AllRanks, this->OwnCount > 0 ? arrays : nullptr, common.LeftOut);
   const bool areGiven = TakeIdKind(common.Kinds, common.IdsName);
-  // In files each slice was read by what its rank knew: ids cannot become places now.
+  // In files each slice was read by what its rank knew: ids cannot become indices now.
   const bool areOthers = this->OwnCount > 0 && this->AreGiven != areGiven;
   if (this->IsInFile() && (!common.LeftOut.empty() || IsOnAny(this->AllRanks, areOthers)))
   {
@@ -275,7 +275,7 @@ void PointDistributor::NumberPoints(SurfacePart& common)
 }
 
 /**
- * Rows of points, with the ids given, if any. Points of other ranks have rows, as places are those of
+ * Rows of points, with the ids given, if any. Points of other ranks have rows, as indices are those of
  * the input, but go nowhere: their owner sends them.
  */
 void PointDistributor::Read(vtkPointSet* points, const std::string& idsName, vtkIdType first)
@@ -290,7 +290,7 @@ void PointDistributor::Read(vtkPointSet* points, const std::string& idsName, vtk
 }
 
 /**
- * A sample of points that come at once: one of each stretch of some, at a place that follows no
+ * A sample of points that come at once: one of each stretch of some, at an index that follows no
  * rule, as rows of a grid may be as long as a stretch.
  */
 std::vector<double> PointDistributor::SampleAtOnce(vtkIdType parts) const
@@ -304,7 +304,7 @@ std::vector<double> PointDistributor::SampleAtOnce(vtkIdType parts) const
   this->AllRanks.Agree([&]() {
     for (vtkIdType i = 0; i * stretch < count; ++i)
     {
-      const vtkIdType at = i * stretch + PlaceInStretch(i, std::min(stretch, count - i * stretch));
+      const vtkIdType at = i * stretch + IndexInStretch(i, std::min(stretch, count - i * stretch));
       const double* const p = this->Rows.At(at);
       if (this->Rows.IsFinite(at) && !IsCopy(this->Rows.Marks(), at))
       {
@@ -358,7 +358,7 @@ Cuts PointDistributor::CutPlane(int parts)
 void PointDistributor::SendSlice(const Cuts& plane, Engine& engine, int box,
   const Progress& progress, std::vector<vtkIdType>& counts)
 {
-  // First the parts alone, so that the places of each take no more memory than they need.
+  // First the parts alone, so that the indices of each take no more memory than they need.
   const int firstOwn = engine.FirstOwn();
   const std::uint64_t ownCount = static_cast<std::uint64_t>(engine.EndOwn() - firstOwn);
   std::vector<int> partOf(this->Rows.Count(), None);
@@ -373,32 +373,32 @@ void PointDistributor::SendSlice(const Cuts& plane, Engine& engine, int box,
     }
     const double* const p = this->Rows.At(at);
     // A rank with points holds at least one part (TriangulateParts.h), so it never divides by 0. By
-    // the id, not by the place: where a point goes must not depend on how slices were cut.
+    // the id, not by the index: where a point goes must not depend on how slices were cut.
     partOf[at] = this->Rows.IsFinite(at)
       ? plane.OwnerOf({ p[0], p[1] })
       : firstOwn + static_cast<int>(static_cast<std::uint64_t>(this->Rows.Ids[at]) % ownCount);
     ++sizes[partOf[at]];
   }
-  std::vector<std::vector<vtkIdType>> places(counts.size());
-  for (std::size_t part = 0; part < places.size(); ++part)
+  std::vector<std::vector<vtkIdType>> indices(counts.size());
+  for (std::size_t part = 0; part < indices.size(); ++part)
   {
-    places[part].reserve(sizes[part]);
+    indices[part].reserve(sizes[part]);
     counts[part] += static_cast<vtkIdType>(sizes[part]);
   }
   for (std::size_t at = 0; at < partOf.size(); ++at)
   {
     if (partOf[at] != None)
     {
-      places[partOf[at]].push_back(static_cast<vtkIdType>(at));
+      indices[partOf[at]].push_back(static_cast<vtkIdType>(at));
     }
   }
-  for (std::size_t part = 0; part < places.size(); ++part)
+  for (std::size_t part = 0; part < indices.size(); ++part)
   {
     Report(progress, 1.0);
-    if (!places[part].empty())
+    if (!indices[part].empty())
     {
-      engine.Send(static_cast<int>(part), box, this->Rows.Pack(places[part]));
-      places[part] = std::vector<vtkIdType>();
+      engine.Send(static_cast<int>(part), box, this->Rows.Pack(indices[part]));
+      indices[part] = std::vector<vtkIdType>();
     }
   }
   this->Rows = PointTable();
@@ -431,7 +431,7 @@ Cuts PointDistributor::Distribute(Engine& engine, int box, const Progress& progr
         const double all = static_cast<double>(this->OwnCount);
         begin = done / all;
         end = (done += static_cast<double>(this->Rows.Count())) / all;
-        // In files, ids that are not given are places among the points of this rank.
+        // In files, ids that are not given are indices among the points of this rank.
         for (vtkIdType& id : this->Rows.Ids)
         {
           id += this->AreGiven ? 0 : this->First;

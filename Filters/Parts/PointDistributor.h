@@ -61,7 +61,7 @@ public:
   void Add(vtkPointSet* points, const Progress& progress);
 
   /**
-   * Whether the points bring global ids, known after Distribute(); or these are places: the points
+   * Whether the points bring global ids, known after Distribute(); or these are indices: the points
    * of all ranks counted, rank after rank, in the order of Add().
    */
   bool AreIdsGiven() const { return this->AreGiven; }
@@ -80,7 +80,7 @@ public:
 private:
   struct SampledPoint
   {
-    vtkIdType Place; // among those of this rank
+    vtkIdType Position; // among those of this rank
     Point2 At;
   };
 
@@ -88,7 +88,7 @@ private:
   /** The arrays of the next slice. @throws Error if they differ from those before */
   void TakeKinds(vtkPointSet* points);
   /** Pass 1, for points in slices. */
-  void SampleStretch(const std::vector<vtkIdType>& places);
+  void SampleStretch(const std::vector<vtkIdType>& indices);
   void KeepSample();
   /** Pass 2. */
   void NumberPoints(SurfacePart& common);

@@ -198,17 +198,17 @@ vtkUnsignedCharArray* PointTable::Marks() const
     : nullptr;
 }
 
-bool PointTable::IsFinite(std::size_t place) const
+bool PointTable::IsFinite(std::size_t index) const
 {
-  const double* const p = this->At(place);
+  const double* const p = this->At(index);
   vtkUnsignedCharArray* const marks = this->Marks();
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]) &&
-    !(marks && (marks->GetValue(place) & vtkDataSetAttributes::HIDDENPOINT));
+    !(marks && (marks->GetValue(index) & vtkDataSetAttributes::HIDDENPOINT));
 }
 
 void PointTable::Read(vtkPointSet* points, vtkIdType first)
 {
-  // Hidden points keep their places.
+  // Hidden points keep their indices.
   vtkNew<vtkPolyData> bare;
   bare->SetPoints(points->GetPoints());
   this->Owner = ViewPoints(bare).Owner;
@@ -263,36 +263,36 @@ char* BytesOf(vtkAbstractArray* array)
 }
 
 /** Appends the values of chosen tuples. */
-void PackArray(const ArrayKind& kind, vtkAbstractArray* array, const std::vector<vtkIdType>& places,
-  Bytes& bytes)
+void PackArray(const ArrayKind& kind, vtkAbstractArray* array,
+  const std::vector<vtkIdType>& indices, Bytes& bytes)
 {
   if (const std::size_t row = RowSize(kind))
   {
     const std::size_t size = bytes.size();
-    bytes.Resize(size + row * places.size());
+    bytes.Resize(size + row * indices.size());
     char* to = bytes.data() + size;
     // Rows may be anywhere in the array.
     const char* const from = BytesOf(array);
-    for (const vtkIdType place : places)
+    for (const vtkIdType index : indices)
     {
-      std::memcpy(to, from + row * place, row);
+      std::memcpy(to, from + row * index, row);
       to += row;
     }
     return;
   }
   // Texts, or else bits.
   auto* const texts = vtkArrayDownCast<vtkStringArray>(array);
-  for (const vtkIdType place : places)
+  for (const vtkIdType index : indices)
   {
     for (int c = 0; c < kind.Components; ++c)
     {
       if (!texts)
       {
-        const char bit = vtkArrayDownCast<vtkBitArray>(array)->GetComponent(place, c) != 0.0;
+        const char bit = vtkArrayDownCast<vtkBitArray>(array)->GetComponent(index, c) != 0.0;
         AppendTo(bytes, &bit, 1);
         continue;
       }
-      AppendList(bytes, texts->GetValue(place * kind.Components + c));
+      AppendList(bytes, texts->GetValue(index * kind.Components + c));
     }
   }
 }
@@ -324,7 +324,7 @@ void UnpackArray(const ArrayKind& kind, vtkIdType first, vtkIdType count, const 
 }
 } // namespace
 
-Bytes PointTable::Pack(const std::vector<vtkIdType>& places) const
+Bytes PointTable::Pack(const std::vector<vtkIdType>& indices) const
 {
   Bytes bytes;
   // Three coordinates and the id; texts and bits come on top, and let the buffer grow.
@@ -333,25 +333,25 @@ Bytes PointTable::Pack(const std::vector<vtkIdType>& places) const
   {
     row += RowSize(kind);
   }
-  const vtkIdType count = static_cast<vtkIdType>(places.size());
-  bytes.Reserve(sizeof(count) + row * places.size());
+  const vtkIdType count = static_cast<vtkIdType>(indices.size());
+  bytes.Reserve(sizeof(count) + row * indices.size());
   AppendTo(bytes, &count, 1);
-  bytes.Resize(sizeof(count) + 32 * places.size());
+  bytes.Resize(sizeof(count) + 32 * indices.size());
   char* to = bytes.data() + sizeof(count);
   // Copied without growing: Append would check the room for each value.
-  for (const vtkIdType place : places)
+  for (const vtkIdType index : indices)
   {
-    std::memcpy(to, this->At(place), 24);
+    std::memcpy(to, this->At(index), 24);
     to += 24;
   }
-  for (const vtkIdType place : places)
+  for (const vtkIdType index : indices)
   {
-    std::memcpy(to, &this->Ids[place], 8);
+    std::memcpy(to, &this->Ids[index], 8);
     to += 8;
   }
   for (std::size_t i = 0; i < this->Kinds.size(); ++i)
   {
-    PackArray(this->Kinds[i], this->Arrays[i], places, bytes);
+    PackArray(this->Kinds[i], this->Arrays[i], indices, bytes);
   }
   return bytes;
 }
@@ -399,23 +399,23 @@ void PointTable::Unpack(const Bytes* packed, std::size_t count)
   }
 }
 
-void PointTable::Choose(const std::vector<vtkIdType>& places)
+void PointTable::Choose(const std::vector<vtkIdType>& indices)
 {
   // A new table: an array that is the input's own must not change.
   PointTable chosen(this->Kinds);
-  chosen.Coordinates.Resize(3 * places.size());
-  chosen.Ids.Resize(places.size());
+  chosen.Coordinates.Resize(3 * indices.size());
+  chosen.Ids.Resize(indices.size());
   vtkNew<vtkIdList> from;
-  from->SetNumberOfIds(static_cast<vtkIdType>(places.size()));
-  for (std::size_t i = 0; i < places.size(); ++i)
+  from->SetNumberOfIds(static_cast<vtkIdType>(indices.size()));
+  for (std::size_t i = 0; i < indices.size(); ++i)
   {
-    std::memcpy(chosen.Coordinates.data() + 3 * i, this->At(places[i]), 24);
-    chosen.Ids[i] = this->Ids[places[i]];
-    from->SetId(static_cast<vtkIdType>(i), places[i]);
+    std::memcpy(chosen.Coordinates.data() + 3 * i, this->At(indices[i]), 24);
+    chosen.Ids[i] = this->Ids[indices[i]];
+    from->SetId(static_cast<vtkIdType>(i), indices[i]);
   }
   for (std::size_t i = 0; i < this->Kinds.size(); ++i)
   {
-    chosen.Arrays[i] = MakeArray(this->Kinds[i], static_cast<vtkIdType>(places.size()));
+    chosen.Arrays[i] = MakeArray(this->Kinds[i], static_cast<vtkIdType>(indices.size()));
     this->Arrays[i]->GetTuples(from, chosen.Arrays[i]);
   }
   *this = std::move(chosen);

@@ -68,13 +68,13 @@ public:
   explicit PointTable(const std::vector<ArrayKind>& kinds);
 
   std::size_t Count() const { return this->Ids.size(); }
-  const double* At(std::size_t place) const
+  const double* At(std::size_t index) const
   {
-    return (this->Given ? this->Given : this->Coordinates.data()) + 3 * place;
+    return (this->Given ? this->Given : this->Coordinates.data()) + 3 * index;
   }
 
   /** Whether it has a place, and is not hidden. Only such a point goes to the part of its cell. */
-  bool IsFinite(std::size_t place) const;
+  bool IsFinite(std::size_t index) const;
   /** The flags of ghosts, or nullptr. */
   vtkUnsignedCharArray* Marks() const;
 
@@ -82,14 +82,14 @@ public:
   void Read(vtkPointSet* points, vtkIdType first);
 
   /** The chosen points as bytes: 32 a point, and the values of the arrays. */
-  Bytes Pack(const std::vector<vtkIdType>& places) const;
+  Bytes Pack(const std::vector<vtkIdType>& indices) const;
 
   /** Appends what Pack() has packed. */
   void Unpack(const std::vector<Bytes>& packed);
   void Unpack(const Bytes* packed, std::size_t count);
 
   /** Keeps the chosen points, in the order given. */
-  void Choose(const std::vector<vtkIdType>& places);
+  void Choose(const std::vector<vtkIdType>& indices);
 
   Buffer<double> Coordinates; ///< x, y, z of each point; none after Read()
   Buffer<vtkIdType> Ids;

@@ -67,7 +67,7 @@ std::vector<Value> Unpacked(const std::vector<Bytes>& packed)
 
 Index SharedPoints::Find(const PointKey& key) const
 {
-  // From place 0 on, so the first entry of the key.
+  // From index 0 on, so the first entry of the key.
   const auto found =
     std::lower_bound(this->Sorted.begin(), this->Sorted.end(), std::make_pair(key, Index(0)));
   return found != this->Sorted.end() && found->first == key ? found->second : None;
@@ -76,9 +76,9 @@ Index SharedPoints::Find(const PointKey& key) const
 void SharedPoints::Sort(const std::vector<char>& areUsed)
 {
   this->Sorted.clear();
-  for (std::size_t i = 0; i < this->Places.size(); ++i)
+  for (std::size_t i = 0; i < this->Indices.size(); ++i)
   {
-    this->Sorted.emplace_back(this->Keys[i], this->Places[i]);
+    this->Sorted.emplace_back(this->Keys[i], this->Indices[i]);
   }
   // Points with a triangle come first.
   std::sort(this->Sorted.begin(), this->Sorted.end(), [&](const auto& a, const auto& b) {
@@ -91,7 +91,7 @@ void SharedPoints::Sort(const std::vector<char>& areUsed)
   };
   if (std::adjacent_find(this->Sorted.begin(), this->Sorted.end(), isTwice) != this->Sorted.end())
   {
-    throw Error("Two points of a part have the same global id or place.");
+    throw Error("Two points of a part have the same global id or index.");
   }
   const auto isSame = [](const auto& a, const auto& b) { return a.first == b.first; };
   // Of points with one key, one with a triangle is found, if there is one.
@@ -103,9 +103,9 @@ void SharedPoints::TakeMarks(vtkPolyData* data)
 {
   vtkUnsignedCharArray* const marks = GhostsOf(data->GetPointData());
   this->AreCopies.clear();
-  for (const Index place : this->Places)
+  for (const Index index : this->Indices)
   {
-    this->AreCopies.push_back(IsCopy(marks, place));
+    this->AreCopies.push_back(IsCopy(marks, index));
   }
 }
 
@@ -113,7 +113,7 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
 {
   std::vector<Bytes> packed(ranks.Count());
   ranks.Agree([&]() {
-    for (std::size_t i = 0; i < points.Places.size(); ++i)
+    for (std::size_t i = 0; i < points.Indices.size(); ++i)
     {
       // All points that may be shared go, also those that no rank has marked.
       const MetPoint met{ points.Keys[i], points.AreCopies[i], ranks.OwnRank(),
@@ -155,10 +155,10 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
   packed = ranks.Exchange(std::move(packed));
   ranks.Agree([&]() {
     // Only copies are answered, so what has no answer counts.
-    points.AreCopies.assign(points.Places.size(), 0);
-    for (const vtkIdType place : Unpacked<vtkIdType>(packed))
+    points.AreCopies.assign(points.Indices.size(), 0);
+    for (const vtkIdType index : Unpacked<vtkIdType>(packed))
     {
-      points.AreCopies[place] = 1;
+      points.AreCopies[index] = 1;
     }
   });
 }
@@ -167,8 +167,8 @@ void AppendBorder(const Mesh& mesh, const SharedPoints& points, const std::vecto
   int part, PartEdges& edges)
 {
   const auto numberOf = [&](Index point) {
-    const auto at = std::lower_bound(points.Places.begin(), points.Places.end(), point);
-    return static_cast<std::size_t>(at - points.Places.begin());
+    const auto at = std::lower_bound(points.Indices.begin(), points.Indices.end(), point);
+    return static_cast<std::size_t>(at - points.Indices.begin());
   };
   const auto regionAt = [&](Index h) {
     return regionOf.empty() ? None : regionOf[Mesh::Triangle(h)];

@@ -40,12 +40,12 @@ namespace elevation
 struct SharedPoints
 {
   /** Increasing: on the border of its triangles, of long ones, or without any triangle. */
-  std::vector<Index> Places;
+  std::vector<Index> Indices;
   std::vector<PointKey> Keys;   ///< of them
   std::vector<char> AreCopies;  ///< one each: another part's counts; before FindCopies() as marked
   std::vector<char> OnBoundary; ///< one each: marked as of BoundaryMarksOf()
 
-  /** The place of the point with a key, or None. */
+  /** The index of the point with a key, or None. */
   Index Find(const PointKey& key) const;
   /**
    * Takes for copies what is marked so, as DUPLICATEPOINT. For parts in files this is all: what

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 /*
- * Numbers and places of a part's points; the measure of edges of all parts; and the part as the
+ * Numbers and indices of a part's points; the measure of edges of all parts; and the part as the
  * data set that leaves the module.
  */
 #include "SurfacePart.h"
@@ -41,22 +41,22 @@ int OwnerOf(GlobalId number, const std::vector<vtkIdType>& bases)
 }
 
 // Most corners are own ones, and need no search.
-std::size_t SurfacePart::PlaceOf(GlobalId number, GlobalId first) const
+std::size_t SurfacePart::IndexOf(GlobalId number, GlobalId first) const
 {
   const std::size_t ownCount = this->OwnPoints.Count();
-  const GlobalId place = number - first;
-  if (place >= 0 && place < static_cast<GlobalId>(ownCount))
+  const GlobalId index = number - first;
+  if (index >= 0 && index < static_cast<GlobalId>(ownCount))
   {
-    return static_cast<std::size_t>(place);
+    return static_cast<std::size_t>(index);
   }
   const std::vector<GlobalId>& others = this->OtherNumbers;
   return ownCount + (std::lower_bound(others.begin(), others.end(), number) - others.begin());
 }
 
-Point2 SurfacePart::PointAt(std::size_t place) const
+Point2 SurfacePart::PointAt(std::size_t index) const
 {
   const std::size_t own = this->OwnPoints.Count();
-  const double* const p = place < own ? this->OwnPoints.At(place) : this->Others.At(place - own);
+  const double* const p = index < own ? this->OwnPoints.At(index) : this->Others.At(index - own);
   return { p[0], p[1] };
 }
 
@@ -74,10 +74,10 @@ void SortOwn(SurfacePart& part)
   {
     return;
   }
-  std::vector<vtkIdType> places(own.Count());
-  std::iota(places.begin(), places.end(), vtkIdType(0));
+  std::vector<vtkIdType> indices(own.Count());
+  std::iota(indices.begin(), indices.end(), vtkIdType(0));
   // Stable: of points with one id, the one that came first stays.
-  std::stable_sort(places.begin(), places.end(),
+  std::stable_sort(indices.begin(), indices.end(),
     [&own](vtkIdType a, vtkIdType b) { return own.Ids[a] < own.Ids[b]; });
   const auto isSame = [&part, &own](vtkIdType a, vtkIdType b) {
     const double *const p = own.At(a), *const q = own.At(b);
@@ -91,8 +91,8 @@ void SortOwn(SurfacePart& part)
     }
     return own.Ids[a] == own.Ids[b];
   };
-  places.erase(std::unique(places.begin(), places.end(), isSame), places.end());
-  own.Choose(places);
+  indices.erase(std::unique(indices.begin(), indices.end(), isSame), indices.end());
+  own.Choose(indices);
 }
 
 // A corner is listed once, in however many triangles it is.
@@ -123,7 +123,7 @@ void AppendTriangles(const std::vector<GlobalTriangle>& triangles, GlobalId firs
     ReportStep(progress, t, triangles.size(), 1 << 16);
     for (const GlobalId id : triangles[t])
     {
-      *corner++ = static_cast<Index>(part.PlaceOf(id, first));
+      *corner++ = static_cast<Index>(part.IndexOf(id, first));
     }
   }
 }
@@ -133,7 +133,7 @@ namespace
 /** A value of a point for the part that owns it. */
 struct ValueForOwner
 {
-  vtkIdType Place;
+  vtkIdType Position;
   double Value;
 };
 
@@ -157,7 +157,7 @@ void MergeAtOwners(Engine& engine, int box, const SurfacePart& part, std::vector
   engine.ForEach(Progress(), [&](int own, const Progress&) {
     for (const ValueForOwner& value : ValuesIn<ValueForOwner>(engine.At(own, box)))
     {
-      values[value.Place] = std::min(values[value.Place], value.Value);
+      values[value.Position] = std::min(values[value.Position], value.Value);
     }
     engine.At(own, box).Clear();
   });
@@ -173,7 +173,7 @@ double FindQuantile(const Ranks& ranks, const std::vector<double>& values, doubl
 {
   std::vector<vtkIdType> count = { static_cast<vtkIdType>(values.size()) };
   ranks.Sum(count);
-  const vtkIdType place = QuantilePlace(share, count[0]);
+  const vtkIdType index = QuantilePlace(share, count[0]);
   // As bits, doubles that are not negative have the same order.
   const double largest = std::numeric_limits<double>::max();
   std::uint64_t low = 0, high = 0;
@@ -183,12 +183,12 @@ double FindQuantile(const Ranks& ranks, const std::vector<double>& values, doubl
   {
     const std::uint64_t bits = low + (high - low) / 2;
     std::memcpy(&middle, &bits, sizeof(bits));
-    // How many values of all ranks are at most the middle. Above the place, the quantile is at most
+    // How many values of all ranks are at most the middle. Above the index, the quantile is at most
     // it.
     const auto greater = std::upper_bound(values.begin(), values.end(), middle);
     count[0] = static_cast<vtkIdType>(greater - values.begin());
     ranks.Sum(count);
-    (count[0] > place ? high : low) = count[0] > place ? bits : bits + 1;
+    (count[0] > index ? high : low) = count[0] > index ? bits : bits + 1;
   }
   std::memcpy(&middle, &low, sizeof(low));
   return middle;
@@ -204,7 +204,7 @@ void MeasureAll(
   ranks.Agree([&]() {
     lengths = MeasureEdges(
       part.Result.Triangles, part.OwnPoints.Count() + part.Others.Count(),
-      [&part](Index place) { return part.PointAt(place); }, ranks.Watched(progress));
+      [&part](Index index) { return part.PointAt(index); }, ranks.Watched(progress));
   });
   MergeAtOwners(engine, box, part, lengths.Limits);
   ranks.Agree([&]() {
@@ -223,16 +223,16 @@ void MeasureAll(
 
 /*
  * A limit of edges, and what lines have changed, may leave points of others without a triangle.
- * Three passes over the corners of others: which are used; their order; the new places.
+ * Three passes over the corners of others: which are used; their order; the new indices.
  */
 void KeepCorners(SurfacePart& part)
 {
   PointTable& others = part.Others;
   const Index ownCount = static_cast<Index>(part.OwnPoints.Count());
   Buffer<Index>& corners = part.Result.Triangles;
-  std::vector<Index> placeOf(others.Count(), None);
+  std::vector<Index> indexOf(others.Count(), None);
   std::vector<vtkIdType> order;
-  std::vector<std::size_t> ofOthers; // places among the corners
+  std::vector<std::size_t> ofOthers; // indices among the corners
   for (std::size_t i = 0; i < corners.size(); ++i)
   {
     if (corners[i] < ownCount)
@@ -240,24 +240,24 @@ void KeepCorners(SurfacePart& part)
       continue;
     }
     ofOthers.push_back(i);
-    Index& place = placeOf[corners[i] - ownCount];
-    if (place == None)
+    Index& index = indexOf[corners[i] - ownCount];
+    if (index == None)
     {
-      place = 0; // set below
+      index = 0; // set below
       order.push_back(corners[i] - ownCount);
     }
   }
-  // Of equal ids, which points that are not finite may have, the place decides.
+  // Of equal ids, which points that are not finite may have, the index decides.
   std::sort(order.begin(), order.end(), [&others](vtkIdType a, vtkIdType b) {
     return std::make_pair(others.Ids[a], a) < std::make_pair(others.Ids[b], b);
   });
   for (std::size_t i = 0; i < order.size(); ++i)
   {
-    placeOf[order[i]] = ownCount + static_cast<Index>(i);
+    indexOf[order[i]] = ownCount + static_cast<Index>(i);
   }
   for (const std::size_t i : ofOthers)
   {
-    corners[i] = placeOf[corners[i] - ownCount];
+    corners[i] = indexOf[corners[i] - ownCount];
   }
   others.Choose(order);
   part.OtherNumbers.clear();
@@ -281,7 +281,7 @@ void TakeOver(Buffer<Value>& own, const Buffer<Value>& others, Array* array)
 }
 } // namespace
 
-// Points of others follow the own ones, so places are the output's ids as they are.
+// Points of others follow the own ones, so indices are the output's ids as they are.
 void PassPart(SurfacePart& part, int threads, vtkPolyData* output)
 {
   const vtkIdType ownCount = static_cast<vtkIdType>(part.OwnPoints.Count());

@@ -32,11 +32,11 @@ int OwnerOf(GlobalId number, const std::vector<vtkIdType>& bases);
  *   duplicates;
  * - its number, below the count of all points: part p has the numbers from Bases[p] on. Parts
  *   exchange numbers, as they say who owns a point and where it is there;
- * - its place, in a list of this part: OwnPoints, followed by Others. Triangles of the part use it;
+ * - its index, in a list of this part: OwnPoints, followed by Others. Triangles of the part use it;
  * - its key (PointKeys.h), in passes after triangulation.
  *
  *     number  first ... first + own - 1  |  OtherNumbers[0] ... , in any other part's range
- *     place   0 ... own - 1              |  own, own + 1, ...
+ *     index   0 ... own - 1              |  own, own + 1, ...
  */
 struct SurfacePart
 {
@@ -55,22 +55,22 @@ struct SurfacePart
   std::vector<vtkIdType> Bases;
   std::vector<GlobalId> OtherNumbers; ///< of Others, increasing
 
-  /** Corners are places in OwnPoints, followed by Others. Unused points are places in OwnPoints. */
+  /** Corners are indices in OwnPoints, followed by Others. Unused points are indices in OwnPoints. */
   Triangulation Result;
 
   int OwnerOf(GlobalId number) const { return elevation::OwnerOf(number, this->Bases); }
   /**
-   * The place of a corner among OwnPoints, whose numbers begin with @a first, followed by Others.
+   * The index of a corner among OwnPoints, whose numbers begin with @a first, followed by Others.
    * The number has to be one of them: it is not checked. log(others) steps.
    */
-  std::size_t PlaceOf(GlobalId number, GlobalId first) const;
+  std::size_t IndexOf(GlobalId number, GlobalId first) const;
   /** The reverse. */
-  GlobalId NumberAt(Index place, GlobalId first) const
+  GlobalId NumberAt(Index index, GlobalId first) const
   {
     const Index ownCount = static_cast<Index>(this->OwnPoints.Count());
-    return place < ownCount ? first + place : this->OtherNumbers[place - ownCount];
+    return index < ownCount ? first + index : this->OtherNumbers[index - ownCount];
   }
-  Point2 PointAt(std::size_t place) const;
+  Point2 PointAt(std::size_t index) const;
 };
 
 /**
@@ -85,7 +85,7 @@ std::vector<GlobalId> ListOthers(
   const std::vector<GlobalTriangle>& triangles, GlobalId first, GlobalId end);
 
 /**
- * Appends triangles to the result, with the places of their corners; OtherNumbers has to have those
+ * Appends triangles to the result, with the indices of their corners; OtherNumbers has to have those
  * that are not own ones. @param[in] first  number of the first own point
  */
 void AppendTriangles(const std::vector<GlobalTriangle>& triangles, GlobalId first,

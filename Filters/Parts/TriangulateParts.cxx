@@ -26,7 +26,7 @@ namespace
 Buffer<Index> WithinLimit(double length, const SurfacePart& part, const Progress& progress)
 {
   const EdgeLimit limit(length);
-  const auto pointOf = [&part](Index place) { return part.PointAt(place); };
+  const auto pointOf = [&part](Index index) { return part.PointAt(index); };
   const Buffer<Index>& corners = part.Result.Triangles;
   Buffer<Index> kept;
   for (std::size_t i = 0; i < corners.size(); i += 3)
@@ -140,26 +140,26 @@ void TriangulateParts::SendTriangles(std::vector<GlobalTriangle>&& ofSeams)
 
 /**
  * Corners that are points of other parts come with their values: each part asks those that own them
- * by places, and gets rows in the order of numbers, as parts answer in their order.
+ * by indices, and gets rows in the order of numbers, as parts answer in their order.
  */
 void TriangulateParts::FetchOthers(const Progress& progress)
 {
   // Each part asks.
   this->Crew->ForEach(Progress(), [this](int part, const Progress&) {
     this->Store->ForgetOthers(part);
-    ValuesForParts<vtkIdType> places;
+    ValuesForParts<vtkIdType> indices;
     for (const GlobalId number : this->Store->ListOthersOf(part))
     {
       const int owner = this->Store->Part.OwnerOf(number);
-      std::vector<vtkIdType>& ofOwner = places[owner];
-      // The first value of a message is not a place, but the part that asks.
+      std::vector<vtkIdType>& ofOwner = indices[owner];
+      // The first value of a message is not an index, but the part that asks.
       if (ofOwner.empty())
       {
         ofOwner.push_back(part);
       }
       ofOwner.push_back(number - this->Store->Part.Bases[owner]);
     }
-    SendTo(*this->Crew, Requests, places);
+    SendTo(*this->Crew, Requests, indices);
   });
   this->Crew->Deliver();
   // Each is answered by rows. What has been asked stays known, for the limit of edges.
@@ -174,18 +174,18 @@ void TriangulateParts::FetchOthers(const Progress& progress)
     requests.ForEach([&](const Bytes& bytes) {
       const char* from = bytes.data();
       vtkIdType asking = 0;
-      std::vector<vtkIdType> places;
+      std::vector<vtkIdType> indices;
       TakeFrom(from, &asking, 1);
-      TakeFrom(from, bytes.size() / sizeof(vtkIdType) - 1, places);
+      TakeFrom(from, bytes.size() / sizeof(vtkIdType) - 1, indices);
       this->Crew->Send(
-        static_cast<int>(asking), Corners, this->Store->PackForOthers(rows, std::move(places)));
+        static_cast<int>(asking), Corners, this->Store->PackForOthers(rows, std::move(indices)));
     });
   });
   this->Crew->Deliver();
 }
 
-/** The places among its own points of those that other parts have asked a part for. */
-std::vector<vtkIdType> TriangulateParts::RequestedPlaces(int part) const
+/** The indices among its own points of those that other parts have asked a part for. */
+std::vector<vtkIdType> TriangulateParts::RequestedIndices(int part) const
 {
   std::vector<vtkIdType> all;
   this->Crew->At(part, Requests).ForEach([&](const Bytes& bytes) {
@@ -202,7 +202,7 @@ std::vector<vtkIdType> TriangulateParts::RequestedPlaces(int part) const
  */
 void TriangulateParts::LimitEdges(const Progress& progress)
 {
-  std::map<int, std::vector<vtkIdType>> open; // places without a triangle yet, of each part
+  std::map<int, std::vector<vtkIdType>> open; // indices without a triangle yet, of each part
   std::vector<vtkIdType> sums(2, 0);          // triangles, and vertices without one
   this->Crew->ForEach(progress, [&](int part, const Progress& ofPart) {
     Stages stages(ofPart, { 50, 50 });
@@ -230,12 +230,12 @@ void TriangulateParts::LimitEdges(const Progress& progress)
         }
       }
       SendTo(*this->Crew, Covered, covered);
-      for (const vtkIdType place : this->RequestedPlaces(part))
+      for (const vtkIdType index : this->RequestedIndices(part))
       {
         // An own point that may still have one elsewhere
-        if (std::exchange(areMissing[place], 0))
+        if (std::exchange(areMissing[index], 0))
         {
-          open[part].push_back(place);
+          open[part].push_back(index);
         }
       }
       sums[0] += static_cast<vtkIdType>(kept.size() / 3);
@@ -249,7 +249,7 @@ void TriangulateParts::LimitEdges(const Progress& progress)
     std::sort(covered.begin(), covered.end());
     // Asked for, but nowhere a corner of a triangle within the limit.
     sums[1] += std::count_if(open[part].begin(), open[part].end(),
-      [&](vtkIdType place) { return !std::binary_search(covered.begin(), covered.end(), place); });
+      [&](vtkIdType index) { return !std::binary_search(covered.begin(), covered.end(), index); });
   });
   this->AllRanks.Sum(sums);
   LimitEffect& effect = this->Total.Effect;

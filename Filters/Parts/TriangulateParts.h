@@ -127,7 +127,7 @@ private:
   void SendTriangles(std::vector<GlobalTriangle>&& ofSeams);
   /** Pass 5. It may be done again, and then asks for all points anew. */
   void FetchOthers(const Progress& progress);
-  std::vector<vtkIdType> RequestedPlaces(int part) const;
+  std::vector<vtkIdType> RequestedIndices(int part) const;
   /**
    * The end of pass 6: counts what MaximumEdgeLength leaves. Nothing is written; Take() applies it.
    */

@@ -123,7 +123,7 @@ IdSet TrimmedPart::ListNearPoints()
     used.Add(edge.Destination);
   }
   // The zone looks for the largest id, which those of inserted points follow, among what it gets.
-  const vtkIdType largest = PlaceOfLargest(this->Input->GetPointData()->GetGlobalIds());
+  const vtkIdType largest = IndexOfLargest(this->Input->GetPointData()->GetGlobalIds());
   if (largest >= 0)
   {
     used.Add(static_cast<Index>(largest));
@@ -191,7 +191,7 @@ void TrimmedPart::FindOwn(const Progress& progress)
   }
   this->Points.New = this->Back.NewPoints;
   this->Points.AreNumbered = this->Back.AreNumbered;
-  this->Places.assign(count, None);
+  this->Indices.assign(count, None);
   // All parts have ids or none has: their arrays are the same.
   const bool byIds = this->Input->GetPointData()->GetGlobalIds() != nullptr;
   // Points that this part did not send, and that are no new ones. It may have them all the same,
@@ -215,7 +215,7 @@ void TrimmedPart::FindOwn(const Progress& progress)
     const auto found = ofOthers.find(key);
     if (found != ofOthers.end())
     {
-      this->Places[found->second] = static_cast<Index>(i);
+      this->Indices[found->second] = static_cast<Index>(i);
       ofOthers.erase(found);
     }
     if (far.erase(key) > 0)
@@ -226,13 +226,13 @@ void TrimmedPart::FindOwn(const Progress& progress)
   for (std::size_t i = 0; i < count; ++i)
   {
     // What it does not have, inserted or another part's, comes after its own points.
-    if (this->Places[i] == None)
+    if (this->Indices[i] == None)
     {
-      this->Places[i] = static_cast<Index>(own) + static_cast<Index>(this->Points.Added.size());
+      this->Indices[i] = static_cast<Index>(own) + static_cast<Index>(this->Points.Added.size());
       this->Points.Added.push_back(static_cast<vtkIdType>(i));
       if (!this->Back.IsOwned[i])
       {
-        this->Points.OfOthers.push_back(this->Places[i]);
+        this->Points.OfOthers.push_back(this->Indices[i]);
       }
     }
   }
@@ -272,7 +272,7 @@ TrimmedSide TrimmedPart::SideOf(int side, const Progress& progress) const
     const Index* const corners = this->Back.Corners[side].data() + 3 * i;
     add(
       [&](int k) {
-        return corners[k] < sent ? this->NearPoints[corners[k]] : this->Places[corners[k] - sent];
+        return corners[k] < sent ? this->NearPoints[corners[k]] : this->Indices[corners[k] - sent];
       },
       triangle);
   }
@@ -293,7 +293,7 @@ void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* b
     const Index sent = static_cast<Index>(this->NearPoints.size());
     for (const Index point : this->Back.OnBoundary)
     {
-      onBoundary.push_back(point < sent ? this->NearPoints[point] : this->Places[point - sent]);
+      onBoundary.push_back(point < sent ? this->NearPoints[point] : this->Indices[point - sent]);
     }
     PassBoundary(*boundary, onBoundary, options, kept);
   }

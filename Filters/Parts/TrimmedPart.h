@@ -6,9 +6,9 @@
  * those of all parts: see TrimParts.h. Private to the module.
  *
  *     Swept.IsOutward, one a triangle:   0 kept, 1 outward, 2 near (until it comes back)
- *     Back.Parents[side][i]:             place in Swept.Near
+ *     Back.Parents[side][i]:             index in Swept.Near
  *     Back.Corners[side]:                below the number of NearPoints: one of these; else
- *                                        Places[corner - that number], a point of the output
+ *                                        Indices[corner - that number], a point of the output
  */
 #ifndef TrimmedPart_h
 #define TrimmedPart_h
@@ -73,7 +73,7 @@ public:
 
 private:
   void LeaveOutCopies();
-  /** Of Take(): the places of the points that have come. */
+  /** Of Take(): the indices of the points that have come. */
   void FindOwn(const Progress& progress);
   /** All triangles of a side: 0 kept, 1 outward. */
   TrimmedSide SideOf(int side, const Progress& progress) const;
@@ -84,9 +84,9 @@ private:
   TriangleList List;
   SweptAlongRings Swept;
   OutlinePart Outline;     // without a boundary; its triangles and border are those of Swept
-  std::vector<Index> NearPoints; // of the near part, by their places in the input
+  std::vector<Index> NearPoints; // of the near part, by their indices in the input
   TrimmedZone Back;
-  std::vector<Index> Places;        // of the new points, among those of the output
+  std::vector<Index> Indices;       // of the new points, among those of the output
   std::vector<Index> FarOnBoundary; // own points
   TrimmedPoints Points;
 };

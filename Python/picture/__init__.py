@@ -31,9 +31,9 @@ from vtkmodules.vtkRenderingCore import (
 
 from ..clouds import cells_of, corner_flags
 from .display import screen, why_no_server
-from ..look import BEARING, ERROR, FILLED, HEIGHT, LAND, OPEN, SEA
+from ..exaggeration import choose_exaggeration, nice_number
+from ..first_view import BEARING, ERROR, FILLED, HEIGHT, LAND, OPEN, SEA
 from ..messages import PictureError
-from ..relief import choose_exaggeration, nice_number
 from .signs import (
     BOTTOM,
     INK,

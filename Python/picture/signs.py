@@ -15,7 +15,7 @@ from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import vtkActor2D, vtkCoordinate, vtkPolyDataMapper2D, vtkTextActor
 
 from ..clouds import cells_of
-from ..relief import nice_number
+from ..exaggeration import nice_number
 
 INK = (0.13, 0.14, 0.16)
 VTK_FONT_FILE = 4  # as in vtkTextProperty.h; not wrapped

@@ -11,7 +11,7 @@ from paraview import servermanager, simple
 from plugin_testing import check, check_close, check_equal, fetch, finish, information, start
 
 data_folder, temporary_folder = start()
-from vtkelevationsurface import look  # noqa: E402  (the plugin brings it)
+from vtkelevationsurface import first_view  # noqa: E402  (the plugin brings it)
 
 
 def written(name, rows):
@@ -34,7 +34,7 @@ def direction_of(view):
 
 
 def stops_of(shown):
-    """The colours of a representation as in look.py."""
+    """The colours of a representation as in first_view.py."""
     values = numpy.reshape(list(shown.LookupTable.RGBPoints), (-1, 4))[:, 1:]
     return ["#%02x%02x%02x" % tuple(int(round(255 * one)) for one in rgb) for rgb in values]
 
@@ -47,9 +47,9 @@ def forget():
     return simple.CreateRenderView()
 
 
-OBLIQUE = [numpy.sin(numpy.radians(look.BEARING)) * numpy.cos(numpy.radians(look.HEIGHT)),
-           numpy.cos(numpy.radians(look.BEARING)) * numpy.cos(numpy.radians(look.HEIGHT)),
-           numpy.sin(numpy.radians(look.HEIGHT))]
+OBLIQUE = [numpy.sin(numpy.radians(first_view.BEARING)) * numpy.cos(numpy.radians(first_view.HEIGHT)),
+           numpy.cos(numpy.radians(first_view.BEARING)) * numpy.cos(numpy.radians(first_view.HEIGHT)),
+           numpy.sin(numpy.radians(first_view.HEIGHT))]
 
 # ---- points, then their surface ----------------------------------------------------------------
 view = forget()
@@ -60,7 +60,7 @@ check(8 <= factor <= 25, "relief of 4 in 400 is exaggerated by %g" % factor)
 check_equal(list(shown.Scale), [1, 1, factor], "scale of points")
 check(numpy.allclose(direction_of(view), OBLIQUE), "a new view looks obliquely")
 check(100 * factor < view.CameraFocalPoint[2] < 104 * factor, "it looks at what is exaggerated")
-check_equal(stops_of(shown), list(look.LAND), "colours of points above the sea")
+check_equal(stops_of(shown), list(first_view.LAND), "colours of points above the sea")
 surface = simple.ReconstructElevationSurface(Input=reader)
 shown = simple.Show(surface, view)
 check_equal(information(surface, "VerticalExaggeration"), factor, "the surface of all points")
@@ -96,7 +96,7 @@ check_equal(list(shown.LookupTable.RGBPoints)[1:4], chosen, "colours that were c
 view = forget()
 reader = simple.ElevationPoints(FileName=written("sea.xyz", hills(2000.0, -2100.0)))
 shown = simple.Show(reader, view)
-check_equal(stops_of(shown), list(look.SEA), "colours of points below the sea")
+check_equal(stops_of(shown), list(first_view.SEA), "colours of points below the sea")
 check(information(reader, "VerticalExaggeration") < 1, "relief higher than the map is wide is lowered")
 check_equal(simple.GetScalarBar(shown.LookupTable, view).RangeLabelFormat % -2100.0, "-2100",
             "numbers of a large range")
@@ -140,13 +140,13 @@ shown = simple.Show(simple.OutputPort(surface, 1), view)
 table = fetch(surface, 1).GetCellData()
 names = [table.GetAbstractArray("StatusName").GetValue(i) for i in range(2)]
 check_equal(sorted(names), ["replaced", "too large"], "the status of two holes")
-check(set(names) <= set(look.STATUS), "each has its colour")
+check(set(names) <= set(first_view.STATUS), "each has its colour")
 check_equal((list(shown.ColorArrayName), shown.LineWidth), (["CELLS", "StatusName"], 4),
             "outlines are thick and coloured by status")
-check_equal(list(shown.LookupTable.Annotations), [word for one in look.STATUS for word in (one, one)],
+check_equal(list(shown.LookupTable.Annotations), [word for one in first_view.STATUS for word in (one, one)],
             "words of the colours")
 colours = numpy.reshape(list(shown.LookupTable.IndexedColors), (-1, 3))
 check_equal(["#%02x%02x%02x" % tuple(int(round(255 * one)) for one in rgb) for rgb in colours],
-            list(look.STATUS.values()), "colours of the words")
+            list(first_view.STATUS.values()), "colours of the words")
 
 finish()

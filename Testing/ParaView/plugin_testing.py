@@ -159,7 +159,7 @@ def ring_area(coordinates):
 
 
 def check_elevation_colours(pixels, claim):
-    """Checks that high and low places are seen in the colours of look.py, of pixels of screenshot()."""
+    """Checks that high and low places are seen in the colours of first_view.py, of pixels of screenshot()."""
     red, green, blue = numpy.moveaxis(pixels.astype(int), -1, 0)
     high, low = (red - blue > 40).mean(), (green - red > 25).mean()
     check(high > 0.01 and low > 0.05, "%s: high and low places are seen (%.3f, %.3f)" % (claim, high, low))
