@@ -426,6 +426,8 @@ def save(window, path):
     # In memory first: VTK's writer gives no reason where it cannot write.
     writer.WriteToMemoryOn()
     writer.SetInputData(grab.GetOutput())
+    # A tenth larger than with the default of 5, in half of the time.
+    writer.SetCompressionLevel(2)
     writer.Write()
     with open(path, "wb") as stream:
         stream.write(vtk_to_numpy(writer.GetResult()).tobytes())
