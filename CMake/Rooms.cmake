@@ -4,7 +4,7 @@
 # The rooms, in the order in which they may include each other, and the files of each:
 # <Room>/<Name>.{h,cxx} in Filters, or a header alone. A room's public face is <Room>/<Room>.h.
 # Filters/CMakeLists.txt compiles these lists, the kernel's once: a new file is one line here.
-set(es_kernel_rooms Base Messages Mesh Lattice Bins Grow Simplify Triangulate Constrain Cells Trim Fill)
+set(es_kernel_rooms Base Messages Mesh Lattice Bins Grow Simplify Triangulate Constrain Cells Trim Fill Query)
 set(es_kernel_Base
   Predicates)
 set(es_kernel_Messages
@@ -100,6 +100,10 @@ set(es_kernel_Fill
   BetweenLines
   FilledHole
   Fill)
+set(es_kernel_Query
+  NaturalNeighbors
+  PlaceWeights
+  Overlay)
 
 # Headers without a source file.
 set(es_kernel_headers_Base
@@ -124,6 +128,8 @@ set(es_kernel_headers_Cells
 set(es_kernel_headers_Trim)
 set(es_kernel_headers_Fill
   HeightTrials KnownPoints Quantiles Walk)
+set(es_kernel_headers_Query
+  Query)
 
 # The rooms around the kernel.
 set(es_outer_rooms Adapt Parts)
@@ -141,6 +147,7 @@ set(es_Adapt
   PointsPrecision
   ReportMessages
   Requests
+  SurfaceQuery
   TrimmedSurface
   UsedPoints)
 set(es_headers_Adapt

@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import reading
 from .clouds import Cloud, ReadOptions, bare_lines, crs_of, merged, notes_on, set_crs
-from .gdal_common import name_of, reference_of
+from .gdal_common import check_system, name_of, reference_of
 from .given_lines import fitted
 from .several_heights import check_heights
 from .messages import ElevationSurfaceError, PictureError, counted
@@ -54,6 +54,7 @@ class Run:
         self.is_first = ranks is None or ranks.GetLocalProcessId() == 0
         self.progress = Progress(self.is_first and sys.stderr.isatty() and not options.quiet)
         self.times = {}
+        self.places = self.other = None  # what --at and --volume ask for
         self.no_picture = None  # why the picture that was asked for is missing
         if ranks and hasattr(os, "sched_getaffinity"):
             # mpirun may give each of them a core.
@@ -125,6 +126,7 @@ class Run:
         self.check_spacing(least_reach(cloud.points))
         self.set_crs(cloud)
         crs = project(options.file, cloud) if options.project else cloud.crs
+        self.read_questions(cloud)
         lines = {}
         if options.boundary:
             lines["boundary"] = reading.read_boundary(options.boundary)
@@ -143,6 +145,20 @@ class Run:
             check_spacing(reach, self.options.properties.get("spacing", 0.0))
         except ValueError as error:
             raise WrongOption(f"{self.options.file}: {error}") from None
+
+    def read_questions(self, cloud):
+        """What is asked about the surface, which is refused before any work is done."""
+        options = self.options
+        if options.at:
+            from .query import read_places
+
+            self.places = read_places(options.at)
+            cloud.notes += check_system(options.at, self.places[1], options.file, cloud.crs)
+        if options.volume is not None:
+            from .query import other_of
+
+            self.other = other_of(options.volume)
+            cloud.notes += check_system(self.other.name, self.other.crs, options.file, cloud.crs)
 
     def read_faults(self, cloud):
         options = self.options
@@ -168,7 +184,13 @@ class Run:
     def write(self, result, path, output):
         """Writes one result. Returns notes."""
         words = "writing" if output.name == "output" else f"writing {output.step or output.name}"
-        step = getattr(self.options, output.step) if output.step else None
+        options = self.options
+        step = getattr(options, output.step) if output.step else None
+        if output.step in ("grid", "at"):
+            places = () if output.step == "grid" else (self.places,)
+            step = (*places, step, options.method or "linear")
+        elif output.step == "volume":
+            step = self.other
 
         def write(partial):
             return write_output(

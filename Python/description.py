@@ -30,6 +30,14 @@ def pixels(text):
     return path.strip() if word == "like" and path.strip() else text and KINDS["step"].convert(text)
 
 
+def file_or_number(text):
+    """A finite number if it is one, else the name of a file."""
+    try:
+        return float(text) if math.isfinite(float(text)) else text
+    except ValueError:
+        return text
+
+
 @dataclasses.dataclass(frozen=True)
 class Kind:
     """What a property takes.
@@ -107,6 +115,7 @@ KINDS = {
         "[STEP|like FILE]", words="a number above 0, or like FILE, or nothing where the points are from a grid",
         make=pixels,
     ),
+    "surface or level": Kind("FILE|LEVEL", words="the file of a surface, or a level", make=file_or_number),
     "elevation": Kind("VALUE", "string", "an elevation", float, unit="units of z"),
     "text": Kind("TEXT", words="text"),
     "name": Kind("NAME", words="a name"),

@@ -17,7 +17,7 @@ from .help import help_text
 from .messages import FileError, did_you_mean
 from .paths import check_suffix, check_writable
 from .pieces import MEMORY, SUFFIX as PIECES_SUFFIX, check_files, check_given, memory_size
-from .properties import COLOURS, PROPERTIES, check_together, option_of
+from .properties import COLOURS, METHODS, PROPERTIES, check_together, option_of
 from .results import WrongOption
 from .selecting import condition
 from .writing.grids import side_files
@@ -33,6 +33,7 @@ CONVERT = {
     "where": condition,
     "memory": memory_size,
     "colours": lambda text: COLOURS[DESCRIBED["colours"].convert(text)],
+    "method": lambda text: METHODS[DESCRIBED["method"].convert(text)],
 }
 ACTIONS = {"flag": "store_true", "switch": argparse.BooleanOptionalAction, "where": "append"}
 OPTIONS = {name: one for name, one in DESCRIBED.items() if "program" in one.places}
@@ -228,7 +229,9 @@ def check_options(options):
     wanted = [p for p in (options.picture, options.report) if p]
     for path, _ in files_of(options):
         wanted += [path, *side_files(path)]
-    inputs = [p for p in (*options.files, options.faults, options.boundary, like) if p]
+    other = options.volume if isinstance(options.volume, str) else None
+    given = (*options.files, options.faults, options.boundary, like, options.at, other)
+    inputs = [path for path in given if path]
     for i, path in enumerate(wanted):
         check_writable(path)
         if os.path.abspath(path) in map(os.path.abspath, wanted[:i]):

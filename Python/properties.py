@@ -17,9 +17,9 @@ PROPERTIES = {
     and (one.setter or one.step == "faults")
     and one.words["takes"] != "lines"
 }
-COLOURS, DUPLICATES, FAULTS_Z, INTERPOLATIONS, LATTICE_MODES = (
+COLOURS, DUPLICATES, FAULTS_Z, INTERPOLATIONS, LATTICE_MODES, METHODS = (
     DESCRIBED[name].choices
-    for name in ("colours", "duplicates", "faults_z", "interpolation", "lattice_mode")
+    for name in ("colours", "duplicates", "faults_z", "interpolation", "lattice_mode", "method")
 )
 
 

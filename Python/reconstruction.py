@@ -234,12 +234,15 @@ class Reconstruction:
             f"{self.surface.GetNumberOfPolys():,} triangles>"
         )
 
-    def to_grid(self, step: Optional[float] = None, *, like: Any = None) -> Any:
-        """The surface at the centres of pixels, interpolated in its triangles.
+    def to_grid(
+        self, step: Optional[float] = None, *, like: Any = None, method: str = "linear"
+    ) -> Any:
+        """The surface at the centres of pixels.
 
         step  the width of square pixels, whose edges are multiples of it. None, or that of the raster
               or regular grid that the points are from: on the pixels of that
         like  a Grid, what read() returns of a raster, or the file of one: on its pixels
+        method  "linear", in triangles, or "natural-neighbor", as of elevation_at()
 
         Returns a Grid with z, (rows, columns) and NaN outside; x, (columns,); y, (rows,), falling;
         and error, (rows, columns) or None. Grids of the same pixels can be subtracted, and write()
@@ -256,10 +259,58 @@ class Reconstruction:
             raise ValueError(f"step takes a number above 0, not {step}") from None
         if step is not None and like is not None:
             raise ValueError("step or like, not both")
-        grid, notes = grid_of(self, step, like)
+        grid, notes = grid_of(self, step, like, method=method)
         for note in notes:
             warnings.warn(note, ElevationSurfaceWarning, stacklevel=2)
         return grid
+
+    def elevation_at(
+        self, xy: Any, method: str = "linear", *, return_errors: bool = False
+    ) -> Union[numpy.ndarray, tuple[numpy.ndarray, Optional[numpy.ndarray]]]:
+        """The elevations of the surface at places, (n,), NaN outside of it.
+
+        xy      (n, 2) array of x and y; further columns are not used
+        method  "linear", in the triangle; or "natural-neighbor", by the weights of Sibson (1981), of the
+                points of the surface: smooth but at these points. It does not stop at faults
+        return_errors  returns (elevations, errors) instead: the standard errors of what was filled, 0 in
+                other triangles, NaN where it is not known; None where nothing was filled
+
+        Takes about a second for a million places. Raises ValueError for arrays of another shape, and
+        ElevationSurfaceError for a surface with plane=best.
+        """
+        from .query import Heights, check_over_xy, places_of
+
+        check_over_xy(self, "elevation")
+        elevations, errors = Heights(self.surface, method).at(places_of(xy))
+        return (elevations, errors) if return_errors else elevations
+
+    def volume_above(self, other: Any) -> Any:
+        """The volume between the surface and another one, or a level, over the area that both cover.
+
+        other  a Reconstruction, vtkPolyData with triangles, the file of a surface, or a level
+
+        Returns a Volume with above and below: what is to be cut and to be filled to come to the other
+        one; net, above - below; area; left_out and other_left_out, the areas that one alone
+        covers; and error, the standard error of net that follows from filled elevations. Exact but
+        for rounding. Raises ElevationSurfaceError where they do not overlap, and FileError for another
+        coordinate reference system.
+        """
+        from .query import volume_between
+
+        volume, _, notes = volume_between(self, other)
+        for note in notes:
+            warnings.warn(note, ElevationSurfaceWarning, stacklevel=2)
+        return volume
+
+    def difference(self, other: Any) -> vtkPolyData:
+        """A map of how far the surface is above another one, or a level: triangles whose z, and point
+        array Difference, is that. Arguments and errors are those of volume_above()."""
+        from .query import volume_between
+
+        _, difference, notes = volume_between(self, other, map_too=True)
+        for note in notes:
+            warnings.warn(note, ElevationSurfaceWarning, stacklevel=2)
+        return difference
 
     def plot(
         self,

@@ -215,6 +215,11 @@ def report_lines(report):
         distance_lines(report, line)
     if "written" in report and report["unused_listed"] < report["points_unused"]:
         line("", f"{option('report')} lists the first {MOST_LISTED:,} unused points for each reason")
+    if "elevations_at" in report:
+        at = report["elevations_at"]
+        line("elevations", f"at {counted(at['places'], 'place')} of {at['file']}, {at['outside']:,} outside")
+    if "volume" in report:
+        volume_lines(report["volume"], line)
     if "times" in report:
         times = report["times"].items()
         line("time", ", ".join(f"{name} {seconds:.2f} s" for name, seconds in times))
@@ -310,6 +315,16 @@ def distance_lines(report, line):
             f"from a sample: every corner, and {d['measured']:,} of the "
             f"{d['points_not_corners']:,} other points",
         )
+
+
+def volume_lines(volume, line):
+    """The lines on the volume between the surface and another one, or a level."""
+    error = "" if volume["error"] is None else f" +- {volume['error']:.3g} by filled elevations"
+    line("volume", f"{volume['net']:.7g} over {volume['over']}{error}: {volume['above']:.7g} above, {volume['below']:.7g} below")
+    left_out = f"area {volume['area']:.7g}; {volume['left_out']:.4g} of the surface left out"
+    if not volume["is_level"]:
+        left_out += f", {volume['other_left_out']:.4g} of the other"
+    line("", left_out)
 
 
 def main_counts(result):

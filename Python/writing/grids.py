@@ -129,7 +129,7 @@ def frame_for(result, step, like):
     return *step_frame(result.surface, step), []
 
 
-def grid_of(result, step=None, like=None, progress=None):
+def grid_of(result, step=None, like=None, progress=None, method="linear"):
     """(Grid of the surface of a Reconstruction, notes); arguments are those of to_grid().
 
     Raises ElevationSurfaceError where the grid would be too large, or no pixel has its centre in
@@ -142,7 +142,16 @@ def grid_of(result, step=None, like=None, progress=None):
             f"{words} would have {frame.columns:,} x {frame.rows:,} pixels; "
             f"at most {MOST_PIXELS:,} are made: use a larger step"
         )
-    z, error = interpolated(result.surface, frame, near, progress)
+    if method == "linear":
+        z, error = interpolated(result.surface, frame, near, progress)
+    else:
+        from ..query import Heights
+
+        x, y = frame.centres()
+        x, y = (x, y) if frame.is_turned() else numpy.meshgrid(x, y)
+        places = numpy.column_stack((x.ravel(), y.ravel()))
+        layers = Heights(result.surface, method).at(places, progress or no_progress)
+        z, error = (layer if layer is None else layer.reshape(x.shape) for layer in layers)
     if not numpy.isfinite(z).any() and like is not None:
         west, east, south, north = result.surface.GetBounds()[:4]
         x, y = (ends.ravel()[[0, -1]] for ends in frame.centres())

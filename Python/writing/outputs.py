@@ -6,6 +6,8 @@ import dataclasses
 import os
 import re
 
+import numpy
+
 from ..messages import ElevationSurfaceError, FileError
 from ..names import option
 from ..writing import WRITE_SUFFIXES, write_surface
@@ -21,8 +23,9 @@ def surface(result, path, _step, progress):
 def grid(result, path, pixels, progress):
     from .grids import grid_of, write_grid
 
+    pixels, method = pixels
     step, like = (None, pixels or None) if isinstance(pixels, str) else (pixels, None)
-    made, notes = grid_of(result, step, like, lambda fraction: progress(0.7 * fraction))
+    made, notes = grid_of(result, step, like, lambda fraction: progress(0.7 * fraction), method)
     return notes + write_grid(made, path, lambda fraction: progress(0.7 + 0.3 * fraction))
 
 
@@ -36,6 +39,34 @@ def outlines(result, path, _step, progress):
     from .lines import outlines as outline_lines, write_lines
 
     return write_lines(outline_lines(result), path, "outlines", result.crs, progress)
+
+
+def heights(result, path, given, progress):
+    """A table of the places in a file with the elevations there; nothing stands where there is none."""
+    from ..query import Heights, check_over_xy
+
+    check_over_xy(result, "elevation")
+    (places, _), name, method = given
+    elevations, errors = Heights(result.surface, method).at(places, progress)
+    columns = [places[:, 0], places[:, 1], elevations] + ([] if errors is None else [errors])
+    with open(path, "w", encoding="utf-8", newline="\n") as stream:
+        stream.write("x,y,z" + (",error" if errors is not None else "") + "\n")
+        for row in zip(*(column.tolist() for column in columns)):
+            stream.write(",".join("" if value != value else repr(value) for value in row) + "\n")
+    outside = int(numpy.isnan(elevations).sum())
+    result.report["elevations_at"] = {"file": name, "places": len(places), "outside": outside}
+    return []
+
+
+def difference(result, path, other, progress):
+    """A map of the difference to another surface or a level, whose volumes the report gets."""
+    from ..query import volume_between
+
+    volume, surface, _ = volume_between(result, other, map_too=True, progress=progress)
+    result.report["volume"] = {
+        "over": other.name, "net": volume.net, **dataclasses.asdict(volume), "is_level": other.surface is None
+    }
+    return write_surface(surface, path, result.crs)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -59,6 +90,8 @@ class Output:
 OUTPUTS = (
     Output("output", "", "_surface.vtp", WRITE_SUFFIXES, surface),
     Output("grid_output", "grid", "_grid.tif", GRID_SUFFIXES, grid),
+    Output("at_output", "at", "_at.csv", (".csv",), heights),
+    Output("volume_output", "volume", "_difference.vtp", WRITE_SUFFIXES, difference),
     Output("contours_output", "contours", "_contours.gpkg", LINE_SUFFIXES, contours),
     Output("outlines", "", "_outlines.gpkg", LINE_SUFFIXES, outlines),
 )

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PlaceWeights.h"
+
+#include "NaturalNeighbors.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <memory>
+#include <mutex>
+
+namespace elevation
+{
+
+namespace
+{
+
+// Places that a thread works on at a time: some milliseconds.
+constexpr std::size_t AtOnce = 4096;
+
+/** @param[in] natural  nullptr: linear weights */
+void FindWeights(const Mesh& mesh, const Point2& place, Index triangle, NaturalNeighbors* natural,
+  std::vector<VertexWeight>& weights)
+{
+  weights.clear();
+  if (triangle == None)
+  {
+    return;
+  }
+  const std::array<VertexWeight, 3> linear = LinearWeights(mesh, triangle, place);
+  const bool isVertex = std::any_of(linear.begin(), linear.end(),
+    [&](const VertexWeight& each) { return mesh.PointOf(each.Vertex) == place; });
+  if (!natural || isVertex || !natural->Find(place, triangle, weights))
+  {
+    weights.assign(linear.begin(), linear.end());
+  }
+}
+
+} // namespace
+
+PlaceFinder::PlaceFinder(const Mesh& mesh, const Progress& progress)
+  : Surface(mesh)
+  , Grid(
+      static_cast<std::size_t>(mesh.NumberOfTriangles()),
+      [&mesh](std::size_t t) {
+        const Index* const corners = mesh.Triangles.data() + 3 * t;
+        return std::array<Point2, 3>{ { mesh.PointOf(corners[0]), mesh.PointOf(corners[1]),
+          mesh.PointOf(corners[2]) } };
+      },
+      progress)
+{
+}
+
+Index PlaceFinder::TriangleAt(const Point2& place) const
+{
+  std::size_t cell;
+  if (!this->Grid.FindCell(place, cell))
+  {
+    return None;
+  }
+  const auto contains = [&](Index t) {
+    const Index* const corners = this->Surface.Triangles.data() + 3 * static_cast<std::size_t>(t);
+    const Point2& a = this->Surface.PointOf(corners[0]);
+    const Point2& b = this->Surface.PointOf(corners[1]);
+    const Point2& c = this->Surface.PointOf(corners[2]);
+    return Orientation(a, b, place) != Negative && Orientation(b, c, place) != Negative &&
+      Orientation(c, a, place) != Negative;
+  };
+  const Index* const end = this->Grid.End(cell);
+  const Index* const found = std::find_if(this->Grid.Begin(cell), end, contains);
+  CountWork(static_cast<std::size_t>(found - this->Grid.Begin(cell)) + 1);
+  return found == end ? None : *found;
+}
+
+PlaceWeights PlaceFinder::Find(
+  const std::vector<Point2>& places, bool areNatural, int threads, const Progress& progress) const
+{
+  Stages stages(progress, { 95, 5 });
+  const std::size_t count = places.size();
+  const Index tasks = static_cast<Index>((count + AtOnce - 1) / AtOnce);
+  std::vector<PlaceWeights> found(tasks);
+  // What a thread needs for natural neighbours has the size of the mesh, so tasks pass it on.
+  std::mutex changing;
+  std::vector<std::unique_ptr<NaturalNeighbors>> idle;
+  ForEachTask(tasks, threads, stages.Next(), [&](Index task) {
+    std::unique_ptr<NaturalNeighbors> natural;
+    if (areNatural)
+    {
+      const std::lock_guard<std::mutex> lock(changing);
+      if (!idle.empty())
+      {
+        natural = std::move(idle.back());
+        idle.pop_back();
+      }
+    }
+    if (areNatural && !natural)
+    {
+      natural = std::make_unique<NaturalNeighbors>(this->Surface);
+    }
+    std::vector<VertexWeight> weights;
+    const std::size_t begin = task * AtOnce, end = std::min(count, begin + AtOnce);
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      FindWeights(this->Surface, places[i], this->TriangleAt(places[i]), natural.get(), weights);
+      for (const VertexWeight& each : weights)
+      {
+        found[task].Vertices.push_back(each.Vertex);
+        found[task].Weights.push_back(each.Weight);
+      }
+      found[task].Offsets.push_back(found[task].Vertices.size());
+    }
+    const std::lock_guard<std::mutex> lock(changing);
+    idle.push_back(std::move(natural));
+  });
+  PlaceWeights all;
+  const Progress joining = stages.Next();
+  for (Index task = 0; task < tasks; ++task)
+  {
+    ReportStep(joining, static_cast<std::size_t>(task), static_cast<std::size_t>(tasks));
+    const PlaceWeights& own = found[task];
+    const std::size_t before = all.Vertices.size();
+    std::transform(own.Offsets.begin() + 1, own.Offsets.end(), std::back_inserter(all.Offsets),
+      [before](std::size_t offset) { return before + offset; });
+    all.Vertices.insert(all.Vertices.end(), own.Vertices.begin(), own.Vertices.end());
+    all.Weights.insert(all.Weights.end(), own.Weights.begin(), own.Weights.end());
+    found[task] = PlaceWeights();
+  }
+  return all;
+}
+
+} // namespace elevation

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSurfaceQuery.h"
+
+#include "Adapt/SurfaceQuery.h"
+
+#include "vtkCommand.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+
+#include <exception>
+#include <new>
+
+namespace
+{
+const char* const NoSurface = "There is no surface: call SetSurface() first.";
+}
+
+VTK_ABI_NAMESPACE_BEGIN
+vtkStandardNewMacro(vtkSurfaceQuery);
+
+vtkSurfaceQuery::vtkSurfaceQuery() = default;
+vtkSurfaceQuery::~vtkSurfaceQuery() = default;
+
+void vtkSurfaceQuery::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Surface: " << (this->Query ? "set" : "none") << "\n";
+}
+
+std::string vtkSurfaceQuery::Try(const std::function<void()>& work)
+{
+  try
+  {
+    work();
+  }
+  catch (const std::bad_alloc&)
+  {
+    return "There is not enough memory.";
+  }
+  catch (const std::exception& failure)
+  {
+    return failure.what();
+  }
+  return "";
+}
+
+std::string vtkSurfaceQuery::SetSurface(vtkPolyData* surface)
+{
+  this->Query.reset();
+  return this->Try([&] { this->Query = std::make_unique<elevation::SurfaceQuery>(surface); });
+}
+
+std::string vtkSurfaceQuery::FindWeights(vtkDataArray* places, bool areNatural,
+  vtkIdTypeArray* offsets, vtkIdTypeArray* points, vtkDoubleArray* weights)
+{
+  const auto report = [this](double fraction) {
+    this->InvokeEvent(vtkCommand::ProgressEvent, &fraction);
+    return true;
+  };
+  return !this->Query ? NoSurface : this->Try([&] {
+    this->Query->FindWeights(places, areNatural, report, offsets, points, weights);
+  });
+}
+
+std::string vtkSurfaceQuery::CompareWith(vtkSurfaceQuery* other, double level, vtkDataArray* values,
+  vtkDoubleArray* result, vtkPolyData* map)
+{
+  if (!this->Query || (other && !other->Query))
+  {
+    return NoSurface;
+  }
+  const auto report = [this](double fraction) {
+    this->InvokeEvent(vtkCommand::ProgressEvent, &fraction);
+    return true;
+  };
+  return this->Try([&] {
+    this->Query->CompareWith(
+      other ? other->Query.get() : nullptr, level, values, report, result, map);
+  });
+}
+VTK_ABI_NAMESPACE_END

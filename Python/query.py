@@ -1,0 +1,255 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a surface answers: its height at places, and the volume between it and another one."""
+
+import dataclasses
+import math
+import os
+from typing import Optional
+
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.vtkConstants import VTK_DOUBLE
+from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdTypeArray
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+from .clouds import coordinates_of, crs_of, make_points, slices
+from .gdal_common import check_system
+from .messages import ElevationSurfaceError, FileError
+from .progress import no_progress
+from .properties import METHODS
+from .reading import read, read_boundary
+from .reading.formats import recognise
+from .reading.unpacking import unpacked
+from .vtkElevationSurface import vtkGridDelaunay2D
+from .vtkElevationSurfacePieces import vtkSurfaceQuery
+
+MOST_AT_ONCE = 2_000_000  # places; bounds the memory taken
+
+
+def query_of(name, surface, progress=no_progress):
+    """The vtkSurfaceQuery of a surface. Raises ElevationSurfaceError, with its name."""
+    query = vtkSurfaceQuery()
+    raise_error(name, query.SetSurface(surface))
+
+    def show(_query, _event, fraction):
+        progress(fraction)
+
+    show.CallDataType = VTK_DOUBLE
+    query.AddObserver("ProgressEvent", show)
+    return query
+
+
+def raise_error(name, error):
+    """Raises what a vtkSurfaceQuery returns, if it is an error."""
+    if error:
+        raise ElevationSurfaceError(f"{name}: {error[0].lower()}{error[1:].rstrip('.')}")
+
+
+def check_over_xy(result, what):
+    """Refuses a Reconstruction that is not over x and y."""
+    if result.cloud.plane:
+        raise ElevationSurfaceError(f"a surface with plane=best has no {what} over x,y")
+
+
+class Heights:
+    """Interpolates the elevations of a surface, and the errors of filled ones, at places.
+
+    method  "linear", in triangles; "natural-neighbor", by Sibson's weights of the surface's points
+    """
+
+    def __init__(self, surface, method="linear"):
+        if method not in METHODS:
+            raise ValueError(f"method takes {' or '.join(METHODS)}, not {method!r}")
+        self.linear = query_of("the surface", surface)
+        self.natural = None
+        if method != "linear":
+            # Patches and trimming may leave triangles that are not Delaunay.
+            delaunay = vtkGridDelaunay2D()
+            delaunay.SetInputData(used_alone(surface))
+            delaunay.Update()
+            self.natural = query_of("the surface", delaunay.GetOutput())
+        self.elevations = coordinates_of(surface)[:, 2].astype("f8")
+        errors = surface.GetPointData().GetArray("FilledError")
+        self.errors = None if errors is None else vtk_to_numpy(errors)
+
+    def at(self, xy, progress=no_progress):
+        """(elevations, errors or None) at (n, 2) places, NaN outside."""
+        z = numpy.full(len(xy), numpy.nan)
+        errors = None if self.errors is None else z.copy()
+        for part in slices(len(xy), MOST_AT_ONCE):
+            places = numpy.ascontiguousarray(xy[part], dtype="f8")
+            z[part] = inside = weighted(self.linear, False, places, self.elevations)
+            if errors is not None:
+                errors[part] = weighted(self.linear, False, places, self.errors)
+            if self.natural:
+                smooth = weighted(self.natural, True, places, self.elevations)
+                z[part] = numpy.where(numpy.isnan(inside), numpy.nan, smooth)
+            progress(part.stop / len(xy))
+        return z, errors
+
+
+def weighted(query, are_natural, places, values):
+    """(n,) of values of points, interpolated at places; NaN where no triangle is."""
+    offsets, points, weights = vtkIdTypeArray(), vtkIdTypeArray(), vtkDoubleArray()
+    raise_error("places", query.FindWeights(numpy_to_vtk(places), are_natural, offsets, points, weights))
+    offsets, points, weights = (vtk_to_numpy(array) for array in (offsets, points, weights))
+    result = numpy.full(len(places), numpy.nan)
+    found = numpy.diff(offsets) > 0
+    if found.any():
+        result[found] = numpy.add.reduceat(weights * values[points], offsets[:-1][found])
+    return result
+
+
+def used_alone(surface):
+    """The points of a surface, where those that no triangle uses are not finite: they keep numbers."""
+    xyz = coordinates_of(surface).astype("f8")
+    used = numpy.zeros(len(xyz), bool)
+    used[vtk_to_numpy(surface.GetPolys().GetConnectivityArray())] = True
+    xyz[~used] = numpy.nan
+    return make_points(xyz)
+
+
+def places_of(xy):
+    """(n, 2) doubles of what a user gives. Raises ValueError that says what is needed."""
+    array = numpy.asarray(xy, dtype="f8")
+    array = array[None] if array.shape == (2,) else array
+    if array.ndim != 2 or array.shape[1] not in (2, 3):
+        shape = " x ".join(map(str, array.shape)) or "a single number"
+        raise ValueError(f"xy: rows of x and y are needed; the shape is {shape}")
+    return array[:, :2]
+
+
+@dataclasses.dataclass(frozen=True)
+class Volume:
+    """What lies between a surface and another one, or a level, over the area that both cover.
+
+    above  volume where the surface is higher: what has to be cut to come down to the other one
+    below  volume where it is lower: what has to be filled
+    area   that both cover, in x,y
+    left_out        area of the surface that the other one does not cover
+    other_left_out  area of the other one that the surface does not cover; 0 for a level
+    error  the standard error of net that follows from FilledError, of both: within a hole, errors are
+           taken to be the same everywhere; those of several holes, to be independent. None where
+           neither has been filled, NaN where an error is not known
+    """
+
+    above: float
+    below: float
+    area: float
+    left_out: float
+    other_left_out: float
+    error: Optional[float]
+
+    @property
+    def net(self):
+        """above - below: the volume of the surface over the other one."""
+        return self.above - self.below
+
+
+def volume_between(result, other, map_too=False, progress=no_progress):
+    """(Volume, its map as vtkPolyData or None, notes) of a Reconstruction and what other_of() takes."""
+    check_over_xy(result, "volume")
+    other = other_of(other)
+    name, surface = other.name, other.surface
+    notes = check_system(name, other.crs, "the surface", result.crs) if surface else []
+    own = query_of("the surface", result.surface, progress)
+    theirs = surface and query_of(name, surface)
+    difference = vtkPolyData() if map_too else None
+    sums, error = compare(result.surface, own, theirs, other.level, difference)
+    area, common, above, below = (math.fsum(column) for column in sums.T[:4])
+    if common == 0.0:
+        boxes = [
+            "x {:.7g} to {:.7g}, y {:.7g} to {:.7g}".format(*one.GetBounds()[:4])
+            for one in (surface, result.surface)
+        ]
+        raise ElevationSurfaceError(
+            f"{name} and the surface do not overlap: it is from {boxes[0]}, the surface from {boxes[1]}"
+        )
+    other_area = area_of(surface) if theirs else common
+    if theirs and surface.GetPointData().HasArray("FilledError"):
+        error = math.hypot(error or 0.0, compare(surface, theirs, own)[1] or 0.0)
+    if map_too:
+        elevations = numpy_to_vtk(coordinates_of(difference)[:, 2], deep=True)
+        elevations.SetName("Difference")
+        difference.GetPointData().SetScalars(elevations)
+    left_out = (max(0.0, whole - common) for whole in (area, other_area))
+    return Volume(above, below, common, *left_out, error), difference, notes
+
+
+def compare(surface, query, other, level=0.0, difference=None):
+    """(tuples of vtkSurfaceQuery.CompareWith(), standard error of the volume by this surface's filled
+    elevations; None where it has none)."""
+    tuples = vtkDoubleArray()
+    errors = surface.GetPointData().GetArray("FilledError")
+    raise_error("the surface", query.CompareWith(other, level, errors, tuples, difference))
+    tuples, ids = vtk_to_numpy(tuples), surface.GetCellData().GetArray("HoleId")
+    if errors is None or ids is None:
+        return tuples, None
+    holes = vtk_to_numpy(ids)
+    of_holes = numpy.bincount(holes[holes >= 0], tuples[holes >= 0, 4])
+    return tuples, float(numpy.sqrt((of_holes**2).sum()))
+
+
+def area_of(surface):
+    """The area of a surface's triangles in x,y."""
+    xy = coordinates_of(surface)[:, :2].astype("f8")
+    a, b, c = xy[vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3).T]
+    u, v = b - a, c - a
+    return 0.5 * math.fsum(abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
+
+
+@dataclasses.dataclass(frozen=True)
+class Other:
+    """What a volume is measured to: a surface, vtkPolyData with triangles; or, where that is None, a level."""
+
+    name: str
+    surface: Optional[vtkPolyData] = None
+    crs: Optional[str] = None
+    level: float = 0.0
+
+
+def other_of(other):
+    """The Other of a Reconstruction, vtkPolyData, the file of a surface, or a number."""
+    if isinstance(other, Other):
+        return other
+    if hasattr(other, "surface"):
+        return Other("the other surface", other.surface, other.crs)
+    if isinstance(other, (str, os.PathLike)):
+        return read_surface(os.fspath(other))
+    if isinstance(other, vtkPolyData):
+        if other.GetNumberOfPolys() == 0:
+            raise ElevationSurfaceError("the other surface has no triangles")
+        return Other("the other surface", other)
+    try:
+        level = float(other)
+    except (TypeError, ValueError):
+        raise TypeError(
+            "a Reconstruction, vtkPolyData with triangles, a file or a level is needed, "
+            f"not {type(other).__name__}"
+        ) from None
+    if not math.isfinite(level):
+        raise ValueError(f"a level is a finite number, not {level}")
+    return Other(f"level {level:g}", level=level)
+
+
+def read_surface(path):
+    """The Other of a file with triangles. Raises FileError."""
+    points = read(path).points if not is_text(path) else None
+    if not isinstance(points, vtkPolyData) or points.GetNumberOfPolys() == 0:
+        raise FileError(f"{path}: has no triangles: make a surface of it first, and give that")
+    return Other(path, points, crs_of(points))
+
+
+def is_text(path):
+    """Whether a file is a table of text."""
+    with unpacked(path) as (local, _):
+        return recognise(local)[0].module == "text.read_text"
+
+
+def read_places(path):
+    """((n, 2) places of a file, its reference system or None): of text, the columns x and y; of other
+    files their points. Raises FileError."""
+    cloud = None if is_text(path) else read(path)
+    points = read_boundary(path) if cloud is None else cloud.points
+    return coordinates_of(points)[:, :2].astype("f8"), cloud and cloud.crs

@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DelaunayMesh.h"
+#include "Kernel/Query/Query.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+using namespace elevation;
+using namespace testing_surfaces;
+
+namespace
+{
+
+/** A Delaunay mesh and its elevations. */
+struct Terrain
+{
+  Mesh Surface;
+  std::vector<double> Elevations;
+
+  ElevatedMesh View() const { return { this->Surface, this->Elevations }; }
+};
+
+using Height = std::function<double(double, double)>;
+
+/** Random points in a square, and its corners, which are at low and high in x and y. */
+Terrain MakeTerrain(int count, unsigned seed, double low, double high, const Height& height)
+{
+  Random random(seed);
+  std::vector<Point2> points{ { low, low }, { high, low }, { high, high }, { low, high } };
+  for (int i = 0; i < count; ++i)
+  {
+    const double x = low + (high - low) * random.Unit();
+    points.push_back({ x, low + (high - low) * random.Unit() });
+  }
+  Terrain terrain{ Delaunay(points), {} };
+  for (const Point2& p : points)
+  {
+    terrain.Elevations.push_back(height(p.X, p.Y));
+  }
+  return terrain;
+}
+
+OverlaidTriangle Sum(const std::vector<OverlaidTriangle>& all)
+{
+  OverlaidTriangle sum;
+  for (const OverlaidTriangle& one : all)
+  {
+    sum.Area += one.Area;
+    sum.Common += one.Common;
+    sum.Above += one.Above;
+    sum.Below += one.Below;
+    sum.Weighted += one.Weighted;
+  }
+  return sum;
+}
+
+OverlaidTriangle Compare(const Terrain& first, const Terrain& second)
+{
+  const ElevatedMesh other = second.View();
+  return Sum(Overlay(first.View(), &other, 0.0, {}));
+}
+
+double Hills(double x, double y)
+{
+  return 100.0 + std::sin(x) * std::cos(y);
+}
+
+} // namespace
+
+TEST(Overlay, OfAShiftedSurfaceIsTheShiftTimesTheArea)
+{
+  for (const double origin : { 0.0, 5e6 })
+  {
+    const Terrain ground = MakeTerrain(2000, 1, origin, origin + 10.0, Hills);
+    Terrain raised = ground;
+    for (double& elevation : raised.Elevations)
+    {
+      elevation += 0.5;
+    }
+    const OverlaidTriangle sum = Compare(raised, ground);
+    EXPECT_NEAR(sum.Common, 100.0, 1e-10);
+    EXPECT_NEAR(sum.Above, 50.0, 5e-11);
+    EXPECT_EQ(sum.Below, 0.0);
+    const OverlaidTriangle same = Compare(ground, ground);
+    EXPECT_NEAR(same.Above, 0.0, 1e-10);
+    EXPECT_NEAR(same.Below, 0.0, 1e-10);
+  }
+}
+
+// Planes through other points: the difference x - 3 over [0, 10] x [0, 10].
+TEST(Overlay, OfPlanesIsTheirIntegral)
+{
+  const auto tilted = [](double x, double y) { return 2.0 * x - y; };
+  const auto other = [](double x, double y) { return x - y + 3.0; };
+  const OverlaidTriangle sum =
+    Compare(MakeTerrain(500, 2, 0.0, 10.0, tilted), MakeTerrain(700, 3, 0.0, 10.0, other));
+  EXPECT_NEAR(sum.Area, 100.0, 1e-11);
+  EXPECT_NEAR(sum.Common, 100.0, 1e-11);
+  EXPECT_NEAR(sum.Above, 245.0, 1e-10);
+  EXPECT_NEAR(sum.Below, 45.0, 1e-10);
+}
+
+// What is above on one side is below on the other, whatever the triangles.
+TEST(Overlay, IsTheSameFromBothSides)
+{
+  const Terrain one = MakeTerrain(3000, 4, 0.0, 10.0, Hills);
+  const Terrain other =
+    MakeTerrain(2000, 5, 2.0, 13.0, [](double x, double y) { return Hills(x + 0.3, y); });
+  const OverlaidTriangle there = Compare(one, other), back = Compare(other, one);
+  EXPECT_NEAR(there.Common, 64.0, 1e-10);
+  EXPECT_NEAR(back.Common, 64.0, 1e-10);
+  EXPECT_GT(there.Above, 1.0);
+  EXPECT_NEAR(there.Above, back.Below, 1e-10);
+  EXPECT_NEAR(there.Below, back.Above, 1e-10);
+}
+
+// The volume of a cone above the level of its rim, of as many triangles as its rim has sides.
+TEST(Overlay, OfAConeIsAThirdOfItsPrism)
+{
+  const int sides = 360;
+  const double pi = 3.14159265358979323846;
+  Terrain cone;
+  cone.Surface.Points.push_back({ 0.0, 0.0 });
+  cone.Elevations.push_back(30.0);
+  for (int i = 0; i < sides; ++i)
+  {
+    cone.Surface.Points.push_back(
+      { 5.0 * std::cos(2.0 * pi * i / sides), 5.0 * std::sin(2.0 * pi * i / sides) });
+    cone.Elevations.push_back(10.0);
+    cone.Surface.Triangles.insert(cone.Surface.Triangles.end(), { 0, i + 1, (i + 1) % sides + 1 });
+  }
+  const OverlaidTriangle sum = Sum(Overlay(cone.View(), nullptr, 10.0, {}));
+  const double base = 0.5 * sides * 25.0 * std::sin(2.0 * pi / sides);
+  EXPECT_NEAR(sum.Area, base, 1e-11);
+  EXPECT_NEAR(sum.Above, base * 20.0 / 3.0, 1e-9);
+  EXPECT_EQ(sum.Below, 0.0);
+  // Cut half way up: an eighth of the cone is above.
+  const OverlaidTriangle cut = Sum(Overlay(cone.View(), nullptr, 20.0, {}));
+  EXPECT_NEAR(cut.Above, sum.Above / 8.0, 1e-10);
+}
+
+TEST(Overlay, WeighsValuesOfTheFirstSurface)
+{
+  const Terrain ground = MakeTerrain(300, 6, 0.0, 4.0, Hills);
+  const Terrain half = MakeTerrain(300, 7, 0.0, 2.0, Hills);
+  std::vector<double> values;
+  for (const Point2& p : ground.Surface.Points)
+  {
+    values.push_back(p.X);
+  }
+  const ElevatedMesh other = half.View();
+  EXPECT_NEAR(Sum(Overlay(ground.View(), &other, 0.0, values)).Weighted, 4.0, 1e-11);
+}
+
+TEST(Overlay, MapsTheDifference)
+{
+  const Terrain one = MakeTerrain(200, 8, 0.0, 10.0, Hills);
+  const Terrain other = MakeTerrain(300, 9, 5.0, 15.0, Hills);
+  const ElevatedMesh second = other.View();
+  DifferenceMap map;
+  const OverlaidTriangle sum = Sum(Overlay(one.View(), &second, 0.0, {}, 1, Progress(), &map));
+  double area = 0.0, volume = 0.0;
+  for (std::size_t t = 0; t < map.Triangles.size(); t += 3)
+  {
+    const double* const a = &map.Points[3 * map.Triangles[t]];
+    const double* const b = &map.Points[3 * map.Triangles[t + 1]];
+    const double* const c = &map.Points[3 * map.Triangles[t + 2]];
+    const double share = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+    area += share;
+    volume += share * (a[2] + b[2] + c[2]) / 3.0;
+  }
+  EXPECT_NEAR(area, 25.0, 1e-11);
+  EXPECT_NEAR(volume, sum.Above - sum.Below, 1e-11);
+}
+
+TEST(Overlay, DoesNotDependOnThreads)
+{
+  const Terrain one = MakeTerrain(5000, 10, 0.0, 10.0, Hills);
+  const Terrain other = MakeTerrain(4000, 11, 1.0, 9.0, Hills);
+  const ElevatedMesh second = other.View();
+  DifferenceMap alone, together;
+  const auto first = Overlay(one.View(), &second, 0.0, {}, 1, Progress(), &alone);
+  const auto again = Overlay(one.View(), &second, 0.0, {}, 4, Progress(), &together);
+  ASSERT_EQ(first.size(), again.size());
+  for (std::size_t t = 0; t < first.size(); ++t)
+  {
+    ASSERT_EQ(first[t].Above, again[t].Above);
+    ASSERT_EQ(first[t].Below, again[t].Below);
+    ASSERT_EQ(first[t].Common, again[t].Common);
+  }
+  EXPECT_EQ(alone.Points, together.Points);
+  EXPECT_EQ(alone.Triangles, together.Triangles);
+}
