@@ -184,9 +184,9 @@ def compare(surface, query, other, level=0.0, difference=None):
     errors = surface.GetPointData().GetArray("FilledError")
     raise_error("the surface", query.CompareWith(other, level, errors, tuples, difference))
     tuples, ids = vtk_to_numpy(tuples), surface.GetCellData().GetArray("HoleId")
-    if errors is None or ids is None:
+    holes = vtk_to_numpy(ids) if errors and ids else numpy.array([-1])
+    if holes.max(initial=-1) < 0:
         return tuples, None
-    holes = vtk_to_numpy(ids)
     of_holes = numpy.bincount(holes[holes >= 0], tuples[holes >= 0, 4])
     return tuples, float(numpy.sqrt((of_holes**2).sum()))
 

@@ -10,7 +10,8 @@
  *     vtkGridDelaunay2D         Constraints, DelaunayReport, LimitAdvice, PointsOnWall
  *     vtkTrimOutwardTriangles   TrimmedSurface, which also drapes constraints
  *     vtkFillElevationHoles     PatchedSurface
- *     all of them               the rest
+ *     the Python package        SurfaceQuery
+ *     all filters               the rest
  */
 #ifndef Adapt_h
 #define Adapt_h
@@ -28,6 +29,7 @@
 #include "PointsPrecision.h"
 #include "ReportMessages.h"
 #include "Requests.h"
+#include "SurfaceQuery.h"
 #include "TrimmedSurface.h"
 #include "UsedPoints.h"
 #include "VTKVersions.h"

@@ -10,17 +10,12 @@
 #define SurfaceQuery_h
 
 #include "Kernel/Query/Query.h"
+#include "VTKClasses.h"
 
 #include "vtkElevationSurfaceModule.h" // For export macro
 
-#include <functional>
 #include <memory>
 #include <vector>
-
-class vtkDataArray;
-class vtkDoubleArray;
-class vtkIdTypeArray;
-class vtkPolyData;
 
 namespace elevation
 {

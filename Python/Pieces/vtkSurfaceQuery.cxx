@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceQuery.h"
 
-#include "Adapt/SurfaceQuery.h"
+#include "Adapt/Adapt.h"
 
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
