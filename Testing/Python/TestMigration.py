@@ -82,6 +82,7 @@ def names():
     return {
         "points": data(), "lines": data(Lines=CORNERS[:2]), "ring": data(Polys=CORNERS),
         "surface": reconstruct(XYZ, fill=False).surface, "transform": transform, "spacing": 2.6,
+        "xi": XYZ[::50, :2] * 0.98 + 0.02 * XYZ[:, :2].mean(axis=0),
         "read": read, "reconstruct": reconstruct, "vtkTransformFilter": vtkTransformFilter,
         "vtkDelaunay2D": vtkDelaunay2D, "vtkStaticCleanPolyData": clean_points, "vtkFillHolesFilter": vtkFillHolesFilter,
         "vtkGridDelaunay2D": vtkGridDelaunay2D, "vtkFillElevationHoles": vtkFillElevationHoles,
@@ -355,6 +356,22 @@ def _(test, _here, _printed):
     test.assertGreater(faces_of("surface.ply"), 2000)
 
 
+@checks("CloudCompare and MetPy", "Ground: (constant) 0")
+def _(test, _here, printed):
+    test.assertIn("over level 0", printed)
+
+
+@checks("CloudCompare and MetPy", "natural_neighbor_to_points(points, values, xi)")
+def _(test, here, _printed):
+    test.assertTrue(numpy.isfinite(here["value"]).all())
+    test.assertLess(abs(here["value"] - XYZ[:, 2].mean()).max(), numpy.ptp(XYZ[:, 2]))
+
+
+@checks("CloudCompare and MetPy", "natural_neighbor_to_grid(xp, yp, variable, hres=1.0)")
+def _(test, here, _printed):
+    test.assertGreater(numpy.isfinite(here["grid"].z).sum(), 100)
+
+
 def compare_with_dem(test, here, there, band=1):
     """Known pixels stay on both sides. Returns what is missing: (theirs, ours)."""
     known = pixels("dem.tif", band)[0]
@@ -464,6 +481,10 @@ class Migration(unittest.TestCase):
     def test_qgis(self):
         write_files()
         self.run_rows("QGIS", lambda _, here, check: self.run_here(here, check))
+
+    def test_cloud_compare_and_metpy(self):
+        write_files()
+        self.run_rows("CloudCompare and MetPy", lambda _, here, check: self.run_here(here, check))
 
     def test_gdal(self):
         write_files()
