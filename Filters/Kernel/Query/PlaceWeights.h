@@ -28,7 +28,6 @@
  * index. Natural neighbours take linear time in their number, mostly six.
  *
  * [Sibson 1981] A brief description of natural neighbour interpolation.
- * [Watson 1992] Contouring: a guide to the analysis and display of spatial data.
  */
 #ifndef elevation_Query_PlaceWeights_h
 #define elevation_Query_PlaceWeights_h
