@@ -112,11 +112,13 @@ class Frame:
         """x, (columns,), and y, (rows,), of the centres; of a turned raster (rows, columns) each."""
         column, row = numpy.arange(self.columns, dtype="f8"), numpy.arange(self.rows, dtype="f8")
         if self.is_turned():
-            column, row = numpy.meshgrid(column, row)
+            return self.at(*numpy.meshgrid(column, row))
+        return self.at(column, 0.0)[0], self.at(0.0, row)[1]
+
+    def at(self, column, row):
+        """x and y of places, of which columns and rows are given."""
         (x, y), (_, a, b, _, d, e) = self.first(), self.transform
-        if self.is_turned():
-            return x + a * column + b * row, y + d * column + e * row
-        return x + a * column, y + e * row
+        return x + a * column + b * row, y + d * column + e * row
 
     def places(self, xy):
         """(n, 2) columns and rows of places; those of centres are whole numbers."""

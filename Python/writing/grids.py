@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A surface as a grid: exact linear interpolation in its triangles, and files by GDAL."""
+"""A surface as a grid, and files by GDAL."""
 
 import dataclasses
 import math
@@ -9,16 +9,16 @@ import os
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from ..clouds import EVEN, Frame, check_system, corner_flags, slices
+from ..clouds import EVEN, Frame, cells_of, check_system, corner_flags, make_points, slices
 from ..gdal_common import gdal_module, reference_of, write_through_memory
 from ..messages import ElevationSurfaceError, FileError
 from ..paths import check_suffix, plain_stem, suffix_of
 from ..progress import no_progress
+from ..query import Heights
 from ..reading import raster_frame
 
 MOST_PIXELS = 250_000_000
-MOST_AT_ONCE = 2_000_000  # of rows or pixels of triangles; bounds the memory taken
-NEAR = 1e-9  # steps: a centre so close to an edge lies on it
+MOST_AT_ONCE = 2_000_000  # pixels; bounds the memory taken
 ON_NODE = 0.01  # steps: points so close to the nodes of a lattice are on them
 
 
@@ -142,16 +142,7 @@ def grid_of(result, step=None, like=None, progress=None, method="linear"):
             f"{words} would have {frame.columns:,} x {frame.rows:,} pixels; "
             f"at most {MOST_PIXELS:,} are made: use a larger step"
         )
-    if method == "linear":
-        z, error = interpolated(result.surface, frame, near, progress)
-    else:
-        from ..query import Heights
-
-        x, y = frame.centres()
-        x, y = (x, y) if frame.is_turned() else numpy.meshgrid(x, y)
-        places = numpy.column_stack((x.ravel(), y.ravel()))
-        layers = Heights(result.surface, method).at(places, progress or no_progress)
-        z, error = (layer if layer is None else layer.reshape(x.shape) for layer in layers)
+    z, error = interpolated(result.surface, frame, near, progress, method)
     if not numpy.isfinite(z).any() and like is not None:
         west, east, south, north = result.surface.GetBounds()[:4]
         x, y = (ends.ravel()[[0, -1]] for ends in frame.centres())
@@ -167,25 +158,39 @@ def grid_of(result, step=None, like=None, progress=None, method="linear"):
     return Grid(z, error, frame, result.crs), notes
 
 
-def interpolated(surface, frame, near=0.0, progress=None):
+def interpolated(surface, frame, near=0.0, progress=None, method="linear"):
     """(rows, columns) elevations and their errors, or None, at the centres of a Frame.
 
     near  steps: points so close to a centre are on it
     """
-    points = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8")
-    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    points[:, :2] = on_centres(frame, points[:, :2], near)
-    errors = surface.GetPointData().GetArray("FilledError")
-    values = [points[:, 2]] + ([vtk_to_numpy(errors)] if errors else [])
-    layers = [numpy.full(frame.rows * frame.columns, numpy.nan) for _ in values]
-    for part in slices(len(triangles), MOST_AT_ONCE):
+    if method == "linear":
+        # Over columns and rows, where centres are whole numbers: what lies on one is exact.
+        surface, at = on_pixels(surface, frame, near), lambda column, row: (column, row)
+    else:
+        at = frame.at
+    heights, rows = Heights(surface, method), numpy.arange(frame.rows, dtype="f8")
+    layers = [numpy.empty((frame.rows, frame.columns)) for _ in range(2)]
+    for part in slices(frame.rows, max(1, MOST_AT_ONCE // frame.columns)):
+        column, row = numpy.meshgrid(numpy.arange(frame.columns, dtype="f8"), rows[part])
+        found = heights.at(numpy.column_stack(at(column.ravel(), row.ravel())))
+        for layer, values in zip(layers, found):
+            layer[part] = numpy.nan if values is None else values.reshape(column.shape)
         if progress:
-            progress(part.start / len(triangles))
-        for ids, pixels, weights in covered(points, triangles[part], frame.columns, frame.rows):
-            for layer, value in zip(layers, values):
-                layer[pixels] = sum(w * value[ids[:, i]] for i, w in enumerate(weights))
-    layers = [layer.reshape(frame.rows, frame.columns) for layer in layers]
-    return layers[0], layers[1] if errors else None
+            progress(part.stop / frame.rows)
+    return layers[0], layers[1] if heights.errors is not None else None
+
+
+def on_pixels(surface, frame, near):
+    """The surface over columns and rows, without triangles that have no area there."""
+    points = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8")
+    points[:, :2] = on_centres(frame, points[:, :2], near)
+    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    a, b, c = (points[triangles[:, i], :2] for i in range(3))
+    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    placed = make_points(points)
+    placed.SetPolys(cells_of(triangles[ux * vy != uy * vx]))
+    placed.GetPointData().AddArray(surface.GetPointData().GetArray("FilledError"))
+    return placed
 
 
 def on_centres(frame, xy, near):
@@ -197,70 +202,6 @@ def on_centres(frame, xy, near):
     is_near = abs(places - whole).max(axis=1) <= max(near, rounding)
     places[is_near] = whole[is_near]
     return places
-
-
-def covered(points, triangles, columns, rows):
-    """Yields (corners, pixels, weights) of the pixels whose centres lie in triangles.
-
-    corners  (n, 3) points, of which x and y are columns and rows; pixels (n,) places in the grid;
-    weights  three (n,) of the corners
-    """
-
-    def box(axis):
-        a, b, c = (points[triangles[:, i], axis] for i in range(3))
-        return (end(end(a, b), c) for end in (numpy.minimum, numpy.maximum))
-
-    # Only triangles whose box has the centre of a pixel.
-    low, high = box(0)
-    triangles = triangles[numpy.ceil(low - NEAR) <= numpy.floor(high + NEAR)]
-    low, high = box(1)
-    for owner, row in expanded(*within(low, high, rows)):
-        corners = triangles[owner]
-        ends = crossed(points, corners, numpy.clip(row, low[owner], high[owner]))
-        for place, column in expanded(*within(*ends, columns)):
-            at, ids = row[place], corners[place]
-            # Twice the areas of the triangles that the centre makes with each side.
-            dx = [points[ids[:, i], 0] - column for i in range(3)]
-            dy = [points[ids[:, i], 1] - at for i in range(3)]
-            areas = [dx[i - 2] * dy[i - 1] - dx[i - 1] * dy[i - 2] for i in range(3)]
-            total = areas[0] + areas[1] + areas[2]
-            keep = total != 0.0
-            weights = [area[keep] / total[keep] for area in areas]
-            yield ids[keep], (at * columns + column)[keep], weights
-
-
-def within(low, high, count):
-    """(start, stop) of the whole numbers from low to high that are 0 to before count."""
-    start = numpy.clip(numpy.ceil(low - NEAR), 0, count).astype("i8")
-    return start, numpy.clip(numpy.floor(high + NEAR) + 1, 0, count).astype("i8")
-
-
-def expanded(start, stop):
-    """Yields (places, numbers): each place with the numbers from its start to before its stop."""
-    counts = numpy.maximum(stop - start, 0)
-    ends = numpy.cumsum(counts)
-    begin = 0
-    while begin < len(counts):
-        before = ends[begin - 1] if begin else 0
-        end = max(begin + 1, int(numpy.searchsorted(ends, before + MOST_AT_ONCE, "right")))
-        some = counts[begin:end]
-        places = numpy.repeat(numpy.arange(begin, end), some)
-        firsts = numpy.repeat(start[begin:end] - (ends[begin:end] - some - before), some)
-        if len(places):
-            yield places, firsts + numpy.arange(len(places))
-        begin = end
-
-
-def crossed(points, corners, y):
-    """(left, right): where the horizontal lines at y, (n,), enter and leave the n triangles."""
-    left, right = numpy.full(len(y), numpy.inf), numpy.full(len(y), -numpy.inf)
-    for i in range(3):
-        (ax, ay), (bx, by) = points[corners[:, i], :2].T, points[corners[:, i - 1], :2].T
-        meets = (numpy.minimum(ay, by) <= y) & (y <= numpy.maximum(ay, by))
-        share = numpy.divide(y - ay, by - ay, out=numpy.zeros(len(y)), where=ay != by)
-        at = numpy.where(meets, ax + share * (bx - ax), numpy.nan)
-        left, right = numpy.fmin(left, at), numpy.fmax(right, at)
-    return left, right
 
 
 def no_data_value(z):
