@@ -115,7 +115,7 @@ set(es_kernel_headers_Lattice
 set(es_kernel_headers_Bins
   Bins RowSorter Vectors WorkBudget)
 set(es_kernel_headers_Grow
-  BoxAround Grow Growth)
+  BoxAround Grow Growth Packing)
 set(es_kernel_headers_Simplify
   FacePlane)
 set(es_kernel_headers_Triangulate)
