@@ -32,6 +32,7 @@ set(es_kernel_Bins
   GridBlock
   BinGrid
   Hull
+  Instructions
   Options)
 set(es_kernel_Grow
   Neighborhoods
@@ -116,7 +117,7 @@ set(es_kernel_headers_Mesh
 set(es_kernel_headers_Lattice
   Lattice NodeFinder)
 set(es_kernel_headers_Bins
-  Bins Instructions RowSorter WorkBudget)
+  Bins RowSorter Vectors WorkBudget)
 set(es_kernel_headers_Grow
   BoxAround Grow Growth Packing)
 set(es_kernel_headers_Simplify
@@ -207,6 +208,23 @@ foreach (es_room IN LISTS es_outer_rooms)
 endforeach ()
 unset(es_list)
 unset(es_room)
+
+# Vectors in the kernel's searches: of Highway, headers alone. Without it the results are the same.
+option(ES_HIGHWAY "Compile searches for the processor's vectors, by Highway, where that is found" ON)
+function (es_use_highway target)
+  if (ES_HIGHWAY)
+    find_package(hwy QUIET)
+  endif ()
+  if (ES_HIGHWAY AND hwy_FOUND)
+    message(STATUS "VTK::ElevationSurface: vectors by Highway ${hwy_VERSION}")
+    target_include_directories("${target}" SYSTEM PRIVATE
+      $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
+    target_compile_definitions("${target}" PRIVATE ELEVATION_HAS_HIGHWAY)
+  else ()
+    message(STATUS "VTK::ElevationSurface: no vectors, which makes triangulations take about three times as long; "
+      "they need Highway (Debian, Ubuntu: package libhwy-dev)")
+  endif ()
+endfunction ()
 
 # What the kernel needs, wherever it is compiled.
 function (es_kernel_compile_options target)

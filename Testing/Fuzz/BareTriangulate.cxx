@@ -204,10 +204,12 @@ private:
     DelaunayOptions options;
     options.Instructions = InstructionSet::Scalar;
     grow("growth, scalar", options, this->Full);
-    options.Instructions = InstructionSet::AVX2;
-    grow("growth, AVX2", options, this->Full);
-    options.Instructions = InstructionSet::AVX512;
-    grow("growth, AVX-512", options, this->Full);
+    options.Instructions = InstructionSet::Bits128;
+    grow("growth, 128 bits", options, this->Full);
+    options.Instructions = InstructionSet::Bits256;
+    grow("growth, 256 bits", options, this->Full);
+    options.Instructions = InstructionSet::Bits512;
+    grow("growth, 512 bits", options, this->Full);
     options.DivideAtOnce = true;
     grow("divide and conquer", options, this->Full);
     options.DivideAtOnce = false;
@@ -230,9 +232,7 @@ private:
 
   InstructionSet AnyInstructions()
   {
-    static const InstructionSet sets[] = { InstructionSet::Scalar, InstructionSet::AVX2,
-      InstructionSet::AVX512 };
-    return sets[this->From.Below(3)];
+    return static_cast<InstructionSet>(this->From.Below(NumberOfInstructionSets));
   }
 
   static std::int64_t SquaredDistance(const Place& p, const Place& q)

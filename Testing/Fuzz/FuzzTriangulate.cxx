@@ -189,7 +189,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   DelaunayOptions other = options;
   other.Strategy = bits & 4 ? SearchStrategy::Compactness : SearchStrategy::VoxelTraversal;
-  other.Instructions = bits & 8 ? InstructionSet::Scalar : InstructionSet::AVX512;
+  other.Instructions = bits & 8 ? InstructionSet::Scalar : InstructionSet::Bits512;
   other.DivideAtOnce = (bits & 16) != 0;
   other.PointsPerStrip = perStrip;
   other.NumberOfThreads = (bits & 96) == 96 ? 3 : 1;

@@ -58,7 +58,7 @@ other.
   --searches        also times vtkGridDelaunay2D without lattices by each of its two searches
   --instructions LIST
                     also times the kernel alone, without lattices, with no wider instructions of the
-                    processor than scalar, avx2 or avx512
+                    processor than scalar, or vectors of 128, 256 or 512 bits
   --no-cgal         leaves CGAL out
   --no-delaunay32   leaves delaunay32 out
   --vtk             runs vtkDelaunay2D on more than 20000 points too
@@ -75,7 +75,7 @@ Examples
   BenchmarkDelaunay --points 100000,886639
   BenchmarkDelaunay --sets U,clustered,tracks,voids --no-vtk
   BenchmarkDelaunay --searches --no-cgal --no-vtk
-  BenchmarkDelaunay --sets U,clustered,tracks --instructions scalar,avx2,avx512 --no-cgal --no-vtk
+  BenchmarkDelaunay --sets U,clustered,tracks --instructions scalar,128,256,512 --no-cgal --no-vtk
   BenchmarkDelaunay --points 4000000 --threads 2 --no-cgal --no-vtk
   BenchmarkDelaunay --file Data/jacksboro_fault.vtp --json figures.json
 
@@ -104,11 +104,11 @@ struct Options
 /** @throws UsageError when there is no such set, or the processor lacks it */
 elevation::InstructionSet ToInstructions(const std::string& name)
 {
-  const std::array<const char*, 3> names{ "scalar", "avx2", "avx512" };
+  const std::array<const char*, 4> names{ "scalar", "128", "256", "512" };
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
   {
-    throw UsageError("--instructions takes scalar, avx2 and avx512, not \"" + name + "\"");
+    throw UsageError("--instructions takes scalar, 128, 256 and 512, not \"" + name + "\"");
   }
   const auto set = static_cast<elevation::InstructionSet>(found - names.begin());
   if (set > elevation::WidestInstructions())
@@ -134,7 +134,7 @@ bool ReadOptions(int argc, char* argv[], Options& options)
   table.Value("--instructions", [&](const std::string& list) {
     options.Instructions = Split(list);
     std::for_each(options.Instructions.begin(), options.Instructions.end(), ToInstructions);
-    if (options.Instructions.size() > 3)
+    if (options.Instructions.size() > 4)
     {
       throw UsageError("--instructions takes each set once");
     }

@@ -6,7 +6,8 @@
  *
  * Where to begin: BinGrid.h, whose slots all of growth counts in; then BoxTree.h, the tree over
  * them. GridBlock.h and RowSorter.h fill both. Options.h has what a triangulation is asked for, and
- * its result; Hull.h, WorkBudget.h and Instructions.h serve growth.
+ * its result; Hull.h, WorkBudget.h and Instructions.h serve growth. Vectors.h is included by
+ * the source files that use it.
  */
 #ifndef elevation_Bins_Bins_h
 #define elevation_Bins_Bins_h

@@ -80,7 +80,7 @@ struct DelaunayOptions
   /** For tests: points per strip (Growth.h); 0: automatic. */
   Index PointsPerStrip = 0;
   /** For tests and benchmarks: the widest instructions to use. The result is the same. */
-  InstructionSet Instructions = InstructionSet::AVX512;
+  InstructionSet Instructions = InstructionSet::Bits512;
   /** For tests: divide and conquer from the start, without growth. The result is the same. */
   bool DivideAtOnce = false;
 };

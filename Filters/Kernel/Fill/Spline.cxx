@@ -18,29 +18,23 @@
 #include <cmath>
 #include <cstring>
 
-/** Inlined into functions for wider instructions, too. */
-#ifdef ELEVATION_HAS_AVX2
-#define ELEVATION_INLINE __attribute__((always_inline)) inline
-#else
-#define ELEVATION_INLINE inline
-#endif
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "Kernel/Fill/Spline.cxx"
+#include "Kernel/Bins/Vectors.h"
 
+HWY_BEFORE_NAMESPACE();
 namespace elevation
 {
-
-namespace
+namespace HWY_NAMESPACE
 {
-/** Centres are in a line if their spread across it is below this fraction of that along it. */
-constexpr double LeastSpread = 1e-7;
-
-/** A pivot below this fraction of the largest entry is rounding. */
-constexpr double LeastPivot = 1e-14;
+// Plain loops, of which the compiler makes vectors. Each number by itself and without fused
+// operations, so it is the same, to the bit.
 
 /**
  * x log x for 0 or normal numbers, to about 15 digits. Without branches or calls, so that loops
  * over it are vectorized; and the same on every system.
  */
-ELEVATION_INLINE double TimesLog(double x)
+HWY_INLINE double TimesLog(double x)
 {
   std::uint64_t bits;
   std::memcpy(&bits, &x, sizeof bits);
@@ -76,7 +70,7 @@ ELEVATION_INLINE double TimesLog(double x)
 }
 
 /** out[i] += weight f(distance of (x, y) from point i), with f = r^2 log r = 1/2 r^2 log r^2. */
-ELEVATION_INLINE void AddThinPlate(
+HWY_INLINE void AddThinPlate(
   double x, double y, double weight, const double* px, const double* py, std::size_t n, double* out)
 {
   for (std::size_t i = 0; i < n; ++i)
@@ -87,7 +81,7 @@ ELEVATION_INLINE void AddThinPlate(
   }
 }
 
-ELEVATION_INLINE void AddCubic(
+HWY_INLINE void AddCubic(
   double x, double y, double weight, const double* px, const double* py, std::size_t n, double* out)
 {
   for (std::size_t i = 0; i < n; ++i)
@@ -99,8 +93,8 @@ ELEVATION_INLINE void AddCubic(
   }
 }
 
-ELEVATION_INLINE void AddEither(Spline::Kernel kernel, double x, double y, double weight,
-  const double* px, const double* py, std::size_t n, double* out)
+void AddEither(Spline::Kernel kernel, double x, double y, double weight, const double* px,
+  const double* py, std::size_t n, double* out)
 {
   if (kernel == Spline::Kernel::ThinPlate)
   {
@@ -111,27 +105,30 @@ ELEVATION_INLINE void AddEither(Spline::Kernel kernel, double x, double y, doubl
     AddCubic(x, y, weight, px, py, n, out);
   }
 }
+} // namespace HWY_NAMESPACE
+} // namespace elevation
+HWY_AFTER_NAMESPACE();
 
-#ifdef ELEVATION_HAS_AVX2
-// Each number by itself and without fused operations, so it is the same, to the bit.
-ELEVATION_WIDE void AddEitherWide(Spline::Kernel kernel, double x, double y, double weight,
-  const double* px, const double* py, std::size_t n, double* out)
+#if HWY_ONCE
+namespace elevation
 {
-  AddEither(kernel, x, y, weight, px, py, n, out);
-}
-#endif
+namespace
+{
+/** Centres are in a line if their spread across it is below this fraction of that along it. */
+constexpr double LeastSpread = 1e-7;
+
+/** A pivot below this fraction of the largest entry is rounding. */
+constexpr double LeastPivot = 1e-14;
+
+using Adder = void(
+  Spline::Kernel, double, double, double, const double*, const double*, std::size_t, double*);
+constexpr Adder* Adders[NumberOfInstructionSets] = ELEVATION_VERSIONS(AddEither);
 
 void AddKernel(Spline::Kernel kernel, double x, double y, double weight, const double* px,
   const double* py, std::size_t n, double* out)
 {
-#ifdef ELEVATION_HAS_AVX2
-  if (WidestInstructions() != InstructionSet::Scalar)
-  {
-    AddEitherWide(kernel, x, y, weight, px, py, n, out);
-    return;
-  }
-#endif
-  AddEither(kernel, x, y, weight, px, py, n, out);
+  Adder* const add = Adders[static_cast<int>(WidestInstructions())];
+  (add ? add : &HWY_STATIC_DISPATCH(AddEither))(kernel, x, y, weight, px, py, n, out);
 }
 } // namespace
 
@@ -301,3 +298,4 @@ void Spline::Add(
 }
 
 } // namespace elevation
+#endif

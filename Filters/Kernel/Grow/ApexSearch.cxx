@@ -8,6 +8,109 @@
 #include <cmath>
 #include <limits>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "Kernel/Grow/ApexSearch.cxx"
+#include "Kernel/Bins/Vectors.h"
+
+#if ELEVATION_IS_VECTOR
+HWY_BEFORE_NAMESPACE();
+namespace elevation
+{
+namespace HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+
+// At most eight numbers, as there are places in a node, and as may be read behind the points.
+constexpr hn::CappedTag<double, 8> Doubles;
+constexpr int InVector = static_cast<int>(hn::MaxLanes(Doubles));
+using DoubleVector = hn::Vec<decltype(Doubles)>;
+
+/** The lanes of the vector at a place among eight numbers for which a comparison holds, as bits. */
+HWY_INLINE unsigned int BitsOf(hn::Mask<decltype(Doubles)> mask, int place)
+{
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(Doubles, mask, bits);
+  return static_cast<unsigned int>(bits[0]) << place;
+}
+
+HWY_INLINE DoubleVector OffInterval(DoubleVector x, DoubleVector low, DoubleVector high)
+{
+  return hn::Max(hn::Max(hn::Sub(low, x), hn::Sub(x, high)), hn::Zero(Doubles));
+}
+
+/** See ApexSearch::Reached(). */
+unsigned int Reached(const ApexSearch::Disc& disc, const BoxTree::Node& node, double* distances)
+{
+  const auto originX = hn::Set(Doubles, disc.A.X), originY = hn::Set(Doubles, disc.A.Y);
+  const auto centerX = hn::Set(Doubles, disc.CenterX), centerY = hn::Set(Doubles, disc.CenterY);
+  const auto edgeX = hn::Set(Doubles, disc.EdgeX), minusEdgeY = hn::Set(Doubles, -disc.EdgeY);
+  const auto middleX = hn::Set(Doubles, 0.5 * disc.EdgeX);
+  const auto middleY = hn::Set(Doubles, 0.5 * disc.EdgeY);
+  unsigned int reached = 0;
+  for (int place = 0; place < BoxTree::Node::Places; place += InVector)
+  {
+    const auto left = hn::LoadU(Doubles, node.LowX + place);
+    // Differences round monotonically: relative to the origin, a box still contains its points.
+    const auto lowX = hn::Sub(left, originX);
+    const auto highX = hn::Sub(hn::LoadU(Doubles, node.HighX + place), originX);
+    const auto lowY = hn::Sub(hn::LoadU(Doubles, node.LowY + place), originY);
+    const auto highY = hn::Sub(hn::LoadU(Doubles, node.HighY + place), originY);
+    const auto offX = OffInterval(centerX, lowX, highX), offY = OffInterval(centerY, lowY, highY);
+    // Each product, and so their sum, is the greatest over the box: the cross product. It is below
+    // zero by more than its rounding error only if all points are on the right.
+    const auto up = hn::Max(hn::Mul(edgeX, lowY), hn::Mul(edgeX, highY));
+    const auto across = hn::Max(hn::Mul(minusEdgeY, lowX), hn::Mul(minusEdgeY, highX));
+    const auto error = hn::Mul(hn::Set(Doubles, 0x1p-49), hn::Add(hn::Abs(up), hn::Abs(across)));
+    const auto cross = hn::Add(hn::Add(up, across), error);
+    const auto offSquared = hn::Add(hn::Mul(offX, offX), hn::Mul(offY, offY));
+    const auto isOutside = hn::Or(hn::Gt(offSquared, hn::Set(Doubles, disc.RadiusSquared)),
+      hn::Lt(cross, hn::Set(Doubles, -1e-290)));
+    // A place without a box is at infinity.
+    const auto isPlace =
+      hn::And(hn::Lt(left, hn::Inf(Doubles)), hn::Ge(highY, hn::Set(Doubles, disc.Floor)));
+    reached |= BitsOf(hn::AndNot(isOutside, isPlace), place);
+    const auto fromX = OffInterval(middleX, lowX, highX);
+    const auto fromY = OffInterval(middleY, lowY, highY);
+    hn::StoreU(hn::Add(hn::Mul(fromX, fromX), hn::Mul(fromY, fromY)), Doubles, distances + place);
+  }
+  return reached;
+}
+
+/** Finds the eights of a range of slots with points inside the disc. @return how many there are */
+int FindInside(const ApexSearch::Disc& disc, const BinGrid& grid,
+  const std::pair<Index, Index>* ranges, int number, ApexSearch::Eight* found)
+{
+  const auto originX = hn::Set(Doubles, disc.A.X), originY = hn::Set(Doubles, disc.A.Y);
+  const auto centerX = hn::Set(Doubles, disc.CenterX), centerY = hn::Set(Doubles, disc.CenterY);
+  const auto radiusSquared = hn::Set(Doubles, disc.RadiusSquared);
+  int count = 0;
+  for (int k = 0; k < number; ++k)
+  {
+    const Index end = ranges[k].second;
+    for (Index slot = ranges[k].first; slot < end; slot += 8)
+    {
+      unsigned int outside = 0;
+      for (int i = 0; i < 8; i += InVector)
+      {
+        const auto x =
+          hn::Sub(hn::Sub(hn::LoadU(Doubles, grid.X.data() + slot + i), originX), centerX);
+        const auto y =
+          hn::Sub(hn::Sub(hn::LoadU(Doubles, grid.Y.data() + slot + i), originY), centerY);
+        outside |= BitsOf(hn::Gt(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), radiusSquared), i);
+      }
+      // "Not greater" also holds for NaN: CompareOne() then decides, exactly where it must.
+      found[count] = { slot, ~outside & (255u >> std::max(slot + 8 - end, 0)) };
+      count += found[count].Bits != 0;
+    }
+  }
+  return count;
+}
+} // namespace HWY_NAMESPACE
+} // namespace elevation
+HWY_AFTER_NAMESPACE();
+#endif
+
+#if HWY_ONCE
 namespace elevation
 {
 namespace
@@ -31,24 +134,17 @@ double OffInterval(double x, double low, double high)
   return std::max(std::max(low - x, x - high), 0.0);
 }
 
-#ifdef ELEVATION_HAS_AVX2
 /** The bit of a lane; 0 if there is no lane of this number. */
 unsigned int BitOf(Index number)
 {
   return number >= 0 && number < 32 ? 1u << number : 0u;
 }
 
-/** The columns of four x relative to an origin. */
-__attribute__((target("avx2"), always_inline)) inline __m128i ColumnsOf(
-  const BinGrid::Layout& bins, double originX, __m256d x)
-{
-  const __m256d positions = _mm256_mul_pd(
-    _mm256_add_pd(_mm256_set1_pd(originX - bins.OriginX), x), _mm256_set1_pd(bins.PerX));
-  return _mm256_cvttpd_epi32(
-    _mm256_min_pd(_mm256_max_pd(positions, _mm256_setzero_pd()), _mm256_set1_pd(bins.Columns - 1)));
-}
-
-#endif
+using ReachedFinder = unsigned int(const ApexSearch::Disc&, const BoxTree::Node&, double*);
+constexpr ReachedFinder* ReachedFinders[NumberOfInstructionSets] = ELEVATION_VERSIONS(Reached);
+using InsideFinder = int(
+  const ApexSearch::Disc&, const BinGrid&, const std::pair<Index, Index>*, int, ApexSearch::Eight*);
+constexpr InsideFinder* InsideFinders[NumberOfInstructionSets] = ELEVATION_VERSIONS(FindInside);
 } // namespace
 
 /** The bins around the origin that are searched before the tree is. */
@@ -64,8 +160,8 @@ struct ApexSearch::Region
 void ApexSearch::SetOrigin(Index slot, Index next)
 {
   this->Origin = slot;
-  this->A = this->Grid.PointAt(slot);
-  this->HasAround = !this->IsByAngle && this->IsWide && this->Around.Gather(slot, next);
+  this->Bound.A = this->Grid.PointAt(slot);
+  this->HasAround = !this->IsByAngle && this->Around.Gather(slot, next);
   this->OpenEnd = None;
 }
 
@@ -131,9 +227,9 @@ Index ApexSearch::FindAnywhere(Index a, Index b)
   this->Origin = a;
   this->SetEdge(a, b);
   // In a walk, the third vertex may be below the edge.
-  this->Floor = -Infinity;
+  this->Bound.Floor = -Infinity;
   this->LookInto(this->Grid.Tree.Nodes[this->Grid.Tree.Nodes.size() - 1], ~0u);
-  this->Floor = 0.0;
+  this->Bound.Floor = 0.0;
   return this->Best;
 }
 
@@ -144,12 +240,13 @@ Index ApexSearch::FindAnywhere(Index a, Index b)
  */
 void ApexSearch::SetEdge(Index a, Index b)
 {
-  this->A = this->Grid.PointAt(a);
+  this->Bound.A = this->Grid.PointAt(a);
   this->Target = b;
   this->B = this->Grid.PointAt(b);
-  this->EdgeX = this->B.X - this->A.X;
-  this->EdgeY = this->B.Y - this->A.Y;
-  this->LengthSquared = this->EdgeX * this->EdgeX + this->EdgeY * this->EdgeY;
+  this->Bound.EdgeX = this->B.X - this->Bound.A.X;
+  this->Bound.EdgeY = this->B.Y - this->Bound.A.Y;
+  this->LengthSquared =
+    this->Bound.EdgeX * this->Bound.EdgeX + this->Bound.EdgeY * this->Bound.EdgeY;
   this->Best = None;
   this->Exacts = 0;
   this->WorkBefore = this->Budget.Work();
@@ -162,18 +259,18 @@ void ApexSearch::SetEdge(Index a, Index b)
  */
 Index ApexSearch::FindByAngle()
 {
-  double reach = std::fabs(this->EdgeX) + std::fabs(this->EdgeY);
-  const auto compare = [this](Index first, Index count) { this->Compare(first, count); };
+  double reach = std::fabs(this->Bound.EdgeX) + std::fabs(this->Bound.EdgeY);
+  const auto compare = [this](Index first, Index count) { this->CompareLeaf(first, count); };
   BoxAround box{ -Infinity, Infinity, -Infinity, Infinity };
   for (; this->Best == None && reach < Infinity; reach *= 2.0)
   {
-    box = { 0.5 * this->EdgeX - reach, 0.5 * this->EdgeX + reach, 0.5 * this->EdgeY - reach,
-      0.5 * this->EdgeY + reach };
+    box = { 0.5 * this->Bound.EdgeX - reach, 0.5 * this->Bound.EdgeX + reach,
+      0.5 * this->Bound.EdgeY - reach, 0.5 * this->Bound.EdgeY + reach };
     VisitLeaves(this->Grid, this->Origin, box, this->Budget, compare);
   }
-  const double radius = std::sqrt(this->RadiusSquared);
-  const BoxAround discs{ this->CenterX - radius, this->CenterX + radius, this->CenterY - radius,
-    this->CenterY + radius };
+  const double radius = std::sqrt(this->Bound.RadiusSquared);
+  const BoxAround discs{ this->Bound.CenterX - radius, this->Bound.CenterX + radius,
+    this->Bound.CenterY - radius, this->Bound.CenterY + radius };
   if (!(reach < Infinity) || !box.Holds(discs))
   {
     VisitLeaves(this->Grid, this->Origin, discs, this->Budget, compare);
@@ -189,69 +286,85 @@ Index ApexSearch::FindByAngle()
 bool ApexSearch::LookIntoBins()
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
-  const Index column = bins.Column(this->A.X), row = bins.Row(this->A.Y);
+  const Index column = bins.Column(this->Bound.A.X), row = bins.Row(this->Bound.A.Y);
   const double leastSide = std::min(bins.BinWidth, bins.BinHeight);
   const Region region{ std::max(column - NearColumns, 0),
     std::min(column + NearColumns, bins.Columns - 1), row, std::min(row + NearRows, bins.Rows - 1),
     0.002 * bins.BinWidth, 0.002 * bins.BinHeight, 1e12 * leastSide * leastSide };
-  bool haveLooked = false;
-#ifdef ELEVATION_HAS_AVX2
-  haveLooked = this->IsWide && this->LookIntoRowsWide(region);
-#endif
-  if (!haveLooked && !this->LookIntoRows(region))
+  if (!this->LookIntoRows(region))
   {
     return false;
   }
-  const double radius = std::sqrt(this->RadiusSquared);
-  const double low = bins.OriginX + region.FirstColumn * bins.BinWidth + region.SlackX - this->A.X;
+  const double radius = std::sqrt(this->Bound.RadiusSquared);
+  const double low =
+    bins.OriginX + region.FirstColumn * bins.BinWidth + region.SlackX - this->Bound.A.X;
   const double high =
-    bins.OriginX + (region.LastColumn + 1) * bins.BinWidth - region.SlackX - this->A.X;
+    bins.OriginX + (region.LastColumn + 1) * bins.BinWidth - region.SlackX - this->Bound.A.X;
   const double top =
-    bins.OriginY + (region.LastRow + 1) * bins.BinHeight - region.SlackY - this->A.Y;
-  return this->Best != None && (region.FirstColumn == 0 || this->CenterX - radius > low) &&
-    (region.LastColumn == bins.Columns - 1 || this->CenterX + radius < high) &&
-    (region.LastRow == bins.Rows - 1 || this->CenterY + radius < top);
+    bins.OriginY + (region.LastRow + 1) * bins.BinHeight - region.SlackY - this->Bound.A.Y;
+  return this->Best != None && (region.FirstColumn == 0 || this->Bound.CenterX - radius > low) &&
+    (region.LastColumn == bins.Columns - 1 || this->Bound.CenterX + radius < high) &&
+    (region.LastRow == bins.Rows - 1 || this->Bound.CenterY + radius < top);
 }
 
-/** Row by row, each as far as the disc reaches by then. */
+/**
+ * With vectors, rows are chosen by the disc at the start: they do not wait for the points of
+ * others, and branches are predictable. Without them, and while there is no disc, each row is
+ * chosen by the disc as it is by then.
+ * @return false if there are too many points
+ */
 bool ApexSearch::LookIntoRows(const Region& region)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
-  const double slope = this->EdgeY > 0.0 ? this->EdgeX / this->EdgeY : Infinity;
+  const double slope = this->Bound.EdgeY > 0.0 ? this->Bound.EdgeX / this->Bound.EdgeY : Infinity;
+  const double lowest =
+    bins.OriginY + region.FirstRow * bins.BinHeight - region.SlackY - this->Bound.A.Y;
+  const double offset = this->Bound.A.X - bins.OriginX;
   Index count = 0;
-  for (Index r = region.FirstRow; r <= region.LastRow; ++r)
+  for (Index row = region.FirstRow;;)
   {
-    const double low = bins.OriginY + r * bins.BinHeight - region.SlackY - this->A.Y;
-    const double high = low + bins.BinHeight + 2.0 * region.SlackY;
-    double left = -Infinity, right = Infinity;
-    if (this->RadiusSquared < region.MostSquared)
+    const double radiusSquared = this->Bound.RadiusSquared;
+    const double centerX = this->Bound.CenterX, centerY = this->Bound.CenterY;
+    const bool isDisc = radiusSquared < region.MostSquared;
+    const double top = this->Bound.A.Y + centerY + std::sqrt(radiusSquared) + region.SlackY;
+    const Index lastRow = isDisc ? std::min(bins.Row(top), region.LastRow) : region.LastRow;
+    if (row > lastRow)
     {
-      const double off = OffInterval(this->CenterY, low, high);
-      const double halfSquared = this->RadiusSquared - off * off;
-      if (halfSquared < 0.0) // the row is above the disc, whose circle runs through the origin
-      {
-        break;
-      }
-      const double half = std::sqrt(halfSquared);
-      left = this->CenterX - half;
-      right = this->CenterX + half;
+      return true;
     }
-    // The left of a rising edge's line is x < slope y.
-    right = std::min(right, std::max(slope * low, slope * high));
-    const Index first = std::max(bins.Column(this->A.X + left - region.SlackX), region.FirstColumn);
-    const Index last = std::min(bins.Column(this->A.X + right + region.SlackX), region.LastColumn);
-    if (first <= last)
+    const bool areAll = isDisc && this->Instructions != InstructionSet::Scalar;
+    const Index rows = areAll ? lastRow - row + 1 : 1;
+    // Without branches, so that the compiler makes vectors of it. Comparisons are in the order in
+    // which "not a number" is no bound.
+    Index firsts[NearRows + 1], lasts[NearRows + 1];
+    for (Index i = 0; i < rows; ++i)
     {
-      const auto slots = this->Grid.Slots(r, first, last);
-      count += slots.second - slots.first;
-      if (count > MostNear)
-      {
-        return false;
-      }
-      this->Compare(slots.first, slots.second - slots.first);
+      const double low = lowest + (row - region.FirstRow + i) * bins.BinHeight;
+      const double high = low + bins.BinHeight + 2.0 * region.SlackY;
+      const double off = OffInterval(centerY, low, high);
+      const double half = std::sqrt(std::max(radiusSquared - off * off, 0.0));
+      // The left of a rising edge's line is x < slope y.
+      const double right = std::min(centerX + half, std::max(slope * low, slope * high));
+      const double first = (offset + (centerX - half - region.SlackX)) * bins.PerX;
+      const double last = (offset + (right + region.SlackX)) * bins.PerX;
+      const double end = region.LastColumn;
+      firsts[i] =
+        static_cast<Index>(std::min(std::max<double>(region.FirstColumn, first), end + 1.0));
+      lasts[i] = static_cast<Index>(std::max(std::min(end, last), -1.0));
     }
+    std::pair<Index, Index> parts[NearRows + 1];
+    for (Index i = 0; i < rows; ++i)
+    {
+      parts[i] = this->Grid.Slots(row + i, firsts[i], std::max(lasts[i], firsts[i] - 1));
+      count += parts[i].second - parts[i].first;
+    }
+    if (count > MostNear)
+    {
+      return false;
+    }
+    this->Compare(parts, rows);
+    row += rows;
   }
-  return true;
 }
 
 /** Nearly always there is one candidate; otherwise exact comparisons decide. */
@@ -296,19 +409,19 @@ void ApexSearch::SetDisc(double s)
   constexpr double slack = 256.0 * UnitRoundoff;
   const double radiusSquared = this->LengthSquared * (0.25 + s * s) * (1.0 + slack);
   const bool isDisc = radiusSquared < 1e280 && radiusSquared > 1e-280;
-  this->RadiusSquared = isDisc ? radiusSquared : Infinity;
-  this->CenterX = isDisc ? 0.5 * this->EdgeX - s * this->EdgeY : 0.0;
-  this->CenterY = isDisc ? 0.5 * this->EdgeY + s * this->EdgeX : 0.0;
+  this->Bound.RadiusSquared = isDisc ? radiusSquared : Infinity;
+  this->Bound.CenterX = isDisc ? 0.5 * this->Bound.EdgeX - s * this->Bound.EdgeY : 0.0;
+  this->Bound.CenterY = isDisc ? 0.5 * this->Bound.EdgeY + s * this->Bound.EdgeX : 0.0;
 }
 
 /** Whether the disc, as far as it is above the origin, lies within the box of a step. */
 bool ApexSearch::HoldsDisc(const BoxTree::Step& step) const
 {
   // The radius is widened by more than the rounding of these differences.
-  const double radius = std::sqrt(this->RadiusSquared);
-  return this->CenterX - radius > step.LowX - this->A.X &&
-    this->CenterX + radius < step.HighX - this->A.X &&
-    this->CenterY + radius < step.HighY - this->A.Y;
+  const double radius = std::sqrt(this->Bound.RadiusSquared);
+  return this->Bound.CenterX - radius > step.LowX - this->Bound.A.X &&
+    this->Bound.CenterX + radius < step.HighX - this->Bound.A.X &&
+    this->Bound.CenterY + radius < step.HighY - this->Bound.A.Y;
 }
 
 /**
@@ -331,21 +444,21 @@ void ApexSearch::LookInto(const Node& node, unsigned int places)
     {
       ++next;
     }
-    for (int place = next + 1; this->RadiusSquared == Infinity && left >> place; ++place)
+    for (int place = next + 1; this->Bound.RadiusSquared == Infinity && left >> place; ++place)
     {
       next = (left >> place & 1) && distances[place] < distances[next] ? place : next;
     }
     left &= ~(1u << next);
-    const double radiusSquared = this->RadiusSquared;
+    const double radiusSquared = this->Bound.RadiusSquared;
     if (node.Count[next] > 0)
     {
-      this->Compare(node.First[next], node.Count[next]);
+      this->CompareLeaf(node.First[next], node.Count[next]);
     }
     else
     {
       this->LookInto(this->Grid.Tree.Nodes[node.First[next]], ~0u);
     }
-    if (left != 0 && this->RadiusSquared < radiusSquared)
+    if (left != 0 && this->Bound.RadiusSquared < radiusSquared)
     {
       left &= this->Reached(node, distances);
     }
@@ -358,236 +471,97 @@ void ApexSearch::LookInto(const Node& node, unsigned int places)
  */
 unsigned int ApexSearch::Reached(const Node& node, double* distances) const
 {
-#ifdef ELEVATION_HAS_AVX2
-  if (this->IsWide)
+  if (this->Instructions != InstructionSet::Scalar)
   {
-    return this->ReachedWide(node, distances);
+    return ReachedFinders[static_cast<int>(this->Instructions)](this->Bound, node, distances);
   }
-#endif
   unsigned int reached = 0;
   for (int place = 0; place < Node::Places; ++place)
   {
     // Differences round monotonically: relative to the origin, a box still contains its points.
-    const double highY = node.HighY[place] - this->A.Y;
-    if (node.First[place] == None || !(highY >= this->Floor))
+    const double highY = node.HighY[place] - this->Bound.A.Y;
+    if (node.First[place] == None || !(highY >= this->Bound.Floor))
     {
       continue;
     }
-    const double lowX = node.LowX[place] - this->A.X, highX = node.HighX[place] - this->A.X;
-    const double lowY = node.LowY[place] - this->A.Y;
-    const double offX = OffInterval(this->CenterX, lowX, highX);
-    const double offY = OffInterval(this->CenterY, lowY, highY);
-    if (offX * offX + offY * offY > this->RadiusSquared)
+    const double lowX = node.LowX[place] - this->Bound.A.X,
+                 highX = node.HighX[place] - this->Bound.A.X;
+    const double lowY = node.LowY[place] - this->Bound.A.Y;
+    const double offX = OffInterval(this->Bound.CenterX, lowX, highX);
+    const double offY = OffInterval(this->Bound.CenterY, lowY, highY);
+    if (offX * offX + offY * offY > this->Bound.RadiusSquared)
     {
       continue;
     }
     // Each product, and so their sum, is the greatest over the box: the cross product. It is below
     // zero by more than its rounding error only if all points are on the right.
-    const double up = this->EdgeX * (this->EdgeX > 0.0 ? highY : lowY);
-    const double across = -this->EdgeY * (this->EdgeY < 0.0 ? highX : lowX);
+    const double up = this->Bound.EdgeX * (this->Bound.EdgeX > 0.0 ? highY : lowY);
+    const double across = -this->Bound.EdgeY * (this->Bound.EdgeY < 0.0 ? highX : lowX);
     if (up + across + 16.0 * UnitRoundoff * (std::fabs(up) + std::fabs(across)) < -1e-290)
     {
       continue;
     }
     reached |= 1u << place;
-    const double fromX = OffInterval(0.5 * this->EdgeX, lowX, highX);
-    const double fromY = OffInterval(0.5 * this->EdgeY, lowY, highY);
+    const double fromX = OffInterval(0.5 * this->Bound.EdgeX, lowX, highX);
+    const double fromY = OffInterval(0.5 * this->Bound.EdgeY, lowY, highY);
     distances[place] = fromX * fromX + fromY * fromY;
   }
   return reached;
 }
 
-#ifdef ELEVATION_HAS_AVX2
-/** The same operations on four children at a time. */
-__attribute__((target("avx2"))) unsigned int ApexSearch::ReachedWide(
-  const Node& node, double* distances) const
+/** Compares the points of a leaf with the best so far. */
+void ApexSearch::CompareLeaf(Index first, Index count)
 {
-  const __m256d zero = _mm256_setzero_pd(), signBit = _mm256_set1_pd(-0.0);
-  const __m256d originX = _mm256_set1_pd(this->A.X), originY = _mm256_set1_pd(this->A.Y);
-  const __m256d centerX = _mm256_set1_pd(this->CenterX), centerY = _mm256_set1_pd(this->CenterY);
-  const __m256d middleX = _mm256_set1_pd(0.5 * this->EdgeX);
-  const __m256d middleY = _mm256_set1_pd(0.5 * this->EdgeY);
-  const __m256d edgeX = _mm256_set1_pd(this->EdgeX), minusEdgeY = _mm256_set1_pd(-this->EdgeY);
-  const __m256d radiusSquared = _mm256_set1_pd(this->RadiusSquared);
-  const __m256d roundoffs = _mm256_set1_pd(16.0 * UnitRoundoff), right = _mm256_set1_pd(-1e-290);
-  unsigned int reached = 0;
-  for (int place = 0; place < Node::Places; place += 4)
+  for (const Index end = first + count; first < end; first += MostNear)
   {
-    const __m256d lowX = _mm256_sub_pd(_mm256_loadu_pd(node.LowX + place), originX);
-    const __m256d highX = _mm256_sub_pd(_mm256_loadu_pd(node.HighX + place), originX);
-    const __m256d lowY = _mm256_sub_pd(_mm256_loadu_pd(node.LowY + place), originY);
-    const __m256d highY = _mm256_sub_pd(_mm256_loadu_pd(node.HighY + place), originY);
-    const __m256d offX = _mm256_max_pd(
-      _mm256_max_pd(_mm256_sub_pd(lowX, centerX), _mm256_sub_pd(centerX, highX)), zero);
-    const __m256d offY = _mm256_max_pd(
-      _mm256_max_pd(_mm256_sub_pd(lowY, centerY), _mm256_sub_pd(centerY, highY)), zero);
-    const __m256d up = _mm256_max_pd(_mm256_mul_pd(edgeX, lowY), _mm256_mul_pd(edgeX, highY));
-    const __m256d across =
-      _mm256_max_pd(_mm256_mul_pd(minusEdgeY, lowX), _mm256_mul_pd(minusEdgeY, highX));
-    const __m256d magnitude =
-      _mm256_add_pd(_mm256_andnot_pd(signBit, up), _mm256_andnot_pd(signBit, across));
-    const __m256d cross =
-      _mm256_add_pd(_mm256_add_pd(up, across), _mm256_mul_pd(roundoffs, magnitude));
-    const __m256d offSquared = _mm256_add_pd(_mm256_mul_pd(offX, offX), _mm256_mul_pd(offY, offY));
-    const __m256d isOutside = _mm256_or_pd(_mm256_cmp_pd(offSquared, radiusSquared, _CMP_GT_OQ),
-      _mm256_cmp_pd(cross, right, _CMP_LT_OQ));
-    const __m256d isPlace =
-      _mm256_cmp_pd(_mm256_loadu_pd(node.LowX + place), _mm256_set1_pd(Infinity), _CMP_LT_OQ);
-    const __m256d isReached = _mm256_andnot_pd(isOutside,
-      _mm256_and_pd(isPlace, _mm256_cmp_pd(highY, _mm256_set1_pd(this->Floor), _CMP_GE_OQ)));
-    reached |= static_cast<unsigned int>(_mm256_movemask_pd(isReached)) << place;
-    const __m256d fromX = _mm256_max_pd(
-      _mm256_max_pd(_mm256_sub_pd(lowX, middleX), _mm256_sub_pd(middleX, highX)), zero);
-    const __m256d fromY = _mm256_max_pd(
-      _mm256_max_pd(_mm256_sub_pd(lowY, middleY), _mm256_sub_pd(middleY, highY)), zero);
-    _mm256_storeu_pd(
-      distances + place, _mm256_add_pd(_mm256_mul_pd(fromX, fromX), _mm256_mul_pd(fromY, fromY)));
-  }
-  return reached;
-}
-
-/** Compares those of a range of slots that are inside the disc with the best so far. */
-__attribute__((target("avx2"))) void ApexSearch::CompareWide(Index first, Index end)
-{
-  for (Index slot = first; slot < end; slot += 8)
-  {
-    this->CompareEight(slot, end);
-  }
-}
-
-/** The same for up to eight slots from this one on. */
-__attribute__((target("avx2"), always_inline)) inline void ApexSearch::CompareEight(
-  Index slot, Index end)
-{
-  unsigned int inside = (this->InDisc(slot) | this->InDisc(slot + 4) << 4) &
-    (255u >> std::max(slot + 8 - end, 0)) &
-    ~(BitOf(this->Origin - slot) | BitOf(this->Target - slot) | BitOf(this->Best - slot));
-  while (inside)
-  {
-    const int next = __builtin_ctz(inside);
-    inside &= inside - 1;
-    if (this->CompareOne(slot + next))
-    {
-      this->SetDisc(this->BestUpperPosition());
-      inside &= this->InDisc(slot) | this->InDisc(slot + 4) << 4;
-    }
+    const std::pair<Index, Index> range{ first, std::min(first + MostNear, end) };
+    this->Compare(&range, 1);
   }
 }
 
 /**
- * As LookIntoRows(), but as far as the disc reaches at the start: rows do not wait for the points
- * of others, and branches are predictable. In one, as nine constants stay in registers.
- * @return false if nothing was done, because there are too many points or there is no disc
+ * Compares ranges of at most MostNear slots in all with the best so far; the disc shrinks if one is
+ * better. With vectors, few points are inside the disc.
  */
-__attribute__((target("avx2"))) bool ApexSearch::LookIntoRowsWide(const Region& region)
+void ApexSearch::Compare(const std::pair<Index, Index>* ranges, int number)
 {
-  const BinGrid::Layout& bins = this->Grid.Bins;
-  if (!(this->RadiusSquared < region.MostSquared))
-  {
-    return false;
-  }
-  const double top = this->A.Y + this->CenterY + std::sqrt(this->RadiusSquared) + region.SlackY;
-  const Index lastRow = std::min(bins.Row(top), region.LastRow);
-  const double lowest = bins.OriginY + region.FirstRow * bins.BinHeight - region.SlackY - this->A.Y;
-
-  struct
-  {
-    Index First, End;
-  // A row has one part for each eight slots. Three are written without a branch, whatever number
-  // counts: hence the last three.
-  } parts[MostNear / 8 + NearRows + 1 + 3];
-  Index number = 0, count = 0;
-  const __m256d zero = _mm256_setzero_pd();
-  const __m256d slope = _mm256_set1_pd(this->EdgeY > 0.0 ? this->EdgeX / this->EdgeY : Infinity);
-  const __m256d centerX = _mm256_set1_pd(this->CenterX), centerY = _mm256_set1_pd(this->CenterY);
-  const __m256d slack = _mm256_set1_pd(region.SlackX);
-  const __m256d rowHeight = _mm256_set1_pd(bins.BinHeight + 2.0 * region.SlackY);
-  const __m128i fours = _mm_setr_epi32(0, 1, 2, 3);
-  for (Index four = region.FirstRow; four <= lastRow; four += 4)
-  {
-    const __m256d above =
-      _mm256_cvtepi32_pd(_mm_add_epi32(_mm_set1_epi32(four - region.FirstRow), fours));
-    const __m256d low =
-      _mm256_add_pd(_mm256_set1_pd(lowest), _mm256_mul_pd(above, _mm256_set1_pd(bins.BinHeight)));
-    const __m256d high = _mm256_add_pd(low, rowHeight);
-    const __m256d off =
-      _mm256_max_pd(_mm256_max_pd(_mm256_sub_pd(low, centerY), _mm256_sub_pd(centerY, high)), zero);
-    const __m256d half = _mm256_sqrt_pd(_mm256_max_pd(
-      _mm256_sub_pd(_mm256_set1_pd(this->RadiusSquared), _mm256_mul_pd(off, off)), zero));
-    const __m256d left = _mm256_sub_pd(centerX, half);
-    const __m256d right =
-      _mm256_min_pd(_mm256_max_pd(_mm256_mul_pd(slope, low), _mm256_mul_pd(slope, high)),
-        _mm256_add_pd(centerX, half));
-    alignas(16) Index firsts[4], lasts[4];
-    _mm_store_si128(reinterpret_cast<__m128i*>(firsts),
-      _mm_max_epi32(ColumnsOf(bins, this->A.X, _mm256_sub_pd(left, slack)),
-        _mm_set1_epi32(region.FirstColumn)));
-    _mm_store_si128(reinterpret_cast<__m128i*>(lasts),
-      _mm_min_epi32(ColumnsOf(bins, this->A.X, _mm256_add_pd(right, slack)),
-        _mm_set1_epi32(region.LastColumn)));
-    for (Index k = 0; k < 4; ++k)
-    {
-      const Index r = std::min(four + k, lastRow);
-      const auto slots = this->Grid.Slots(r, firsts[k], four + k <= lastRow ? lasts[k] : -1);
-      const Index size = std::max(slots.second - slots.first, 0);
-      count += size;
-      if (count > MostNear)
-      {
-        return false;
-      }
-      Index first = slots.first;
-      for (Index i = 0; i < 3; ++i)
-      {
-        parts[number + i] = { first + 8 * i, slots.second };
-      }
-      for (Index i = 3; 8 * i < size; ++i)
-      {
-        parts[number + i] = { first + 8 * i, slots.second };
-      }
-      number += (size + 7) / 8;
-    }
-  }
-  this->Budget.Spend(count);
-  for (Index i = 0; i < number; ++i)
-  {
-    this->CompareEight(parts[i].First, parts[i].End);
-  }
-  return true;
-}
-
-/** Which of four slots from this one on are inside the disc, as bits. */
-__attribute__((target("avx2"), always_inline)) inline unsigned int ApexSearch::InDisc(
-  Index slot) const
-{
-  const __m256d x = _mm256_sub_pd(
-    _mm256_sub_pd(_mm256_loadu_pd(this->Grid.X.data() + slot), _mm256_set1_pd(this->A.X)),
-    _mm256_set1_pd(this->CenterX));
-  const __m256d y = _mm256_sub_pd(
-    _mm256_sub_pd(_mm256_loadu_pd(this->Grid.Y.data() + slot), _mm256_set1_pd(this->A.Y)),
-    _mm256_set1_pd(this->CenterY));
-  const __m256d squared = _mm256_add_pd(_mm256_mul_pd(x, x), _mm256_mul_pd(y, y));
-  // "Not greater" also holds for NaN: CompareOne() then decides, exactly where it must.
-  return static_cast<unsigned int>(
-    _mm256_movemask_pd(_mm256_cmp_pd(squared, _mm256_set1_pd(this->RadiusSquared), _CMP_NGT_UQ)));
-}
-#endif
-
-/** Compares a range of slots with the best so far; the disc shrinks if one is better. */
-void ApexSearch::Compare(Index first, Index count)
-{
-  this->Budget.Spend(count);
-#ifdef ELEVATION_HAS_AVX2
-  if (this->IsWide)
-  {
-    this->CompareWide(first, first + count);
-    return;
-  }
-#endif
-  for (Index slot = first; slot < first + count; ++slot)
-  {
-    if (this->CompareOne(slot))
+  const auto compare = [this](Index slot) {
+    const bool isBetter = this->CompareOne(slot);
+    if (isBetter)
     {
       this->SetDisc(this->BestUpperPosition());
+    }
+    return isBetter;
+  };
+  for (int k = 0; k < number; ++k)
+  {
+    this->Budget.Spend(ranges[k].second - ranges[k].first);
+  }
+  if (this->Instructions == InstructionSet::Scalar)
+  {
+    for (int k = 0; k < number; ++k)
+    {
+      for (Index slot = ranges[k].first; slot < ranges[k].second; ++slot)
+      {
+        compare(slot);
+      }
+    }
+    return;
+  }
+  Eight found[MostNear / 8 + NearRows + 2];
+  const auto find = InsideFinders[static_cast<int>(this->Instructions)];
+  const int count = find(this->Bound, this->Grid, ranges, number, found);
+  for (int k = 0; k < count; ++k)
+  {
+    Index slot = found[k].Slot;
+    unsigned int inside = found[k].Bits &
+      ~(BitOf(this->Origin - slot) | BitOf(this->Target - slot) | BitOf(this->Best - slot));
+    for (; inside != 0; inside >>= 1, ++slot)
+    {
+      if ((inside & 1) != 0)
+      {
+        compare(slot);
+      }
     }
   }
 }
@@ -600,8 +574,8 @@ void ApexSearch::Compare(Index first, Index count)
 bool ApexSearch::CompareOne(Index slot)
 {
   const Point2 p = this->Grid.PointAt(slot);
-  const double px = p.X - this->A.X, py = p.Y - this->A.Y;
-  const double left = this->EdgeX * py, right = this->EdgeY * px;
+  const double px = p.X - this->Bound.A.X, py = p.Y - this->Bound.A.Y;
+  const double left = this->Bound.EdgeX * py, right = this->Bound.EdgeY * px;
   const double cross = left - right;
   const double crossMagnitude = std::fabs(left) + std::fabs(right);
   const double crossError = 8.0 * UnitRoundoff * crossMagnitude + 1e-290;
@@ -612,7 +586,7 @@ bool ApexSearch::CompareOne(Index slot)
       return false;
     }
     this->CountExact();
-    if (Orientation(this->A, this->B, p) != Positive)
+    if (Orientation(this->Bound.A, this->B, p) != Positive)
     {
       return false;
     }
@@ -673,19 +647,20 @@ bool ApexSearch::IsBetter(Index slot, Index other) const
 {
   const Point2 p = this->Grid.PointAt(slot);
   const Point2 best = this->Grid.PointAt(other);
-  const Sign side = InCircle(this->A, this->B, best, p);
+  const Sign side = InCircle(this->Bound.A, this->B, best, p);
   if (side != Zero)
   {
     return side == Positive;
   }
-  const Point2& lowerEnd = IsLower(this->A, this->B) ? this->A : this->B;
+  const Point2& lowerEnd = IsLower(this->Bound.A, this->B) ? this->Bound.A : this->B;
   if (IsLower(p, lowerEnd) || IsLower(best, lowerEnd))
   {
     return IsLower(p, best);
   }
   // Counter-clockwise from the origin, the one nearer to b comes first.
-  const bool isNearerToB = Orientation(this->A, p, best) == Positive;
-  return isNearerToB == IsLower(this->A, this->B);
+  const bool isNearerToB = Orientation(this->Bound.A, p, best) == Positive;
+  return isNearerToB == IsLower(this->Bound.A, this->B);
 }
 
 } // namespace elevation
+#endif

@@ -41,9 +41,9 @@ public:
   ApexSearch(const BinGrid& grid, const DelaunayOptions& options, WorkBudget& budget)
     : Grid(grid)
     , Budget(budget)
-    , Around(grid, options.Instructions)
+    , Instructions(std::min(options.Instructions, WidestInstructions()))
+    , Around(grid, this->Instructions)
     , IsByAngle(options.Strategy == SearchStrategy::Compactness)
-    , IsWide(std::min(options.Instructions, WidestInstructions()) != InstructionSet::Scalar)
   {
   }
 
@@ -74,6 +74,26 @@ public:
    */
   Index FindAnywhere(Index a, Index b);
 
+  /**
+   * The disc that bounds the search, through both ends of the edge, and the edge. Coordinates are
+   * relative to the origin A: differences of neighbours are small, so that products lose less to
+   * rounding, and error bounds shrink with them.
+   */
+  struct Disc
+  {
+    Point2 A{ 0.0, 0.0 };
+    double EdgeX = 0.0, EdgeY = 0.0;
+    double Floor = 0.0; ///< boxes below are skipped
+    double CenterX = 0.0, CenterY = 0.0, RadiusSquared = 0.0;
+  };
+
+  /** Points of eight slots from this one on, as bits. */
+  struct Eight
+  {
+    Index Slot;
+    unsigned int Bits;
+  };
+
 // The passes of Find(): candidates of the window, plain bins, tree. Each pass starts from the disc
 // that the one before has left.
 private:
@@ -90,42 +110,27 @@ private:
   bool HoldsDisc(const BoxTree::Step& step) const;
   void LookInto(const Node& node, unsigned int places);
   unsigned int Reached(const Node& node, double* distances) const;
-  void Compare(Index first, Index count);
+  void CompareLeaf(Index first, Index count);
+  void Compare(const std::pair<Index, Index>* ranges, int number);
   bool CompareOne(Index slot);
   void CountExact();
   bool IsBetter(Index slot, Index other) const;
-// The same with AVX2.
-#ifdef ELEVATION_HAS_AVX2
-  __attribute__((target("avx2"))) unsigned int ReachedWide(
-    const Node& node, double* distances) const;
-  __attribute__((target("avx2"))) void CompareWide(Index first, Index end);
-  __attribute__((target("avx2"), always_inline)) inline void CompareEight(Index slot, Index end);
-  __attribute__((target("avx2"))) bool LookIntoRowsWide(const Region& region);
-  __attribute__((target("avx2"), always_inline)) inline unsigned int InDisc(Index slot) const;
-#endif
 
   const BinGrid& Grid;
   WorkBudget& Budget;
+  const InstructionSet Instructions;
   WideApexSearch Around;
   const bool IsByAngle;
-  const bool IsWide;
   int Exacts = 0;              ///< exact comparisons in this search
   std::int64_t WorkBefore = 0; ///< the budget's work when this search began
   bool HasAround = false;
   WideApexSearch::Candidates Open; ///< over the edge to OpenEnd
   Index OpenEnd = None;
 
-  // Coordinates are relative to the origin A: differences of neighbours are small, so that products
-  // lose less to rounding, and error bounds shrink with them.
-
-  // The edge.
-  double Floor = 0.0; ///< relative to the origin; boxes below are skipped
   Index Origin = None, Target = None;
-  Point2 A{ 0.0, 0.0 }, B{ 0.0, 0.0 };
-  double EdgeX = 0.0, EdgeY = 0.0, LengthSquared = 0.0;
-
-  // The disc that bounds the search, relative to A.
-  double CenterX = 0.0, CenterY = 0.0, RadiusSquared = 0.0;
+  Point2 B{ 0.0, 0.0 };
+  double LengthSquared = 0.0; ///< of the edge
+  Disc Bound;
 
   // The best point so far.
   Index Best = None;

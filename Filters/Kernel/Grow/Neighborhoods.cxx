@@ -8,76 +8,84 @@
 #include <cmath>
 #include <limits>
 
-#if defined(__GNUC__) && !defined(__clang__)
-// GCC 12 warns of undefined values in its own intrinsics.
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "Kernel/Grow/Neighborhoods.cxx"
+#include "Kernel/Bins/Vectors.h"
 
+#if ELEVATION_IS_VECTOR
+HWY_BEFORE_NAMESPACE();
 namespace elevation
 {
-#ifdef ELEVATION_HAS_AVX2
-namespace
+namespace HWY_NAMESPACE
 {
-// A compromise: with fewer, more apexes lie beyond; with more, each comparison takes more vectors.
-constexpr double PointsInBox = 18.0; // expected; halved if there are too many
+namespace hn = hwy::HWY_NAMESPACE;
 
-/** A box, in vectors of four. */
+// At most eight numbers, as there are places in a node, and as may be read behind the points.
+constexpr hn::CappedTag<float, 8> Floats;
+constexpr hn::CappedTag<std::int32_t, 8> Integers;
+constexpr hn::Rebind<std::uint8_t, decltype(Floats)> Bytes;
+constexpr hn::CappedTag<double, 8> Doubles;
+constexpr hn::Rebind<float, decltype(Doubles)> Half; ///< of the floats, or all of them
+constexpr int InVector = static_cast<int>(hn::MaxLanes(Doubles));
+constexpr int InFloats = static_cast<int>(hn::MaxLanes(Floats)); ///< one or two vectors of doubles
+
+HWY_INLINE unsigned int BitsOf(hn::Mask<decltype(Doubles)> mask)
+{
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(Doubles, mask, bits);
+  return bits[0];
+}
+
+/** A box, in vectors. */
 struct WideBox
 {
-  __m256d LowX, HighX, LowY, HighY;
+  hn::Vec<decltype(Doubles)> LowX, HighX, LowY, HighY;
 
-  /** Which of four children of a node touch it, as bits. */
-  ELEVATION_WIDE_INLINE int Touches(const BoxTree::Node& node, int first) const
+  /** Which children of a node from one on touch it. */
+  HWY_INLINE hn::Mask<decltype(Doubles)> Touches(const BoxTree::Node& node, int first) const
   {
-    const __m256d isWithinX =
-      _mm256_and_pd(_mm256_cmp_pd(_mm256_loadu_pd(node.LowX + first), this->HighX, _CMP_LE_OQ),
-        _mm256_cmp_pd(_mm256_loadu_pd(node.HighX + first), this->LowX, _CMP_GE_OQ));
-    const __m256d isWithinY =
-      _mm256_and_pd(_mm256_cmp_pd(_mm256_loadu_pd(node.LowY + first), this->HighY, _CMP_LE_OQ),
-        _mm256_cmp_pd(_mm256_loadu_pd(node.HighY + first), this->LowY, _CMP_GE_OQ));
-    return _mm256_movemask_pd(_mm256_and_pd(isWithinX, isWithinY));
+    return hn::And(hn::And(hn::Le(hn::LoadU(Doubles, node.LowX + first), this->HighX),
+                     hn::Ge(hn::LoadU(Doubles, node.HighX + first), this->LowX)),
+      hn::And(hn::Le(hn::LoadU(Doubles, node.LowY + first), this->HighY),
+        hn::Ge(hn::LoadU(Doubles, node.HighY + first), this->LowY)));
   }
-  /** Which of four points it contains, as bits. */
-  ELEVATION_WIDE_INLINE int Holds(__m256d x, __m256d y) const
+  /** Which points it contains. */
+  HWY_INLINE hn::Mask<decltype(Doubles)> Holds(
+    hn::Vec<decltype(Doubles)> x, hn::Vec<decltype(Doubles)> y) const
   {
-    const __m256d isInX = _mm256_and_pd(
-      _mm256_cmp_pd(x, this->LowX, _CMP_GE_OQ), _mm256_cmp_pd(x, this->HighX, _CMP_LE_OQ));
-    const __m256d isInY = _mm256_and_pd(
-      _mm256_cmp_pd(y, this->LowY, _CMP_GE_OQ), _mm256_cmp_pd(y, this->HighY, _CMP_LE_OQ));
-    return _mm256_movemask_pd(_mm256_and_pd(isInX, isInY));
+    return hn::And(hn::And(hn::Ge(x, this->LowX), hn::Le(x, this->HighX)),
+      hn::And(hn::Ge(y, this->LowY), hn::Le(y, this->HighY)));
   }
 };
 
 /** Adds the points of a leaf in the box. @return false if there are too many */
-ELEVATION_WIDE_INLINE bool AddLeaf(
+HWY_INLINE bool AddLeaf(
   const BinGrid& grid, Index slot, Index end, const WideBox& box, Neighborhood& around)
 {
-  const __m256d centerX = _mm256_set1_pd(around.CenterX), centerY = _mm256_set1_pd(around.CenterY);
-  const __m256d scale = _mm256_set1_pd(around.PerSide);
-  for (; slot < end; slot += 8)
+  const auto centerX = hn::Set(Doubles, around.CenterX), centerY = hn::Set(Doubles, around.CenterY);
+  const auto scale = hn::Set(Doubles, around.PerSide);
+  for (; slot < end; slot += InFloats)
   {
-    int in = 0;
-    __m128 x[2], y[2]; // in sides
-    for (int half = 0; half < 2; ++half)
+    unsigned int in = 0;
+    alignas(32) float sidesX[8], sidesY[8];
+    for (int i = 0; i < InFloats; i += InVector)
     {
-      const __m256d pointX = _mm256_loadu_pd(grid.X.data() + slot + 4 * half);
-      const __m256d pointY = _mm256_loadu_pd(grid.Y.data() + slot + 4 * half);
-      in |= box.Holds(pointX, pointY) << (4 * half);
-      x[half] = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(pointX, centerX), scale));
-      y[half] = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(pointY, centerY), scale));
+      const auto x = hn::LoadU(Doubles, grid.X.data() + slot + i);
+      const auto y = hn::LoadU(Doubles, grid.Y.data() + slot + i);
+      in |= BitsOf(box.Holds(x, y)) << i;
+      hn::Store(hn::DemoteTo(Half, hn::Mul(hn::Sub(x, centerX), scale)), Half, sidesX + i);
+      hn::Store(hn::DemoteTo(Half, hn::Mul(hn::Sub(y, centerY), scale)), Half, sidesY + i);
     }
-    // The last eight of a leaf may run into the next leaf, whose points come with that leaf.
-    in &= 255 >> std::max(slot + 8 - end, 0);
+    // The last of a leaf may run into the next leaf, whose points come with that leaf.
+    in &= 255u >> std::max(slot + 8 - end, 0);
     // Points in the box come first, the others are overwritten.
-    const __m256i which = PlacesOf(in);
+    const auto places = hn::PromoteTo(Integers, hn::LoadU(Bytes, Packings.Places[in]));
+    const auto which = hn::IndicesFromVec(Floats, places);
     const int count = around.Count;
-    _mm256_storeu_ps(
-      around.X + count, _mm256_permutevar8x32_ps(_mm256_set_m128(x[1], x[0]), which));
-    _mm256_storeu_ps(
-      around.Y + count, _mm256_permutevar8x32_ps(_mm256_set_m128(y[1], y[0]), which));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(around.Slots + count),
-      _mm256_add_epi32(_mm256_set1_epi32(slot), which));
-    around.Count = count + __builtin_popcount(in);
+    hn::StoreU(hn::TableLookupLanes(hn::Load(Floats, sidesX), which), Floats, around.X + count);
+    hn::StoreU(hn::TableLookupLanes(hn::Load(Floats, sidesY), which), Floats, around.Y + count);
+    hn::StoreU(hn::Add(hn::Set(Integers, slot), places), Integers, around.Slots + count);
+    around.Count = count + static_cast<int>(hwy::PopCount(in));
     if (around.Count > Neighborhood::MostPoints)
     {
       return false;
@@ -87,11 +95,11 @@ ELEVATION_WIDE_INLINE bool AddLeaf(
 }
 
 /** Adds all points of the box below a node. @return false if there are too many */
-ELEVATION_WIDE bool GatherBox(
+bool GatherBox(
   const BinGrid& grid, const BoxTree::Node& top, const Box& extent, Neighborhood& around)
 {
-  const WideBox box{ _mm256_set1_pd(extent.Low.X), _mm256_set1_pd(extent.High.X),
-    _mm256_set1_pd(extent.Low.Y), _mm256_set1_pd(extent.High.Y) };
+  const WideBox box{ hn::Set(Doubles, extent.Low.X), hn::Set(Doubles, extent.High.X),
+    hn::Set(Doubles, extent.Low.Y), hn::Set(Doubles, extent.High.Y) };
   around.Count = 0;
   // Nodes to look into, from the last found on. Boxes are small, so few nodes touch one; a deeper
   // stack than this counts as too many points.
@@ -101,11 +109,11 @@ ELEVATION_WIDE bool GatherBox(
   while (height > 0)
   {
     const BoxTree::Node& node = *stack[--height];
-    for (int half = 0; half < BoxTree::Node::Places; half += 4)
+    for (int part = 0; part < BoxTree::Node::Places; part += InVector)
     {
-      for (int within = box.Touches(node, half); within; within &= within - 1)
+      for (unsigned int within = BitsOf(box.Touches(node, part)); within; within &= within - 1)
       {
-        const int place = half + __builtin_ctz(within);
+        const int place = part + static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(within));
         const Index first = node.First[place], count = node.Count[place];
         if (count > 0)
         {
@@ -124,10 +132,24 @@ ELEVATION_WIDE bool GatherBox(
     }
   }
   // Readers take whole vectors: NaN is in no box.
-  _mm256_storeu_ps(
-    around.X + around.Count, _mm256_set1_ps(std::numeric_limits<float>::quiet_NaN()));
+  std::fill_n(around.X + around.Count, 16, std::numeric_limits<float>::quiet_NaN());
   return true;
 }
+} // namespace HWY_NAMESPACE
+} // namespace elevation
+HWY_AFTER_NAMESPACE();
+#endif
+
+#if HWY_ONCE
+namespace elevation
+{
+namespace
+{
+// A compromise: with fewer, more apexes lie beyond; with more, each comparison takes more vectors.
+constexpr double PointsInBox = 18.0; // expected; halved if there are too many
+
+using BoxGatherer = bool(const BinGrid&, const BoxTree::Node&, const Box&, Neighborhood&);
+constexpr BoxGatherer* BoxGatherers[NumberOfInstructionSets] = ELEVATION_VERSIONS(GatherBox);
 } // namespace
 
 const Neighborhood& Neighborhoods::Around(Index slot)
@@ -219,13 +241,13 @@ void Neighborhoods::Gather(Index slot, Neighborhood& around) const
     {
       top = this->Grid.Tree.Above(top);
     }
-    if (GatherBox(this->Grid, *top.Node, box, around))
+    if (BoxGatherers[static_cast<int>(this->Instructions)](this->Grid, *top.Node, box, around))
     {
       return;
     }
   }
   around.Count = 0;
 }
-#endif
 
 } // namespace elevation
+#endif

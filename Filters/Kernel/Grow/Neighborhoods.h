@@ -26,7 +26,7 @@ namespace elevation
 struct Neighborhood
 {
   static constexpr int MostPoints = 120;
-  static constexpr int Room = MostPoints + 8; ///< as whole vectors are written
+  static constexpr int Room = MostPoints + 16; ///< as whole vectors are written
 
   Index First = 0, End = 0;         ///< slots of the leaf
   int Count = 0;                    ///< 0 if they are too many
@@ -44,8 +44,10 @@ public:
   /** From the middle of a leaf to the farthest point around it, in sides of a box. */
   static constexpr double MostSides = 4.0;
 
-  explicit Neighborhoods(const BinGrid& grid)
+  /** @param instructions  a set with vectors that the processor has */
+  Neighborhoods(const BinGrid& grid, InstructionSet instructions)
     : Grid(grid)
+    , Instructions(instructions)
   {
   }
 
@@ -57,6 +59,7 @@ private:
   void Gather(Index slot, Neighborhood& around) const;
 
   const BinGrid& Grid;
+  const InstructionSet Instructions;
   std::vector<Neighborhood> Recent;
   /** A cache: for slot / 8, modulo the size, the index of a neighborhood. */
   std::vector<Index> Places;

@@ -6,18 +6,150 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
-#if defined(__GNUC__) && !defined(__clang__)
-// GCC 12 warns of undefined values in its own intrinsics.
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "Kernel/Grow/PointWindows.cxx"
+#include "Kernel/Bins/Vectors.h"
 
+#if ELEVATION_IS_VECTOR
+HWY_BEFORE_NAMESPACE();
 namespace elevation
 {
-#ifdef ELEVATION_HAS_AVX2
+namespace HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+
+// At most eight, as rows have about six points in a window.
+constexpr hn::CappedTag<float, 8> Floats;
+constexpr hn::CappedTag<std::int32_t, 8> Integers;
+constexpr hn::Rebind<std::uint8_t, decltype(Floats)> Bytes;
+constexpr int InVector = static_cast<int>(hn::MaxLanes(Floats));
+
+/** The lanes for which a comparison holds, as bits. */
+template <typename Tag>
+HWY_INLINE unsigned int BitsOf(Tag tag, hn::Mask<Tag> mask)
+{
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(tag, mask, bits);
+  return bits[0];
+}
+
+/** Writes the vectors of a window from a lane on; lanes need not be aligned. */
+HWY_INLINE void Write(PointWindows::Window& window, int lane, hn::Vec<decltype(Floats)> x,
+  hn::Vec<decltype(Floats)> y, hn::Vec<decltype(Integers)> slots)
+{
+  hn::StoreU(x, Floats, window.X + lane);
+  hn::StoreU(y, Floats, window.Y + lane);
+  hn::StoreU(hn::MulAdd(x, x, hn::Mul(y, y)), Floats, window.Square + lane);
+  hn::StoreU(slots, Integers, window.Slots + lane);
+}
+
+/** Ends a window after so many points. */
+HWY_INLINE void Close(PointWindows::Window& window, int count)
+{
+  window.Lanes = count <= PointWindows::FewLanes ? PointWindows::FewLanes : PointWindows::MostLanes;
+  // Without a branch for most windows.
+  for (int lane = count; lane < count + 16; lane += InVector)
+  {
+    hn::StoreU(hn::NaN(Floats), Floats, window.X + lane);
+  }
+  for (int lane = count + 16; lane < window.Lanes; lane += InVector)
+  {
+    hn::StoreU(hn::NaN(Floats), Floats, window.X + lane);
+  }
+}
+
+/**
+ * Fills a window with the points of some columns of rows, relative to its vertex.
+ * @return false if there are more than most
+ */
+bool CopyRows(const PointWindows::NearRow* rows, int number, Index firstColumn, Index endColumn,
+  int most, PointWindows::Window& window)
+{
+  const Index place = window.Origin - rows->FirstSlot;
+  const auto x0 = hn::Set(Integers, rows->X[place]), y0 = hn::Set(Integers, rows->Y[place]);
+  const auto lanes = hn::Iota(Integers, 0);
+  window.OriginLane = window.Origin - rows->Starts[firstColumn];
+  int count = 0;
+  for (int k = 0; k < number; ++k)
+  {
+    const PointWindows::NearRow& row = rows[k];
+    const Index first = row.Starts[firstColumn], size = row.Starts[endColumn] - first;
+    if (count + size > most)
+    {
+      return false;
+    }
+    const std::int32_t* const x = row.X + (first - row.FirstSlot);
+    const std::int32_t* const y = row.Y + (first - row.FirstSlot);
+    // Whole vectors: the excess is overwritten by the next row, or by NaN. For most rows, eight are
+    // enough: no branch depends on whether they are.
+    for (int i = 0; i < 8 || i < size; i += InVector)
+    {
+      Write(window, count + i, hn::ConvertTo(Floats, hn::Sub(hn::LoadU(Integers, x + i), x0)),
+        hn::ConvertTo(Floats, hn::Sub(hn::LoadU(Integers, y + i), y0)),
+        hn::Add(hn::Set(Integers, first + i), lanes));
+    }
+    count += size;
+  }
+  Close(window, count);
+  return true;
+}
+
+/**
+ * Fills a window with the points of a neighborhood in a box of a size around the vertex, which is
+ * at (originX, originY) there.
+ * @return false if there are too many
+ */
+bool CopyBox(const Neighborhood& around, float originX, float originY, float size,
+  PointWindows::Window& window)
+{
+  // The box that is copied is larger than what Left, Right and Top promise by 0.0005 sides, more
+  // than the rounding of a coordinate; the vertex's own row needs the same below.
+  const auto across = hn::Set(Floats, 0.5505f * size), up = hn::Set(Floats, 0.9005f * size);
+  const auto down = hn::Set(Floats, -0.0005f);
+  const auto x0 = hn::Set(Floats, originX), y0 = hn::Set(Floats, originY);
+  const auto origin = hn::Set(Integers, window.Origin);
+  std::uint64_t originLanes = 0;
+  int count = 0;
+  for (int i = 0; i < around.Count; i += InVector)
+  {
+    const auto x = hn::Sub(hn::LoadU(Floats, around.X + i), x0);
+    const auto y = hn::Sub(hn::LoadU(Floats, around.Y + i), y0);
+    const auto isIn = hn::And(hn::Le(hn::Abs(x), across), hn::And(hn::Ge(y, down), hn::Le(y, up)));
+    const unsigned int in = BitsOf(Floats, isIn);
+    // The points in the box move to the front; the next vectors overwrite the rest.
+    const auto places = hn::PromoteTo(Integers, hn::LoadU(Bytes, Packings.Places[in]));
+    const auto which = hn::IndicesFromVec(Floats, places);
+    const auto slots = hn::TableLookupLanes(
+      hn::LoadU(Integers, around.Slots + i), hn::IndicesFromVec(Integers, places));
+    Write(window, count, hn::TableLookupLanes(x, which), hn::TableLookupLanes(y, which), slots);
+    originLanes |= static_cast<std::uint64_t>(BitsOf(Integers, hn::Eq(slots, origin))) << count;
+    count += static_cast<int>(hwy::PopCount(in));
+    if (count > PointWindows::Capacity)
+    {
+      return false;
+    }
+  }
+  Close(window, count);
+  // Behind the points of a vector, its first one may stand again.
+  window.OriginLane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(originLanes));
+  return true;
+}
+} // namespace HWY_NAMESPACE
+} // namespace elevation
+HWY_AFTER_NAMESPACE();
+#endif
+
+#if HWY_ONCE
+namespace elevation
+{
 namespace
 {
-constexpr float NotANumber = std::numeric_limits<float>::quiet_NaN();
+using RowCopier = bool(const PointWindows::NearRow*, int, Index, Index, int, PointWindows::Window&);
+constexpr RowCopier* RowCopiers[NumberOfInstructionSets] = ELEVATION_VERSIONS(CopyRows);
+using BoxCopier = bool(const Neighborhood&, float, float, float, PointWindows::Window&);
+constexpr BoxCopier* BoxCopiers[NumberOfInstructionSets] = ELEVATION_VERSIONS(CopyBox);
 
 // The passes: EnterRow() rounds the points of four rows of bins; Gather...() copies those of a
 // window relative to its vertex; SetBounds() records how far the window reaches, for the proof.
@@ -30,20 +162,16 @@ struct Shape
 };
 constexpr Shape Shapes[] = { { 6, 4 }, { 3, 3 }, { 3, 2 } };
 
-/** Eight coordinates in whole units from the grid's corner, rounded to the nearest. */
-ELEVATION_WIDE inline __m256i EightUnits(const double* values, __m256d from, __m256d perUnit)
+/**
+ * A coordinate in whole units from the grid's corner, rounded to the nearest. With this number
+ * added, the lowest bits of a double are a whole number: a loop of this is vectorized everywhere.
+ */
+inline std::int32_t Units(double value, double from, double perUnit)
 {
-  const __m128i low =
-    _mm256_cvtpd_epi32(_mm256_mul_pd(_mm256_sub_pd(_mm256_loadu_pd(values), from), perUnit));
-  const __m128i high =
-    _mm256_cvtpd_epi32(_mm256_mul_pd(_mm256_sub_pd(_mm256_loadu_pd(values + 4), from), perUnit));
-  return _mm256_set_m128i(high, low);
-}
-
-/** The same for one coordinate. */
-ELEVATION_WIDE inline std::int32_t Units(double value, double from, double perUnit)
-{
-  return _mm_cvtsd_si32(_mm_set_sd((value - from) * perUnit)); // to the nearest, as above
+  const double shifted = (value - from) * perUnit + 0x1.8p52;
+  std::int64_t bits;
+  std::memcpy(&bits, &shifted, sizeof bits);
+  return static_cast<std::int32_t>(bits);
 }
 
 } // namespace
@@ -52,11 +180,15 @@ ELEVATION_WIDE inline std::int32_t Units(double value, double from, double perUn
  * Chooses the unit, as large as the ranges of float and of 32 bits allow; windows of bins are not
  * used where bins are too unequal for one unit.
  */
-PointWindows::PointWindows(const BinGrid& grid, bool isWidest)
+PointWindows::PointWindows(const BinGrid& grid, InstructionSet instructions)
   : Grid(grid)
-  , IsWidest(isWidest)
-  , Leaves(grid)
+  , Instructions(instructions)
+  , Leaves(grid, instructions)
 {
+  if (instructions == InstructionSet::Scalar)
+  {
+    return;
+  }
   const BinGrid::Layout& bins = grid.Bins;
   // Two coordinates are rounded, then their difference. A box reaches 0.9 sides upwards and 0.55 to
   // each side: 1.1 is more than its diagonal.
@@ -122,6 +254,10 @@ void PointWindows::Bounds::Set(double reach, double error, double margin)
 
 bool PointWindows::Gather(Index origin, Index next)
 {
+  if (this->Instructions == InstructionSet::Scalar)
+  {
+    return false;
+  }
   // Two windows alternate: the one gathered ahead by the last call is nearly always the one asked
   // for now.
   Window* other = this->Windows + (this->InUse == this->Windows);
@@ -139,7 +275,7 @@ bool PointWindows::Gather(Index origin, Index next)
   {
     this->GatherInto(*other);
   }
-  return this->InUse->Vectors > 0;
+  return this->InUse->Lanes > 0;
 }
 
 // Tried from the largest window to the smallest; a window that is too small only costs more
@@ -159,23 +295,23 @@ void PointWindows::GatherInto(Window& window)
     // reaches at least 2.5 columns to each side.
     const Index first = static_cast<Index>((p.X - bins.OriginX) * bins.PerX + 0.5) - 3;
     const Index column = bins.Column(p.X);
-    const Index* const own = this->Near[0]->Starts + column;
+    const Index* const own = this->Near[0].Starts + column;
     // A bin with more points than a window holds would fail in all three shapes.
     if (this->AreNearRead && own[1] - own[0] <= Capacity &&
-      ((this->IsWidest ? this->GatherWidest(window, first) : this->GatherEven(window, first)) ||
-        this->GatherBins(window, column, 1) || this->GatherBins(window, column, 2)))
+      (this->GatherBins(window, first, 0) || this->GatherBins(window, column - 1, 1) ||
+        this->GatherBins(window, column - 1, 2)))
     {
       return;
     }
   }
   if (!this->GatherBox(window))
   {
-    window.Vectors = 0;
+    window.Lanes = 0;
   }
 }
 
 /** Reads the rows that windows of a row's vertices need. */
-ELEVATION_WIDE void PointWindows::EnterRow(Index number)
+void PointWindows::EnterRow(Index number)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
   this->CurrentRow = number;
@@ -198,7 +334,7 @@ ELEVATION_WIDE void PointWindows::EnterRow(Index number)
       this->ReadRow(row);
     }
     this->AreNearRead = this->AreNearRead && (row.Number == None || row.IsRead);
-    this->Near[r - number] = &row;
+    this->Near[r - number] = { row.X.data(), row.Y.data(), row.Starts, row.FirstSlot };
   }
   for (int shape = 0; shape < NumberOfShapes; ++shape)
   {
@@ -209,8 +345,8 @@ ELEVATION_WIDE void PointWindows::EnterRow(Index number)
   }
 }
 
-/** Rounds the coordinates of a row's points to units, eight at a time. */
-ELEVATION_WIDE void PointWindows::ReadRow(Row& row)
+/** Rounds the coordinates of a row's points to units. */
+void PointWindows::ReadRow(Row& row)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
   const auto slots = this->Grid.Slots(row.Number, 0, bins.Columns - 1);
@@ -228,20 +364,18 @@ ELEVATION_WIDE void PointWindows::ReadRow(Row& row)
     row.X.resize(count + count / 4 + RowRoom);
     row.Y.resize(count + count / 4 + RowRoom);
   }
-  const __m256d perUnit = _mm256_set1_pd(this->PerUnit);
-  const __m256d fromX = _mm256_set1_pd(bins.OriginX), fromY = _mm256_set1_pd(bins.OriginY);
-  for (std::size_t i = 0; i < count; i += 8)
+  const double* const x = this->Grid.X.data() + slots.first;
+  const double* const y = this->Grid.Y.data() + slots.first;
+  for (std::size_t i = 0; i < count; ++i)
   {
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(row.X.data() + i),
-      EightUnits(this->Grid.X.data() + slots.first + i, fromX, perUnit));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(row.Y.data() + i),
-      EightUnits(this->Grid.Y.data() + slots.first + i, fromY, perUnit));
+    row.X[i] = Units(x[i], bins.OriginX, this->PerUnit);
+    row.Y[i] = Units(y[i], bins.OriginY, this->PerUnit);
   }
 }
 
 /** How far a window of bins reaches from the vertex. */
-ELEVATION_WIDE_INLINE void PointWindows::SetBounds(Window& window, int shape, Index firstColumn,
-  Index endColumn, std::int32_t originX, std::int32_t originY) const
+void PointWindows::SetBounds(Window& window, int shape, Index firstColumn, Index endColumn,
+  std::int32_t originX, std::int32_t originY) const
 {
   window.IsBox = false;
   window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
@@ -251,235 +385,28 @@ ELEVATION_WIDE_INLINE void PointWindows::SetBounds(Window& window, int shape, In
 }
 
 /**
- * Gathers at most 32 points, packed into two vectors. With wide registers, packing is cheap: an
- * expanding load puts a row's points where the row before has ended.
+ * Gathers the points of bins. An odd number of columns has the vertex's in the middle.
+ * @return false if there are too many
  */
-ELEVATION_WIDEST bool PointWindows::GatherWidest(Window& window, Index firstColumn)
+bool PointWindows::GatherBins(Window& window, Index firstColumn, int shape)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
-  const Index endColumn = std::min(firstColumn + Shapes[0].Columns, bins.Columns);
+  const Index endColumn = std::min(firstColumn + Shapes[shape].Columns, bins.Columns);
   firstColumn = std::max(firstColumn, 0);
-
-  // The points of each row overwrite the lanes beyond the previous row. Masked loads put the points
-  // of a row behind those of the rows before: "places" has the lanes from count on, low for the
-  // first vector, high for the second. What a row writes beyond its points belongs to later rows,
-  // or becomes NaN at the end.
-  const __m512i lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  __m512i lowX = lanes, highX = lanes, lowY = lanes, highY = lanes, lowSlot = lanes,
-          highSlot = lanes;
-  unsigned int count = 0;
-  for (int k = 0; k < MostRows; ++k)
+  // With more in the largest window, each search would take twice as long.
+  if (!RowCopiers[static_cast<int>(this->Instructions)](this->Near, Shapes[shape].Rows, firstColumn,
+        endColumn, shape == 0 ? FewLanes : Capacity, window))
   {
-    const Row& row = *this->Near[k];
-    const Index first = row.Starts[firstColumn];
-    const unsigned int size = row.Starts[endColumn] - first;
-    if (count + size > 32)
-    {
-      return false;
-    }
-    const std::uint32_t places = static_cast<std::uint32_t>(~std::uint64_t(0) << count);
-    // Shifts of 64 bits, as count may be 32: then no lane is left.
-    const __mmask16 low = static_cast<__mmask16>(places);
-    const __mmask16 high = static_cast<__mmask16>(places >> 16);
-    // How many of the row's points go to the first vector; the second one continues there.
-    const int inLow = count < 16 ? 16 - count : 0;
-    const std::int32_t* const x = row.X.data() + (first - row.FirstSlot);
-    const std::int32_t* const y = row.Y.data() + (first - row.FirstSlot);
-    lowX = _mm512_mask_expandloadu_epi32(lowX, low, x);
-    highX = _mm512_mask_expandloadu_epi32(highX, high, x + inLow);
-    lowY = _mm512_mask_expandloadu_epi32(lowY, low, y);
-    highY = _mm512_mask_expandloadu_epi32(highY, high, y + inLow);
-    // Slots of a row are consecutive, so they follow from the lane.
-    const __m512i offset = _mm512_set1_epi32(first - static_cast<Index>(count));
-    lowSlot = _mm512_mask_add_epi32(lowSlot, low, lanes, offset);
-    highSlot =
-      _mm512_mask_add_epi32(highSlot, high, lanes, _mm512_add_epi32(offset, _mm512_set1_epi32(16)));
-    count += size;
+    return false;
   }
-  const Row& own = *this->Near[0];
-  const Index place = window.Origin - own.FirstSlot;
-  const std::int32_t originX = own.X[place], originY = own.Y[place];
-  const __m512i x0 = _mm512_set1_epi32(originX), y0 = _mm512_set1_epi32(originY);
-  const std::uint32_t rest = static_cast<std::uint32_t>(~std::uint64_t(0) << count);
-  const __m512 nothing = _mm512_set1_ps(NotANumber);
-  const __m512 x = _mm512_mask_mov_ps(
-    _mm512_cvtepi32_ps(_mm512_sub_epi32(lowX, x0)), static_cast<__mmask16>(rest), nothing);
-  const __m512 otherX = _mm512_mask_mov_ps(
-    _mm512_cvtepi32_ps(_mm512_sub_epi32(highX, x0)), static_cast<__mmask16>(rest >> 16), nothing);
-  const __m512 y = _mm512_cvtepi32_ps(_mm512_sub_epi32(lowY, y0));
-  const __m512 otherY = _mm512_cvtepi32_ps(_mm512_sub_epi32(highY, y0));
-  _mm512_store_ps(window.X, x);
-  _mm512_store_ps(window.X + 16, otherX);
-  _mm512_store_ps(window.Y, y);
-  _mm512_store_ps(window.Y + 16, otherY);
-  _mm512_store_ps(window.Square, _mm512_fmadd_ps(x, x, _mm512_mul_ps(y, y)));
-  _mm512_store_ps(
-    window.Square + 16, _mm512_fmadd_ps(otherX, otherX, _mm512_mul_ps(otherY, otherY)));
-  _mm512_store_si512(window.Slots, lowSlot);
-  _mm512_store_si512(window.Slots + 16, highSlot);
-
-  // The vertex is in row 0, whose points come first.
-  window.OriginLane = window.Origin - own.Starts[firstColumn];
-  window.Vectors = WidestVectors;
-  this->SetBounds(window, 0, firstColumn, endColumn, originX, originY);
+  const Index place = window.Origin - this->Near[0].FirstSlot;
+  this->SetBounds(
+    window, shape, firstColumn, endColumn, this->Near[0].X[place], this->Near[0].Y[place]);
   return true;
-}
-
-/**
- * Gathers the first eight points of each row in a vector of their own; further points of all rows
- * share the fifth vector. Without packing: a row is loaded, shifted to the vertex and stored, with
- * no dependence on the rows before.
- */
-ELEVATION_WIDE bool PointWindows::GatherEven(Window& window, Index firstColumn)
-{
-  const BinGrid::Layout& bins = this->Grid.Bins;
-  const Index endColumn = std::min(firstColumn + Shapes[0].Columns, bins.Columns);
-  firstColumn = std::max(firstColumn, 0);
-
-  const Row& own = *this->Near[0];
-  const Index place = window.Origin - own.FirstSlot;
-  const std::int32_t originX = own.X[place], originY = own.Y[place];
-  const __m256i x0 = _mm256_set1_epi32(originX), y0 = _mm256_set1_epi32(originY);
-  const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-  int over = 0;
-  Index counts[MostRows];
-  for (int k = 0; k < MostRows; ++k)
-  {
-    const Row& row = *this->Near[k];
-    const Index first = row.Starts[firstColumn];
-    const Index count = row.Starts[endColumn] - first;
-    counts[k] = count;
-    over += count > 8 ? count - 8 : 0;
-    const Index at = first - row.FirstSlot;
-    const __m256i isBeyond = _mm256_cmpgt_epi32(lanes, _mm256_set1_epi32(count - 1));
-    const __m256i unitsX = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.X.data() + at));
-    const __m256i unitsY = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.Y.data() + at));
-    // All bits set is NaN.
-    const __m256 x =
-      _mm256_or_ps(_mm256_castsi256_ps(isBeyond), _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsX, x0)));
-    const __m256 y = _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsY, y0));
-    _mm256_store_ps(window.X + 8 * k, x);
-    _mm256_store_ps(window.Y + 8 * k, y);
-    _mm256_store_ps(window.Square + 8 * k, _mm256_fmadd_ps(x, x, _mm256_mul_ps(y, y)));
-    _mm256_store_si256(reinterpret_cast<__m256i*>(window.Slots + 8 * k),
-      _mm256_add_epi32(_mm256_set1_epi32(first), lanes));
-    if (k == 0)
-    {
-      window.OriginLane = window.Origin - first;
-    }
-  }
-  // X alone empties a lane: cross and dot of NaN fail every comparison.
-  const __m256 nothing = _mm256_set1_ps(NotANumber);
-  _mm256_store_ps(window.X + 32, nothing);
-  if (over > 0)
-  {
-    if (over > 8)
-    {
-      return false;
-    }
-    this->AddBeyondEight(window, firstColumn, counts);
-  }
-  window.Vectors = EvenVectors;
-  this->SetBounds(window, 0, firstColumn, endColumn, originX, originY);
-  return true;
-}
-
-/**
- * Adds the points of rows beyond the eighth, as one vector. Few points, one by one: rows with more
- * than eight are seldom where density is even.
- */
-ELEVATION_WIDE void PointWindows::AddBeyondEight(
-  Window& window, Index firstColumn, const Index* counts) const
-{
-  const Row& own = *this->Near[0];
-  const Index place = window.Origin - own.FirstSlot;
-  int lane = 32;
-  for (int k = 0; k < MostRows; ++k)
-  {
-    const Row& row = *this->Near[k];
-    for (Index i = 8; i < counts[k]; ++i, ++lane)
-    {
-      const Index slot = row.Starts[firstColumn] + i;
-      window.X[lane] = static_cast<float>(row.X[slot - row.FirstSlot] - own.X[place]);
-      window.Y[lane] = static_cast<float>(row.Y[slot - row.FirstSlot] - own.Y[place]);
-      window.Slots[lane] = slot;
-      window.OriginLane = slot == window.Origin ? lane : window.OriginLane;
-    }
-  }
-  const __m256 x = _mm256_load_ps(window.X + 32), y = _mm256_load_ps(window.Y + 32);
-  _mm256_store_ps(window.Square + 32, _mm256_fmadd_ps(x, x, _mm256_mul_ps(y, y)));
-}
-
-/**
- * Gathers a smaller window, packed. An odd number of columns with the vertex's in the middle, as
- * points are dense here.
- */
-ELEVATION_WIDE bool PointWindows::GatherBins(Window& window, Index column, int shape)
-{
-  const BinGrid::Layout& bins = this->Grid.Bins;
-  const Index firstColumn = std::max(column - Shapes[shape].Columns / 2, 0);
-  const Index endColumn = std::min(column + Shapes[shape].Columns / 2 + 1, bins.Columns);
-  const Row& own = *this->Near[0];
-  const Index place = window.Origin - own.FirstSlot;
-  const std::int32_t originX = own.X[place], originY = own.Y[place];
-  const __m256i x0 = _mm256_set1_epi32(originX), y0 = _mm256_set1_epi32(originY);
-  const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-  int count = 0;
-  for (int k = 0; k < Shapes[shape].Rows; ++k)
-  {
-    const Row& row = *this->Near[k];
-    const Index first = row.Starts[firstColumn], end = row.Starts[endColumn];
-    if (count + (end - first) > Capacity)
-    {
-      return false;
-    }
-    for (Index slot = first; slot < end; slot += 8)
-    {
-      // Whole vectors: the excess is overwritten by the next row, or by NaN.
-      // Room has eight lanes to spare for this.
-      const int at = count + (slot - first);
-      const __m256i unitsX =
-        _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.X.data() + (slot - row.FirstSlot)));
-      const __m256i unitsY =
-        _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.Y.data() + (slot - row.FirstSlot)));
-      _mm256_storeu_ps(window.X + at, _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsX, x0)));
-      _mm256_storeu_ps(window.Y + at, _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsY, y0)));
-      _mm256_storeu_si256(reinterpret_cast<__m256i*>(window.Slots + at),
-        _mm256_add_epi32(_mm256_set1_epi32(slot), lanes));
-    }
-    if (k == 0)
-    {
-      window.OriginLane = window.Origin - first;
-    }
-    count += end - first;
-  }
-  window.Close(count, this->IsWidest);
-  this->SetBounds(window, shape, firstColumn, endColumn, originX, originY);
-  return true;
-}
-
-ELEVATION_WIDE void PointWindows::Window::Close(int count, bool isWidest)
-{
-  // Only numbers of vectors for which the search has an instance.
-  this->Vectors = isWidest && count <= 8 * WidestVectors ? WidestVectors
-    : count <= 8 * EvenVectors                           ? EvenVectors
-                                                         : MostVectors;
-  const __m256 nothing = _mm256_set1_ps(NotANumber);
-  for (int at = count; at < 8 * this->Vectors; at += 8)
-  {
-    _mm256_storeu_ps(this->X + at, nothing);
-    _mm256_storeu_ps(this->Y + at, nothing);
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(this->Slots + at), _mm256_set1_epi32(None));
-  }
-  for (int i = 0; i < this->Vectors; ++i)
-  {
-    const __m256 x = _mm256_load_ps(this->X + 8 * i), y = _mm256_load_ps(this->Y + 8 * i);
-    _mm256_store_ps(this->Square + 8 * i, _mm256_fmadd_ps(x, x, _mm256_mul_ps(y, y)));
-  }
 }
 
 /** Gathers the points of a box around the vertex, from the neighborhood of its leaf. */
-ELEVATION_WIDE bool PointWindows::GatherBox(Window& window)
+bool PointWindows::GatherBox(Window& window)
 {
   const Neighborhood& around = this->Leaves.Around(window.Origin);
   if (around.Count == 0)
@@ -487,37 +414,12 @@ ELEVATION_WIDE bool PointWindows::GatherBox(Window& window)
     return false;
   }
   const Point2 p = this->Grid.PointAt(window.Origin);
-  const __m256 originX =
-    _mm256_set1_ps(static_cast<float>((p.X - around.CenterX) * around.PerSide));
-  const __m256 originY =
-    _mm256_set1_ps(static_cast<float>((p.Y - around.CenterY) * around.PerSide));
-  // The box that is copied is larger than what Left, Right and Top promise by 0.0005 sides, more
-  // than the rounding of a coordinate; the vertex's own row needs the same below.
-  const __m256 signBit = _mm256_set1_ps(-0.0f), down = _mm256_set1_ps(-0.0005f);
+  const float originX = static_cast<float>((p.X - around.CenterX) * around.PerSide);
+  const float originY = static_cast<float>((p.Y - around.CenterY) * around.PerSide);
   for (float size : { 1.0f, 0.7f })
   {
-    const __m256 across = _mm256_set1_ps(0.5505f * size), up = _mm256_set1_ps(0.9005f * size);
-    int count = 0;
-    for (int i = 0; i < around.Count && count <= Capacity; i += 8)
+    if (BoxCopiers[static_cast<int>(this->Instructions)](around, originX, originY, size, window))
     {
-      const __m256 x = _mm256_sub_ps(_mm256_loadu_ps(around.X + i), originX);
-      const __m256 y = _mm256_sub_ps(_mm256_loadu_ps(around.Y + i), originY);
-      const __m256i slots = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(around.Slots + i));
-      const int in = _mm256_movemask_ps(
-        _mm256_and_ps(_mm256_cmp_ps(_mm256_andnot_ps(signBit, x), across, _CMP_LE_OQ),
-          _mm256_and_ps(_mm256_cmp_ps(y, down, _CMP_GE_OQ), _mm256_cmp_ps(y, up, _CMP_LE_OQ))));
-      // The lanes in the box move to the front; the next store overwrites the rest.
-      const __m256i which = PlacesOf(in);
-      _mm256_storeu_ps(window.X + count, _mm256_permutevar8x32_ps(x, which));
-      _mm256_storeu_ps(window.Y + count, _mm256_permutevar8x32_ps(y, which));
-      _mm256_storeu_si256(reinterpret_cast<__m256i*>(window.Slots + count),
-        _mm256_permutevar8x32_epi32(slots, which));
-      count += __builtin_popcount(in);
-    }
-    if (count <= Capacity)
-    {
-      window.Close(count, this->IsWidest);
-      window.OriginLane = __builtin_ctzll(window.LanesOf<MostVectors>(window.Origin));
       window.PerSide = around.PerSide;
       window.Left = window.Right = 0.55f * size;
       window.Top = 0.9f * size;
@@ -531,7 +433,7 @@ ELEVATION_WIDE bool PointWindows::GatherBox(Window& window)
 
 // For ends of edges outside the window. Rounded as the window's points are, so that the same error
 // bounds hold.
-ELEVATION_WIDE void PointWindows::Place(Index slot, float& x, float& y) const
+void PointWindows::Place(Index slot, float& x, float& y) const
 {
   const Point2 a = this->Grid.PointAt(this->InUse->Origin), p = this->Grid.PointAt(slot);
   if (this->InUse->IsBox)
@@ -546,20 +448,5 @@ ELEVATION_WIDE void PointWindows::Place(Index slot, float& x, float& y) const
   y = static_cast<float>(Units(p.Y, bins.OriginY, perUnit) - Units(a.Y, bins.OriginY, perUnit));
 }
 
-#else
-
-PointWindows::PointWindows(const BinGrid& grid, bool)
-  : Grid(grid)
-  , IsWidest(false)
-  , Leaves(grid)
-{
-}
-
-bool PointWindows::Gather(Index, Index)
-{
-  return false;
-}
-
-#endif
-
 } // namespace elevation
+#endif

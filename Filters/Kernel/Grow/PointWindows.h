@@ -32,21 +32,18 @@ namespace elevation
 {
 
 /**
- * The windows of one strip's vertices, one after another. A window takes WidestVectors, EvenVectors
- * or MostVectors vectors of eight floats:
- * - AVX-512: up to 32 points of 6 x 4 bins, packed into two vectors of sixteen;
- * - AVX2, even density: one vector for each of the four rows, a fifth for what is beyond eight;
- * - smaller windows of bins, or a box: packed into as many as are needed.
- * For each of the numbers there is one instance of the search (WideApexSearch.cxx), whose loops
- * over vectors the compiler unrolls.
+ * The windows of one strip's vertices, one after another. Points are packed from the first lane on,
+ * and take FewLanes or MostLanes, in as many vectors as the processor needs for them. For each of
+ * the two numbers there is one instance of the search (WideApexSearch.cxx), whose loops over
+ * vectors the compiler unrolls.
  */
 class PointWindows
 {
 public:
-  // Below 64: a lane is a bit of a 64-bit mask, and its number fits the six lowest bits of a float.
-  static constexpr int Capacity = 56;       ///< points of a window
-  static constexpr int Room = Capacity + 8; ///< as whole vectors are written
-  static constexpr int WidestVectors = 4, EvenVectors = 5, MostVectors = Capacity / 8;
+  // A lane is a bit of a 64-bit mask, and its number fits the six lowest bits of a float.
+  static constexpr int FewLanes = 32, MostLanes = 64;
+  static constexpr int Capacity = 56;         ///< points of a window
+  static constexpr int Room = MostLanes + 16; ///< as whole vectors are written
   static constexpr double Roundoff = 0x1p-24; ///< of single precision
 
   /** Error bounds for a size of windows; lengths in the window's unit. See WideApexSearch.h. */
@@ -61,9 +58,8 @@ public:
   };
 
   /**
-   * The points around a vertex, relative to it; lanes with NaN are empty. Vector i holds lanes
-   * 8 i to 8 i + 7. A lane of a list's excess may have the slot of a point of another bin, so
-   * a slot counts only where the coordinate is not NaN.
+   * The points around a vertex, relative to it. In the lanes behind them X is NaN, which fails
+   * every comparison; the rest is anything there, so a slot counts only where X is not NaN.
    */
   struct Window
   {
@@ -72,23 +68,17 @@ public:
     alignas(64) float Square[Room]; ///< x^2 + y^2
     alignas(64) Index Slots[Room];
     Index Origin = None;
-    int Vectors = 0; ///< how many vectors of eight are in use; 0 if there is no window
+    int Lanes = 0; ///< how many are in use: FewLanes, MostLanes, or 0 if there is no window
     int OriginLane = 0;
     // How far the window certainly reaches from the vertex, up to the margin.
     float Left = 0.0f, Right = 0.0f, Top = 0.0f;
     const Bounds* Errors = nullptr;
     bool IsBox = false;
     double PerSide = 0.0; ///< units of the box per unit of the grid
-
-    /** Ends the lists after count points. */
-    void Close(int count, bool isWidest);
-    /** The lanes of a slot, as bits. */
-    template <int Vectors>
-    std::uint64_t LanesOf(Index slot) const;
   };
 
-  /** @param isWidest  for instructions on sixteen points at a time */
-  PointWindows(const BinGrid& grid, bool isWidest);
+  /** @param instructions  a set with vectors that the processor has; otherwise there is no window */
+  PointWindows(const BinGrid& grid, InstructionSet instructions);
 
   /**
    * Gathers the window of a vertex. Cheapest when vertices come row by row.
@@ -102,6 +92,14 @@ public:
 
   /** The position of a grid point relative to the window's vertex, in the window's units. */
   void Place(Index slot, float& x, float& y) const;
+
+  /** A row of bins from the current one upwards. */
+  struct NearRow
+  {
+    const std::int32_t *X, *Y; ///< of its points, in units from the grid's corner
+    const Index* Starts;       ///< the first slot of each bin, and the end of the last
+    Index FirstSlot;
+  };
 
 private:
   static constexpr int NumberOfShapes = 3; ///< of windows of bins
@@ -128,14 +126,11 @@ private:
   void GatherInto(Window& window);
   void SetBounds(Window& window, int shape, Index firstColumn, Index endColumn,
     std::int32_t originX, std::int32_t originY) const;
-  bool GatherWidest(Window& window, Index firstColumn);
-  bool GatherEven(Window& window, Index firstColumn);
-  void AddBeyondEight(Window& window, Index firstColumn, const Index* counts) const;
-  bool GatherBins(Window& window, Index column, int shape);
+  bool GatherBins(Window& window, Index firstColumn, int shape);
   bool GatherBox(Window& window);
 
   const BinGrid& Grid;
-  const bool IsWidest;
+  const InstructionSet Instructions;
   Window Windows[2];
   Window* InUse = Windows; ///< the other one is for the next vertex
 
@@ -146,28 +141,13 @@ private:
   std::vector<std::int32_t> ColumnBounds; ///< left bounds of the columns
   std::vector<Index> Nothing;             ///< the starts of a row beyond the last
   Row Rows[MostRows];                     ///< by their number modulo MostRows
-  Row* Near[MostRows];                    ///< from the current row upwards
+  NearRow Near[MostRows];                 ///< from the current row upwards
   Index CurrentRow = None;
   bool AreNearRead = false;
   std::int32_t TopBounds[NumberOfShapes]; ///< of windows of vertices in the current row
   Bounds BoxBounds;                       ///< of all boxes; their unit is their side
   Neighborhoods Leaves;
 };
-
-#ifdef ELEVATION_HAS_AVX2
-template <int Vectors>
-ELEVATION_WIDE_INLINE std::uint64_t PointWindows::Window::LanesOf(Index slot) const
-{
-  std::uint64_t lanes = 0;
-  for (int i = 0; i < Vectors; ++i)
-  {
-    const __m256i isSlot = _mm256_cmpeq_epi32(_mm256_set1_epi32(slot),
-      _mm256_load_si256(reinterpret_cast<const __m256i*>(this->Slots + 8 * i)));
-    lanes |= static_cast<std::uint64_t>(_mm256_movemask_ps(_mm256_castsi256_ps(isSlot))) << (8 * i);
-  }
-  return lanes;
-}
-#endif
 
 } // namespace elevation
 

@@ -3,7 +3,7 @@
 /**
  * @file
  * Searches for the apexes of the triangles around a vertex among the points of its window
- * (PointWindows.h), with wide instructions on eight or sixteen at a time.
+ * (PointWindows.h), with vectors of as many as the processor takes at a time.
  *
  * In: a grid and a vertex. Out: for an edge that leaves the vertex, a few candidates for the apex,
  * with the proof that one of them is; or no proof. The caller compares the candidates exactly, or
@@ -23,10 +23,9 @@
  * the apex's empty circle; if it lies within the window above the vertex, no other point can be the
  * apex.
  *
- * With AVX-512, windows of at most 32 points are handled in two vectors.
+ * The bounds hold with fused operations and without, so they are used where the processor has them.
  *
- * Needs a processor with AVX2, and a compiler that can target it for one function (GCC, Clang on
- * x86-64). Elsewhere WidestInstructions() is Scalar, and only the constructor may be called.
+ * Needs a set of instructions with vectors (Instructions.h). With Scalar, no vertex has a window.
  */
 #ifndef elevation_Grow_WideApexSearch_h
 #define elevation_Grow_WideApexSearch_h
@@ -42,8 +41,13 @@ class WideApexSearch
 public:
   static constexpr int Capacity = PointWindows::Capacity;
 
-  /** @param widest  the widest instructions to use; at least AVX2 */
-  WideApexSearch(const BinGrid& grid, InstructionSet widest);
+  /** @param widest  the widest instructions to use */
+  WideApexSearch(const BinGrid& grid, InstructionSet widest)
+    : Grid(grid)
+    , Instructions(std::min(widest, WidestInstructions()))
+    , Windows(grid, this->Instructions)
+  {
+  }
 
   /** Gathers the window of a vertex, see PointWindows. */
   bool Gather(Index origin, Index next = None) { return this->Windows.Gather(origin, next); }
@@ -75,24 +79,8 @@ public:
   Index SlotOf(int candidate) const { return this->Windows.Current().Slots[candidate]; }
 
 private:
-  using Window = PointWindows::Window;
-  static constexpr int WidestVectors = PointWindows::WidestVectors,
-                       EvenVectors = PointWindows::EvenVectors,
-                       MostVectors = PointWindows::MostVectors;
-
-  // The functions in the order of use: place the end, search, prove, sift, decide.
-  bool PlaceEnd(Index b, std::uint64_t lanes, float& x, float& y) const;
-  // The edge's end is (bx, by), from the vertex, in the window's units.
-  template <int Vectors>
-  Candidates Search(float bx, float by, int& guess) const;
-  template <int Vectors>
-  int FollowVectors(Index b, Index last, Index* neighbors, Candidates& open) const;
-  int FollowWidest(Index b, Index last, Index* neighbors, Candidates& open) const;
-  bool IsInWindow(float bx, float by, float dot, float cross) const;
-  void Sift(Index b, float bx, float by, int guess, Candidates& candidates) const;
-  bool IsDecided(Index b, float bx, float by, int& guess, Candidates& candidates) const;
-
   const BinGrid& Grid;
+  const InstructionSet Instructions;
   PointWindows Windows;
 };
 

@@ -83,8 +83,8 @@ void ExpectSameFromEverySearch(const Cloud& cloud, const Triangulation& expected
 {
   for (const SearchStrategy strategy : strategies)
   {
-    for (const InstructionSet set :
-      { InstructionSet::Scalar, InstructionSet::AVX2, InstructionSet::AVX512 })
+    for (const InstructionSet set : { InstructionSet::Scalar, InstructionSet::Bits128,
+           InstructionSet::Bits256, InstructionSet::Bits512 })
     {
       if (set > WidestInstructions())
       {
