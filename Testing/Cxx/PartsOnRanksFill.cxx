@@ -128,10 +128,14 @@ struct FilledSurface
   }
 };
 
-/** By the filters, on one rank. */
-FilledSurface FilledAtOnce(
-  const std::vector<Place>& cloud, double limit, double longest, const FillOptions& options)
+/** By the filters, on the first rank, to compare with; the others need none. */
+FilledSurface FilledAtOnce(const Ranks& ranks, const std::vector<Place>& cloud, double limit,
+  double longest, const FillOptions& options)
 {
+  if (ranks.OwnRank() > 0)
+  {
+    return {};
+  }
   vtkNew<vtkGridDelaunay2D> whole;
   whole->SetController(nullptr);
   whole->SetInputData(PointsOf(cloud, 0, cloud.size()));
@@ -256,11 +260,12 @@ std::vector<Place> SurveyLines()
 void CheckFillingOf(const Ranks& ranks, const std::vector<Place>& cloud, double limit,
   double longest, const FillOptions& options, const std::string& name)
 {
-  const FilledSurface expected = FilledAtOnce(cloud, limit, longest, options);
-  Check(expected.Reports.size() > 0, name + ": there are holes");
+  const FilledSurface expected = FilledAtOnce(ranks, cloud, limit, longest, options);
+  Check(ranks.OwnRank() > 0 || expected.Reports.size() > 0, name + ": there are holes");
   for (const int partsOfRank : { 0, 1, 3 })
   {
-    Check(FilledInParts(ranks, partsOfRank, cloud, limit, longest, options) == expected,
+    const FilledSurface found = FilledInParts(ranks, partsOfRank, cloud, limit, longest, options);
+    Check(ranks.OwnRank() > 0 || found == expected,
       name + ", " + std::to_string(partsOfRank) + " parts of a rank, at most " +
         std::to_string(options.MaximumInsertedPoints) + " new points: as at once");
   }

@@ -63,8 +63,14 @@ vtkSmartPointer<vtkPolyData> Star()
   return star;
 }
 
-std::vector<Corners> TrimmedAtOnce(const std::vector<Place>& cloud, vtkPolyData* boundary)
+/** On the first rank, to compare with; the others need none. */
+std::vector<Corners> TrimmedAtOnce(
+  const Ranks& ranks, const std::vector<Place>& cloud, vtkPolyData* boundary)
 {
+  if (ranks.OwnRank() > 0)
+  {
+    return {};
+  }
   PointView points;
   points.Double = cloud.front().data();
   points.Count = static_cast<Index>(cloud.size());
@@ -119,7 +125,7 @@ void CheckTrimming(const Ranks& ranks)
   const vtkSmartPointer<vtkPolyData> star = Star();
   for (vtkPolyData* const boundary : { star.Get(), static_cast<vtkPolyData*>(nullptr) })
   {
-    const std::vector<Corners> expected = TrimmedAtOnce(cloud, boundary);
+    const std::vector<Corners> expected = TrimmedAtOnce(ranks, cloud, boundary);
     for (const int partsOfRank : { 0, 1, 3 })
     {
       const std::string name = std::string(boundary ? "given, " : "found, ") +
@@ -142,8 +148,8 @@ void CheckTrimming(const Ranks& ranks)
       }
       std::vector<Corners> triangles = ranks.Collect(own);
       std::sort(triangles.begin(), triangles.end());
-      Check(triangles == expected, name + "the triangles of one surface");
-      Check(trimmed.Parts->KeptCount() == static_cast<vtkIdType>(expected.size()),
+      Check(ranks.OwnRank() > 0 || triangles == expected, name + "the triangles of one surface");
+      Check(trimmed.Parts->KeptCount() == static_cast<vtkIdType>(triangles.size()),
         name + "triangles are counted");
       std::vector<vtkIdType> rings = { trimmed.Parts->Boundary()->GetNumberOfLines() };
       ranks.Sum(rings);

@@ -23,9 +23,12 @@
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkReconstructPieces.h"
 #include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkTrimOutwardTriangles.h"
 
+#include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -152,18 +155,27 @@ std::vector<vtkSmartPointer<vtkPolyData>> ResultOf(vtkPolyDataAlgorithm* filter)
   return result;
 }
 
+bool HasSameValues(vtkAbstractArray* a, vtkAbstractArray* b)
+{
+  if (auto* const words = vtkStringArray::SafeDownCast(a))
+  {
+    const vtkStdString* const first = words->GetPointer(0);
+    auto* const others = vtkStringArray::SafeDownCast(b);
+    return others && std::equal(first, first + words->GetNumberOfValues(), others->GetPointer(0));
+  }
+  const auto size = static_cast<std::size_t>(a->GetDataTypeSize() * a->GetNumberOfValues());
+  return a->GetDataType() == b->GetDataType() &&
+    (size == 0 || std::memcmp(a->GetVoidPointer(0), b->GetVoidPointer(0), size) == 0);
+}
+
 bool HasSameArrays(vtkFieldData* a, vtkFieldData* b)
 {
   bool isSame = a->GetNumberOfArrays() == b->GetNumberOfArrays();
   for (int i = 0; isSame && i < a->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray *p = a->GetAbstractArray(i), *q = b->GetAbstractArray(i);
-    isSame =
-      std::string(p->GetName()) == q->GetName() && p->GetNumberOfValues() == q->GetNumberOfValues();
-    for (vtkIdType k = 0; isSame && k < p->GetNumberOfValues(); ++k)
-    {
-      isSame = p->GetVariantValue(k).ToString() == q->GetVariantValue(k).ToString();
-    }
+    isSame = std::string(p->GetName()) == q->GetName() &&
+      p->GetNumberOfValues() == q->GetNumberOfValues() && HasSameValues(p, q);
   }
   return isSame;
 }

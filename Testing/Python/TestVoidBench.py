@@ -92,6 +92,14 @@ class Draw(unittest.TestCase):
             self.assertGreaterEqual(void.lost.sum(), 0.9 * void.size)
             self.assertLessEqual(void.lost.sum(), 1.3 * void.size)
 
+    def test_there_is_room_where_all_nodes_within_the_ring_are_known_and_nowhere_else(self):
+        for raster in rasters():
+            ring = VoidDraw.RING
+            near = numpy.pad(raster.heights, ring, constant_values=numpy.nan)
+            windows = numpy.lib.stride_tricks.sliding_window_view(near, (2 * ring + 1, 2 * ring + 1))
+            expected = ~numpy.isnan(windows).any(axis=(2, 3))
+            numpy.testing.assert_array_equal(VoidDraw.Places(raster).free, expected)
+
     def test_known_nodes_around_a_void_have_one_fan_of_triangles(self):
         for void in self.VOIDS:
             known = ~void.lost
