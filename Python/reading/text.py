@@ -40,7 +40,8 @@ TAIL = 50  # lines at the end of a block among which summaries are looked for
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED, MOST_SUMMARIES = 3, 5  # that many lines of other kinds, and of summaries, are named
 MOST_UNEVEN = 0.2  # lines of numbers that are left out, as a share of rows
-WITHOUT_DATA, NO_ROWS = "all rows are without data", "no line is a row of x, y and z"
+WITHOUT_DATA = "all rows are without data"
+NO_ROWS = {2: "no line is a row of x and y", 3: "no line is a row of x, y and z"}
 
 
 class BadLine(FileError):
@@ -84,7 +85,7 @@ class Table:
         self.head_lines = set(map(str.strip, before))
         rows, consecutive = self.sample(lines)
         if not rows:
-            raise FileError(f"{path}: {NO_ROWS}")
+            raise FileError(f"{path}: {NO_ROWS[needed]}")
         self.name_columns(head, rows)
         if not options.columns:
             check_names(path, self.layout, before, rows[:400], self.names, self.width, self.advice)
@@ -449,7 +450,7 @@ def parse(*arguments):
     for parser in parsed(*arguments):
         pass
     if not parser.parts:
-        raise FileError(f"{parser.table.path}: {NO_ROWS}")
+        raise FileError(f"{parser.table.path}: {NO_ROWS[parser.table.needed]}")
     return (parser, *parser.take(), parser.final_notes())
 
 

@@ -10,6 +10,7 @@ import warnings
 
 import numpy
 from text_tables import KINDS, Tables, columns_of
+from vtkelevationsurface import read_boundary
 from vtkelevationsurface.clouds import ReadOptions
 from vtkelevationsurface.messages import FileError
 from vtkelevationsurface.reading.nulls import take_out
@@ -207,6 +208,8 @@ class LinesOfOtherKinds(Tables):
         self.assertIn("left out: line 42 (1 b 3 4), line 43 (1 2 3), line 44 (1 c 3 4)", " ".join(cloud.notes))
         self.assertIn("no line is a row", self.refusal(
             "a 1 2 3\nb 2 3 4\n", columns="1,2,3", skip_bad_lines=True))
+        with self.assertRaisesRegex(FileError, "no line is a row of x and y$"):
+            read_boundary(self.file("b.csv", "x,y,z,0,1,2\n"))
         # A line with a wrong column is not a line of another kind.
         self.assertIn("--columns chooses", self.refusal("1 2 3\n4 5 6\n4 five 6 7\n"))
 
