@@ -494,7 +494,7 @@ std::vector<char> FindCrossing(
     std::size_t sizes[2] = { 0, 0 };
     for (const Index t : reached)
     {
-      sizes[isCrossing[t]] += tracks.Size(t);
+      sizes[isCrossing[t] ? 1 : 0] += tracks.Size(t);
     }
     for (const Index t : reached)
     {
