@@ -106,6 +106,12 @@ class Classes(unittest.TestCase):
 
 
 class Texts(unittest.TestCase):
+    def test_help_of_a_class_says_in_70_lines_what_the_class_is(self):
+        for made in CLASSES.values():
+            title, superclass, lines = made.__doc__.partition("\nSuperclass: vtkPolyDataAlgorithm\n")
+            self.assertTrue(title.startswith(made.__name__) and superclass, title)
+            self.assertLessEqual(len(lines.strip().splitlines()), 70, made.__name__)
+
     def test_the_table_of_the_documentation_is_the_description(self):
         self.assertIn(properties_table.markdown(), text_of("Properties.md"),
                       "python3 Testing/Python/properties_table.py prints what has to stand there")
