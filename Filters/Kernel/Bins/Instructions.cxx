@@ -15,8 +15,7 @@ InstructionSet FindWidest()
 #ifdef ELEVATION_HAS_HIGHWAY
 #if HWY_ARCH_X86 && (HWY_COMPILER_GCC || HWY_COMPILER_CLANG)
   const bool has128 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("pclmul");
-  const bool has256 =
-    has128 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+  const bool has256 = has128 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
     __builtin_cpu_supports("bmi2");
   const bool has512 = has256 && __builtin_cpu_supports("avx512vl") &&
     __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq");

@@ -325,15 +325,20 @@ bool ApexSearch::LookIntoRows(const Region& region)
   {
     const double radiusSquared = this->Bound.RadiusSquared;
     const double centerX = this->Bound.CenterX, centerY = this->Bound.CenterY;
-    const bool isDisc = radiusSquared < region.MostSquared;
-    const double top = this->Bound.A.Y + centerY + std::sqrt(radiusSquared) + region.SlackY;
-    const Index lastRow = isDisc ? std::min(bins.Row(top), region.LastRow) : region.LastRow;
-    if (row > lastRow)
+    const double above = lowest + (row - region.FirstRow) * bins.BinHeight - centerY;
+    // Above the disc, whose circle runs through the origin, no row is left.
+    if (row > region.LastRow || (above > 0.0 && above * above > radiusSquared))
     {
       return true;
     }
-    const bool areAll = isDisc && this->Instructions != InstructionSet::Scalar;
-    const Index rows = areAll ? lastRow - row + 1 : 1;
+    const bool areAll =
+      this->Instructions != InstructionSet::Scalar && radiusSquared < region.MostSquared;
+    Index rows = 1;
+    if (areAll)
+    {
+      const double top = this->Bound.A.Y + centerY + std::sqrt(radiusSquared) + region.SlackY;
+      rows = std::max(std::min(bins.Row(top), region.LastRow) - row + 1, 1);
+    }
     // Without branches, so that the compiler makes vectors of it. Comparisons are in the order in
     // which "not a number" is no bound.
     Index firsts[NearRows + 1], lasts[NearRows + 1];
@@ -363,7 +368,7 @@ bool ApexSearch::LookIntoRows(const Region& region)
       return false;
     }
     this->Compare(parts, rows);
-    row += rows;
+    row = areAll ? region.LastRow + 1 : row + 1;
   }
 }
 
@@ -571,7 +576,7 @@ void ApexSearch::Compare(const std::pair<Index, Index>* ranges, int number)
  * dot = (p-a).(p-b) and cross = (b-a)x(p-a), dot / cross is the cotangent of the angle at p between
  * a and b: of two points, the one with the smaller quotient lies inside the other's circle.
  */
-bool ApexSearch::CompareOne(Index slot)
+HWY_INLINE bool ApexSearch::CompareOne(Index slot)
 {
   const Point2 p = this->Grid.PointAt(slot);
   const double px = p.X - this->Bound.A.X, py = p.Y - this->Bound.A.Y;

@@ -112,7 +112,7 @@ private:
   unsigned int Reached(const Node& node, double* distances) const;
   void CompareLeaf(Index first, Index count);
   void Compare(const std::pair<Index, Index>* ranges, int number);
-  bool CompareOne(Index slot);
+  inline bool CompareOne(Index slot);
   void CountExact();
   bool IsBetter(Index slot, Index other) const;
 

@@ -3,7 +3,7 @@
 /**
  * @file
  * The lanes of up to eight that a mask chooses, by a table: to pack them. Constant time. (Highway's
- * Compress() looks its tables up in a way that took six times as long where GCC 12 compiled it.)
+ * Compress() looks its tables up in a way that took six times the instructions where GCC 12 compiled it.)
  */
 #ifndef elevation_Grow_Packing_h
 #define elevation_Grow_Packing_h
