@@ -102,6 +102,7 @@ set(es_kernel_Fill
   FilledHole
   Fill)
 set(es_kernel_Query
+  TriangleTree
   NaturalNeighbors
   PlaceWeights
   Overlay)

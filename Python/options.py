@@ -130,6 +130,8 @@ def parse_arguments(arguments):
         parser.error("--colours error is for filled holes: it has no effect with --no-fill")
     if options.outlines is not None and not (options.trim or options.fill):
         parser.error("there are no outlines with --no-trim and --no-fill")
+    if options.method and options.grid is None and options.at is None:
+        parser.error("--method is for --grid and --at: it has no effect without them")
     names = [getattr(options, one.name) for one in OUTPUTS]
     for each, of in (("each", "file"), ("each_value", "value")):
         if getattr(options, each) and (any(names) or options.picture or options.report):

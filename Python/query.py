@@ -18,13 +18,15 @@ from .gdal_common import check_system
 from .messages import ElevationSurfaceError, FileError
 from .progress import no_progress
 from .properties import METHODS
-from .reading import read, read_boundary
+from .reading import read
 from .reading.formats import recognise
+from .reading.text import read_table
 from .reading.unpacking import unpacked
 from .vtkElevationSurface import vtkGridDelaunay2D
 from .vtkElevationSurfacePieces import vtkSurfaceQuery
 
 MOST_AT_ONCE = 2_000_000  # places; bounds the memory taken
+SLIVER = 1e-9  # of an area: less is rounding
 
 
 def query_of(name, surface, progress=no_progress):
@@ -70,7 +72,8 @@ class Heights:
             delaunay.Update()
             self.natural = query_of("the surface", delaunay.GetOutput())
         self.elevations = coordinates_of(surface)[:, 2].astype("f8")
-        errors = surface.GetPointData().GetArray("FilledError")
+        filled = holes_of(surface)
+        errors = surface.GetPointData().GetArray("FilledError") if (filled >= 0).any() else None
         self.errors = None if errors is None else vtk_to_numpy(errors)
 
     def at(self, xy, progress=no_progress):
@@ -83,8 +86,8 @@ class Heights:
             if errors is not None:
                 errors[part] = weighted(self.linear, False, places, self.errors)
             if self.natural:
-                smooth = weighted(self.natural, True, places, self.elevations)
-                z[part] = numpy.where(numpy.isnan(inside), numpy.nan, smooth)
+                smooth = weighted(self.natural, True, places[~numpy.isnan(inside)], self.elevations)
+                z[part][~numpy.isnan(inside)] = smooth
             progress(part.stop / len(xy))
         return z, errors
 
@@ -97,7 +100,9 @@ def weighted(query, are_natural, places, values):
     result = numpy.full(len(places), numpy.nan)
     found = numpy.diff(offsets) > 0
     if found.any():
-        result[found] = numpy.add.reduceat(weights * values[points], offsets[:-1][found])
+        # What is not known does not count where its weight is 0.
+        products = numpy.where(weights == 0.0, 0.0, weights * values[points])
+        result[found] = numpy.add.reduceat(products, offsets[:-1][found])
     return result
 
 
@@ -112,8 +117,14 @@ def used_alone(surface):
 
 def places_of(xy):
     """(n, 2) doubles of what a user gives. Raises ValueError that says what is needed."""
-    array = numpy.asarray(xy, dtype="f8")
-    array = array[None] if array.shape == (2,) else array
+    try:
+        array = numpy.ma.asarray(xy)
+        if array.dtype.kind not in "fiu":
+            raise TypeError
+    except (TypeError, ValueError):
+        raise ValueError("xy: rows of x and y are needed, as numbers") from None
+    array = array.astype("f8").filled(numpy.nan)
+    array = array[None] if array.shape == (2,) else array.reshape(-1, 2) if array.size == 0 else array
     if array.ndim != 2 or array.shape[1] not in (2, 3):
         shape = " x ".join(map(str, array.shape)) or "a single number"
         raise ValueError(f"xy: rows of x and y are needed; the shape is {shape}")
@@ -158,17 +169,23 @@ def volume_between(result, other, map_too=False, progress=no_progress):
     difference = vtkPolyData() if map_too else None
     sums, error = compare(result.surface, own, theirs, other.level, difference)
     area, common, above, below = (math.fsum(column) for column in sums.T[:4])
-    if common == 0.0:
+    other_area = area_of(surface) if theirs else common
+    if theirs and common <= SLIVER * min(area, other_area):
         boxes = [
             "x {:.7g} to {:.7g}, y {:.7g} to {:.7g}".format(*one.GetBounds()[:4])
             for one in (surface, result.surface)
         ]
         raise ElevationSurfaceError(
-            f"{name} and the surface do not overlap: it is from {boxes[0]}, the surface from {boxes[1]}"
+            f"{name} and the surface do not overlap: {name} is from {boxes[0]}, the surface from {boxes[1]}"
         )
-    other_area = area_of(surface) if theirs else common
+    for who, is_covered_twice in (
+        (name, (sums[:, 1] > sums[:, 0] + SLIVER * area).any()), ("the surface", common > (1 + SLIVER) * other_area),
+    ):
+        if theirs and is_covered_twice:
+            raise ElevationSurfaceError(f"{who} has triangles that overlap in x,y: it is no elevation surface")
     if theirs and surface.GetPointData().HasArray("FilledError"):
-        error = math.hypot(error or 0.0, compare(surface, theirs, own)[1] or 0.0)
+        back = compare(surface, theirs, own)[1]
+        error = back if error is None else math.hypot(error, back or 0.0)
     if map_too:
         elevations = numpy_to_vtk(coordinates_of(difference)[:, 2], deep=True)
         elevations.SetName("Difference")
@@ -183,12 +200,19 @@ def compare(surface, query, other, level=0.0, difference=None):
     tuples = vtkDoubleArray()
     errors = surface.GetPointData().GetArray("FilledError")
     raise_error("the surface", query.CompareWith(other, level, errors, tuples, difference))
-    tuples, ids = vtk_to_numpy(tuples), surface.GetCellData().GetArray("HoleId")
-    holes = vtk_to_numpy(ids) if errors and ids else numpy.array([-1])
-    if holes.max(initial=-1) < 0:
+    tuples, holes = vtk_to_numpy(tuples), holes_of(surface)
+    if errors is None or holes.max(initial=-1) < 0:
         return tuples, None
     of_holes = numpy.bincount(holes[holes >= 0], tuples[holes >= 0, 4])
     return tuples, float(numpy.sqrt((of_holes**2).sum()))
+
+
+def holes_of(surface):
+    """(m,) of the hole that each triangle fills, -1 of other ones, as vtkFillElevationHoles numbers them."""
+    ids = surface.GetCellData().GetArray("HoleId")
+    if ids is None or ids.GetNumberOfTuples() != surface.GetNumberOfPolys():
+        return numpy.full(surface.GetNumberOfPolys(), -1)
+    return vtk_to_numpy(ids).astype("i8")
 
 
 def area_of(surface):
@@ -214,6 +238,7 @@ def other_of(other):
     if isinstance(other, Other):
         return other
     if hasattr(other, "surface"):
+        check_over_xy(other, "volume")
         return Other("the other surface", other.surface, other.crs)
     if isinstance(other, (str, os.PathLike)):
         return read_surface(os.fspath(other))
@@ -222,6 +247,8 @@ def other_of(other):
             raise ElevationSurfaceError("the other surface has no triangles")
         return Other("the other surface", other)
     try:
+        if isinstance(other, bool):
+            raise TypeError
         level = float(other)
     except (TypeError, ValueError):
         raise TypeError(
@@ -250,6 +277,8 @@ def is_text(path):
 def read_places(path):
     """((n, 2) places of a file, its reference system or None): of text, the columns x and y; of other
     files their points. Raises FileError."""
-    cloud = None if is_text(path) else read(path)
-    points = read_boundary(path) if cloud is None else cloud.points
-    return coordinates_of(points)[:, :2].astype("f8"), cloud and cloud.crs
+    if is_text(path):
+        with unpacked(path) as (local, _):
+            return read_table(local, 2)[0], None
+    cloud = read(path)
+    return coordinates_of(cloud.points)[:, :2].astype("f8"), cloud.crs

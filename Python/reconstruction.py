@@ -289,8 +289,7 @@ class Reconstruction:
 
         other  a Reconstruction, vtkPolyData with triangles, the file of a surface, or a level
 
-        Returns a Volume with above and below: what is to be cut and to be filled to come to the other
-        one; net, above - below; area; left_out and other_left_out, the areas that one alone
+        Returns a Volume with above and below, the cut and the fill that lead to the other one; net, above - below; area; left_out and other_left_out, the areas that one alone
         covers; and error, the standard error of net that follows from filled elevations. Exact but
         for rounding. Raises ElevationSurfaceError where they do not overlap, and FileError for another
         coordinate reference system.

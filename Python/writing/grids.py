@@ -7,7 +7,7 @@ import math
 import os
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from ..clouds import EVEN, Frame, cells_of, check_system, corner_flags, make_points, slices
 from ..gdal_common import gdal_module, reference_of, write_through_memory
@@ -19,6 +19,7 @@ from ..reading import raster_frame
 
 MOST_PIXELS = 250_000_000
 MOST_AT_ONCE = 2_000_000  # pixels; bounds the memory taken
+FLAT = 1e-14  # twice the area of a triangle over the products that it is the difference of: less is rounding
 ON_NODE = 0.01  # steps: points so close to the nodes of a lattice are on them
 
 
@@ -163,21 +164,22 @@ def interpolated(surface, frame, near=0.0, progress=None, method="linear"):
 
     near  steps: points so close to a centre are on it
     """
-    if method == "linear":
-        # Over columns and rows, where centres are whole numbers: what lies on one is exact.
-        surface, at = on_pixels(surface, frame, near), lambda column, row: (column, row)
-    else:
-        at = frame.at
-    heights, rows = Heights(surface, method), numpy.arange(frame.rows, dtype="f8")
-    layers = [numpy.empty((frame.rows, frame.columns)) for _ in range(2)]
+    # Over columns and rows, where centres are whole numbers: what lies on one is exact.
+    heights, rows = Heights(on_pixels(surface, frame, near)), numpy.arange(frame.rows, dtype="f8")
+    smooth = None if method == "linear" else Heights(surface, method)
+    layers = [numpy.empty((frame.rows, frame.columns)) for _ in range(1 if heights.errors is None else 2)]
     for part in slices(frame.rows, max(1, MOST_AT_ONCE // frame.columns)):
-        column, row = numpy.meshgrid(numpy.arange(frame.columns, dtype="f8"), rows[part])
-        found = heights.at(numpy.column_stack(at(column.ravel(), row.ravel())))
+        column, row = (each.ravel() for each in numpy.meshgrid(numpy.arange(frame.columns, dtype="f8"), rows[part]))
+        found = heights.at(numpy.column_stack((column, row)))
+        if smooth:
+            z, _ = smooth.at(numpy.column_stack(frame.at(column, row)))
+            known = numpy.isfinite(found[0]) & numpy.isfinite(z)
+            found[0][known] = z[known]
         for layer, values in zip(layers, found):
-            layer[part] = numpy.nan if values is None else values.reshape(column.shape)
+            layer[part] = values.reshape(-1, frame.columns)
         if progress:
             progress(part.stop / frame.rows)
-    return layers[0], layers[1] if heights.errors is not None else None
+    return layers[0], layers[1] if len(layers) > 1 else None
 
 
 def on_pixels(surface, frame, near):
@@ -187,9 +189,16 @@ def on_pixels(surface, frame, near):
     triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     a, b, c = (points[triangles[:, i], :2] for i in range(3))
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    errors, ids = surface.GetPointData().GetArray("FilledError"), surface.GetCellData().GetArray("HoleId")
     placed = make_points(points)
-    placed.SetPolys(cells_of(triangles[ux * vy != uy * vx]))
-    placed.GetPointData().AddArray(surface.GetPointData().GetArray("FilledError"))
+    left, right = ux * vy, uy * vx
+    has_area = abs(left - right) > FLAT * (abs(left) + abs(right))
+    placed.SetPolys(cells_of(triangles[has_area]))
+    for data, array, rows in ((placed.GetPointData(), errors, slice(None)), (placed.GetCellData(), ids, has_area)):
+        if array is not None:
+            chosen = numpy_to_vtk(vtk_to_numpy(array)[rows], deep=True)
+            chosen.SetName(array.GetName())
+            data.AddArray(chosen)
     return placed
 
 

@@ -10,6 +10,7 @@ import unittest
 import numpy
 from in_folder import Program
 from vtkelevationsurface import ElevationSurfaceError, read, reconstruct
+from vtkelevationsurface.clouds import cells_of
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
@@ -85,6 +86,12 @@ class Elevations(unittest.TestCase):
             result.elevation_at(numpy.zeros((4, 1)))
         with self.assertRaisesRegex(ValueError, "method takes linear or natural-neighbor, not 'cubic'"):
             result.elevation_at((1.0, 1.0), "cubic")
+        for wrong in ("here", [["a", "b"]], [[True, False]], [[1j, 2]]):
+            with self.assertRaisesRegex(ValueError, "xy: rows of x and y are needed, as numbers"):
+                result.elevation_at(wrong)
+        self.assertEqual(len(result.elevation_at([])), 0)
+        masked = numpy.ma.array([[5.0, 5.0], [5.0, 5.0]], mask=[[True, False], [False, False]])
+        self.assertEqual(numpy.isnan(result.elevation_at(masked)).tolist(), [True, False])
         steep = reconstruct(square(200)[:, (0, 2, 1)], plane="best")
         with self.assertRaisesRegex(ElevationSurfaceError, "plane=best has no elevation"):
             steep.elevation_at((1.0, 1.0))
@@ -100,6 +107,8 @@ class Volumes(unittest.TestCase):
         self.assertAlmostEqual(volume.area, 100.0, delta=1e-11)
         self.assertLess(volume.left_out + volume.other_left_out, 1e-10)
         self.assertIsNone(volume.error)
+        whole = reconstruct(points)
+        self.assertIsNone(whole.volume_above(whole).error)
 
     def test_of_other_points_over_the_common_area(self):
         result = surface_of(square(height=lambda x, y: 2 * x + y))
@@ -147,12 +156,22 @@ class Volumes(unittest.TestCase):
 
     def test_wrong_others_are_named(self):
         result = surface_of(square(50))
-        with self.assertRaisesRegex(ElevationSurfaceError, "do not overlap: it is from x 20 to 30"):
+        with self.assertRaisesRegex(ElevationSurfaceError, "do not overlap: the other surface is from x 20 to 30"):
             result.volume_above(surface_of(square(50, 20.0, 30.0)))
         with self.assertRaisesRegex(ElevationSurfaceError, "has no triangles"):
             result.volume_above(vtkPolyData())
-        with self.assertRaisesRegex(TypeError, "a file or a level is needed, not list"):
-            result.volume_above([1, 2])
+        twice = surface_of(square(50)).surface
+        polys, both = twice.GetPolys(), vtk_to_numpy(twice.GetPolys().GetConnectivityArray())
+        polys = cells_of(numpy.concatenate((both, both)).reshape(-1, 3))
+        twice.SetPolys(polys)
+        with self.assertRaisesRegex(ElevationSurfaceError, "the other surface has triangles that overlap"):
+            result.volume_above(twice)
+        for wrong, name in (([1, 2], "list"), (True, "bool")):
+            with self.assertRaisesRegex(TypeError, "a file or a level is needed, not " + name):
+                result.volume_above(wrong)
+        steep = reconstruct(square(200)[:, (0, 2, 1)], plane="best")
+        with self.assertRaisesRegex(ElevationSurfaceError, "plane=best has no volume"):
+            result.volume_above(steep)
         with self.assertRaisesRegex(ValueError, "a level is a finite number, not nan"):
             result.volume_above(math.nan)
 
@@ -181,6 +200,13 @@ class Files(Program):
             self.assertEqual(report["elevations_at"], {"file": "places.csv", "places": 3, "outside": 1})
             self.assertIn("at 3 places of places.csv, 1 outside", output)
 
+    def test_each_row_of_the_file_has_one_in_the_table(self):
+        self.file("ring.csv", "x,y\n2,2\n8,2\n8,8\n2,2\n\n3,3\n")
+        self.run_on_ground("--at", "ring.csv")
+        with open(self.path("ground_at.csv"), encoding="utf-8") as stream:
+            rows = [line.split(",")[:2] for line in stream]
+        self.assertEqual(rows[1:], [["2.0", "2.0"], ["8.0", "2.0"], ["8.0", "8.0"], ["2.0", "2.0"], ["3.0", "3.0"]])
+
     def test_volume_to_a_file_and_to_a_level(self):
         surface_of(square(500) - (0, 0, 1)).write(self.path("lower.vtp"))
         _, report = self.run_on_ground("--volume", "lower.vtp")
@@ -199,6 +225,7 @@ class Files(Program):
             (("--volume", "ground.csv"), "ground.csv: has no triangles"),
             (("--volume", "missing.vtp"), "missing.vtp: no such file"),
             (("--at", "ground.csv", "--method", "cubic"), "--method takes one of linear, natural-neighbor"),
+            (("--method", "linear"), "--method is for --grid and --at"),
             (("--at-output", "x.csv"), "--at, which is missing"),
             (("--at", "ground.csv", "--memory", "1G"), "--at"),
         ):

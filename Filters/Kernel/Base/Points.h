@@ -62,6 +62,16 @@ inline double SquaredLength(Point2 p, Point2 q)
   return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
 }
 
+/**
+ * ab - cd, with an error of few units in the last place also where most digits cancel (Kahan). The
+ * second fused multiplication gives the rounding error of cd, which is part of the first one.
+ */
+inline double DifferenceOfProducts(double a, double b, double c, double d)
+{
+  const double cd = c * d;
+  return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+}
+
 /** A hash in which all bits are well mixed, the same for 0.0 and -0.0. */
 struct PointHash
 {

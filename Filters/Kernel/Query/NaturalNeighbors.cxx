@@ -14,7 +14,7 @@ namespace
 /** Twice the area of the triangle of the origin, a and b; positive if they turn left. */
 double Cross(const Point2& a, const Point2& b)
 {
-  return a.X * b.Y - a.Y * b.X;
+  return DifferenceOfProducts(a.X, b.Y, a.Y, b.X);
 }
 
 Point2 Difference(const Point2& p, const Point2& origin)
@@ -22,19 +22,13 @@ Point2 Difference(const Point2& p, const Point2& origin)
   return { p.X - origin.X, p.Y - origin.Y };
 }
 
-/** Whether the origin, a and b turn left by more than rounding. */
-bool TurnLeft(const Point2& a, const Point2& b)
-{
-  const double left = a.X * b.Y, right = a.Y * b.X;
-  return left - right > 1e-15 * (std::fabs(left) + std::fabs(right));
-}
-
 /** The centre of the circle through the origin, a and b. */
 Point2 CircleCenter(const Point2& a, const Point2& b)
 {
   const double twice = 2.0 * Cross(a, b);
   const double aa = a.X * a.X + a.Y * a.Y, bb = b.X * b.X + b.Y * b.Y;
-  return { (aa * b.Y - bb * a.Y) / twice, (bb * a.X - aa * b.X) / twice };
+  return { DifferenceOfProducts(aa, b.Y, bb, a.Y) / twice,
+    DifferenceOfProducts(bb, a.X, aa, b.X) / twice };
 }
 
 } // namespace
@@ -68,7 +62,7 @@ bool NaturalNeighbors::Find(const Point2& place, Index triangle, std::vector<Ver
     const Index vertex = this->Surface.Destination(edge);
     const Point2 from = Difference(this->Surface.PointOf(this->Surface.Origin(edge)), place);
     const Point2 at = Difference(this->Surface.PointOf(vertex), place);
-    if (!TurnLeft(from, at))
+    if (!(Cross(from, at) > 0.0))
     {
       return false;
     }
@@ -79,9 +73,7 @@ bool NaturalNeighbors::Find(const Point2& place, Index triangle, std::vector<Ver
   {
     each.Weight /= total;
   }
-  this->KeepPlanes(triangle, weights);
-  return std::all_of(weights.begin(), weights.end(),
-    [](const VertexWeight& each) { return std::isfinite(each.Weight); });
+  return this->KeepPlanes(weights);
 }
 
 /**
@@ -160,27 +152,43 @@ Point2 NaturalNeighbors::CenterOf(Index triangle) const
 }
 
 /**
- * Changes weights so that they reproduce planes to rounding: by the linear weights of the place
- * less those of the place that the weights stand for.
+ * Changes weights by what rounding has left, so that they reproduce planes: each by a share that is
+ * linear in the plane, which leaves their sum as it is.
+ * @return whether that is little; else they are not known
  */
-void NaturalNeighbors::KeepPlanes(Index triangle, std::vector<VertexWeight>& weights) const
+bool NaturalNeighbors::KeepPlanes(std::vector<VertexWeight>& weights) const
 {
-  Point2 meant = this->Place;
+  // The place that the weights stand for, and the moments around it.
+  Point2 off{ 0.0, 0.0 };
   for (const VertexWeight& each : weights)
   {
     const Point2 to = Difference(this->Surface.PointOf(each.Vertex), this->Place);
-    meant.X += each.Weight * to.X;
-    meant.Y += each.Weight * to.Y;
+    off.X += each.Weight * to.X;
+    off.Y += each.Weight * to.Y;
   }
-  const std::array<VertexWeight, 3> right = LinearWeights(this->Surface, triangle, this->Place);
-  const std::array<VertexWeight, 3> wrong = LinearWeights(this->Surface, triangle, meant);
-  for (int k = 0; k < 3; ++k)
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (const VertexWeight& each : weights)
   {
-    // The corners of a triangle that contains the place are neighbours.
-    const auto each = std::find_if(weights.begin(), weights.end(),
-      [&](const VertexWeight& one) { return one.Vertex == right[k].Vertex; });
-    each->Weight += right[k].Weight - wrong[k].Weight;
+    const Point2 to = Difference(this->Surface.PointOf(each.Vertex), this->Place);
+    const double dx = to.X - off.X, dy = to.Y - off.Y;
+    xx += each.Weight * dx * dx;
+    xy += each.Weight * dx * dy;
+    yy += each.Weight * dy * dy;
   }
+  const double determinant = DifferenceOfProducts(xx, yy, xy, xy);
+  const double alongX = DifferenceOfProducts(yy, off.X, xy, off.Y) / determinant;
+  const double alongY = DifferenceOfProducts(xx, off.Y, xy, off.X) / determinant;
+  constexpr double most = 1e-3; // of a weight
+  bool isLittle = true;
+  for (VertexWeight& each : weights)
+  {
+    const Point2 to = Difference(this->Surface.PointOf(each.Vertex), this->Place);
+    const double share = alongX * (to.X - off.X) + alongY * (to.Y - off.Y);
+    // Also where it is not a number.
+    isLittle = isLittle && std::fabs(share) < most;
+    each.Weight -= share * each.Weight;
+  }
+  return isLittle;
 }
 
 } // namespace elevation

@@ -42,15 +42,15 @@ public:
    * The weights of the neighbours, whose sum is 1.
    * @param[in] place     not a vertex
    * @param[in] triangle  contains it
-   * @return whether they could be found. Not where the place is on the border of the mesh, or so
-   *         near that rounding hides on which side: then linear weights are their limit
+   * @return whether they could be found. Not where the place is on the border of the mesh, where
+   *         linear weights are their limit, or so near that they are lost in rounding
    */
   bool Find(const Point2& place, Index triangle, std::vector<VertexWeight>& weights);
 
 private:
   void CollectRegion(Index triangle);
   double AreaLostBy(Index& edge, const Point2& from, const Point2& at) const;
-  void KeepPlanes(Index triangle, std::vector<VertexWeight>& weights) const;
+  bool KeepPlanes(std::vector<VertexWeight>& weights) const;
   bool IsInRegion(Index triangle) const { return this->Visited[triangle] == this->Round; }
   bool IsInCircle(Index triangle) const;
   Point2 CenterOf(Index triangle) const;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Overlay.h"
 
+#include "TriangleTree.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,7 +26,11 @@ struct Corner
   double Value;
 };
 
-/** Corners, counter-clockwise: a triangle that has been cut by up to four lines. */
+/**
+ * Corners, counter-clockwise: a triangle that has been cut by up to four lines. Rounding may bend a
+ * flat one, so that a line cuts off several corners that are not neighbours: of n corners half at
+ * most, each of which gives way to two. From 3, four cuts make at most 4, 6, 9, 13.
+ */
 struct Polygon
 {
   Polygon() = default;
@@ -36,7 +42,7 @@ struct Polygon
   }
   Polygon& operator=(const Polygon&) = delete;
 
-  std::array<Corner, 8> Corners;
+  std::array<Corner, 13> Corners;
   int Count = 0;
 
   void Add(const Corner& corner) { this->Corners[this->Count++] = corner; }
@@ -44,14 +50,14 @@ struct Polygon
 
 double TwiceArea(const Point2& a, const Point2& b, const Point2& c)
 {
-  return (b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X);
+  return DifferenceOfProducts(b.X - a.X, c.Y - a.Y, b.Y - a.Y, c.X - a.X);
 }
 
 /** Cuts off a polygon where a function that is linear in the plane is below 0. */
 template <typename Function>
 void Cut(Polygon& polygon, const Function& function)
 {
-  std::array<double, 8> values;
+  std::array<double, 13> values;
   int below = 0;
   for (int i = 0; i < polygon.Count; ++i)
   {
@@ -127,12 +133,12 @@ class Overlaying
 {
 public:
   Overlaying(const ElevatedMesh& first, const ElevatedMesh* second, double level,
-    const std::vector<double>& values, const CellGrid* grid)
+    const std::vector<double>& values, const TriangleTree* tree)
     : First(first)
     , Second(second)
     , Level(level)
     , Values(values)
-    , Grid(grid)
+    , Tree(tree)
   {
   }
 
@@ -143,7 +149,7 @@ public:
     this->Origin = mesh.PointOf(ids[0]);
     this->Map = map;
     const std::array<Point2, 3> corners = CornersFrom(mesh, triangle, this->Origin);
-    // Elevations are small numbers, as coordinates are.
+    // Elevations are measured from the first corner, as coordinates are.
     this->Base = this->Second ? this->First.Elevations[ids[0]] : this->Level;
     Polygon whole;
     for (int k = 0; k < 3; ++k)
@@ -160,12 +166,10 @@ public:
       return this->Result;
     }
     this->Near.clear();
-    const std::array<Point2, 3> positions{ { this->Origin, mesh.PointOf(ids[1]),
-      mesh.PointOf(ids[2]) } };
-    this->Grid->Visit(positions, [this](Index other) { this->Near.push_back(other); });
-    // A triangle is visited in each cell, and the order of sums must not depend on the cells.
+    this->Tree->Visit(
+      BoxOf(TriangleCorners(mesh, triangle)), [this](Index other) { this->Near.push_back(other); });
+    // The order of sums must not depend on the tree.
     std::sort(this->Near.begin(), this->Near.end());
-    this->Near.erase(std::unique(this->Near.begin(), this->Near.end()), this->Near.end());
     for (const Index other : this->Near)
     {
       this->OverlayWith(whole, other);
@@ -193,20 +197,26 @@ private:
     {
       return;
     }
+    const double whole2 = TwiceArea(corners[0], corners[1], corners[2]);
+    if (!(whole2 > 0.0))
+    {
+      return; // its area is below the smallest number
+    }
     const Index* const ids = mesh.Triangles.data() + 3 * static_cast<std::size_t>(other);
     for (int i = 0; i < part.Count; ++i)
     {
       Corner& corner = part.Corners[i];
       // The second surface there, by areas: a mean of its corners, so flat triangles lose nothing.
-      double areas[3], sum = 0.0, elevation = 0.0;
-      for (int k = 0; k < 3; ++k)
+      double shares[3], elevation = 0.0;
+      for (int k = 1; k < 3; ++k)
       {
-        areas[k] = TwiceArea(corners[(k + 1) % 3], corners[(k + 2) % 3], corner.At);
-        sum += areas[k];
+        const double area = TwiceArea(corners[(k + 1) % 3], corners[(k + 2) % 3], corner.At);
+        shares[k] = std::min(std::max(area / whole2, 0.0), 1.0);
       }
+      shares[0] = 1.0 - shares[1] - shares[2];
       for (int k = 0; k < 3; ++k)
       {
-        elevation += areas[k] / sum * (this->Second->Elevations[ids[k]] - this->Base);
+        elevation += shares[k] * (this->Second->Elevations[ids[k]] - this->Base);
       }
       corner.Difference -= elevation;
     }
@@ -247,7 +257,7 @@ private:
   const ElevatedMesh* Second;
   const double Level;
   const std::vector<double>& Values;
-  const CellGrid* Grid;
+  const TriangleTree* Tree;
   // Of the triangle that is overlaid: its first corner, its extent from there, what elevations are
   // measured from.
   Point2 Origin{ 0.0, 0.0 };
@@ -293,25 +303,17 @@ std::vector<OverlaidTriangle> Overlay(const ElevatedMesh& first, const ElevatedM
 {
   Stages stages(progress, { second ? 25.0 : 0.0, 70, map ? 10.0 : 0.0 });
   const Progress indexing = stages.Next();
-  std::unique_ptr<CellGrid> grid;
+  std::unique_ptr<TriangleTree> tree;
   if (second)
   {
-    const Mesh& mesh = second->Surface;
-    grid = std::make_unique<CellGrid>(
-      static_cast<std::size_t>(mesh.NumberOfTriangles()),
-      [&mesh](std::size_t t) {
-        const Index* const ids = mesh.Triangles.data() + 3 * t;
-        return std::array<Point2, 3>{ { mesh.PointOf(ids[0]), mesh.PointOf(ids[1]),
-          mesh.PointOf(ids[2]) } };
-      },
-      indexing);
+    tree = std::make_unique<TriangleTree>(second->Surface, indexing);
   }
   const Index count = first.Surface.NumberOfTriangles();
   const Index tasks = (count + AtOnce - 1) / AtOnce;
   std::vector<OverlaidTriangle> result(count);
   std::vector<DifferenceMap> maps(map ? tasks : 0);
   ForEachTask(tasks, threads, stages.Next(), [&](Index task) {
-    Overlaying overlaying(first, second, level, values, grid.get());
+    Overlaying overlaying(first, second, level, values, tree.get());
     for (Index t = task * AtOnce; t < std::min(count, (task + 1) * AtOnce); ++t)
     {
       result[t] = overlaying.Overlay(t, map ? &maps[task] : nullptr);

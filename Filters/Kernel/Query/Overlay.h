@@ -12,9 +12,9 @@
  *        \ .. /            the polygon is cut once more, so that volumes above and below are sums of
  *         \../             values of one sign: nothing cancels.
  *
- * Exact but for rounding: coordinates are taken from a corner of each triangle, so large ones lose
- * nothing. The result does not depend on the number of threads.
- * Cost: linear in the triangles and in the pairs of them that overlap.
+ * Exact but for rounding: coordinates are measured from a corner of each triangle, so that large ones
+ * lose little. The result does not depend on the number of threads.
+ * Cost: n log n in the triangles, linear in the pairs of them whose boxes overlap.
  */
 #ifndef elevation_Query_Overlay_h
 #define elevation_Query_Overlay_h
@@ -43,7 +43,10 @@ struct OverlaidTriangle
   double Weighted = 0.0; ///< the integral of the first surface's Values over the common area
 };
 
-/** The polygons, as triangles, with the difference of elevations, first less second. */
+/**
+ * The polygons as triangles, which share no points, with the difference of elevations, first less
+ * second.
+ */
 struct DifferenceMap
 {
   std::vector<double> Points; ///< x, y, difference

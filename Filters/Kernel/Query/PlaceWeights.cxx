@@ -41,36 +41,25 @@ void FindWeights(const Mesh& mesh, const Point2& place, Index triangle, NaturalN
 
 PlaceFinder::PlaceFinder(const Mesh& mesh, const Progress& progress)
   : Surface(mesh)
-  , Grid(
-      static_cast<std::size_t>(mesh.NumberOfTriangles()),
-      [&mesh](std::size_t t) {
-        const Index* const corners = mesh.Triangles.data() + 3 * t;
-        return std::array<Point2, 3>{ { mesh.PointOf(corners[0]), mesh.PointOf(corners[1]),
-          mesh.PointOf(corners[2]) } };
-      },
-      progress)
+  , Tree(mesh, progress)
 {
 }
 
 Index PlaceFinder::TriangleAt(const Point2& place) const
 {
-  std::size_t cell;
-  if (!this->Grid.FindCell(place, cell))
-  {
-    return None;
-  }
-  const auto contains = [&](Index t) {
-    const Index* const corners = this->Surface.Triangles.data() + 3 * static_cast<std::size_t>(t);
-    const Point2& a = this->Surface.PointOf(corners[0]);
-    const Point2& b = this->Surface.PointOf(corners[1]);
-    const Point2& c = this->Surface.PointOf(corners[2]);
-    return Orientation(a, b, place) != Negative && Orientation(b, c, place) != Negative &&
-      Orientation(c, a, place) != Negative;
-  };
-  const Index* const end = this->Grid.End(cell);
-  const Index* const found = std::find_if(this->Grid.Begin(cell), end, contains);
-  CountWork(static_cast<std::size_t>(found - this->Grid.Begin(cell)) + 1);
-  return found == end ? None : *found;
+  Index first = None;
+  this->Tree.Visit({ place, place }, [&](Index t) {
+    if (first != None && first < t)
+    {
+      return;
+    }
+    const std::array<Point2, 3> at = TriangleCorners(this->Surface, t);
+    const bool contains = BoxOf(at).Contains(place) &&
+      Orientation(at[0], at[1], place) != Negative &&
+      Orientation(at[1], at[2], place) != Negative && Orientation(at[2], at[0], place) != Negative;
+    first = contains ? t : first;
+  });
+  return first;
 }
 
 PlaceWeights PlaceFinder::Find(
@@ -110,8 +99,11 @@ PlaceWeights PlaceFinder::Find(
       }
       found[task].Offsets.push_back(found[task].Vertices.size());
     }
-    const std::lock_guard<std::mutex> lock(changing);
-    idle.push_back(std::move(natural));
+    if (natural)
+    {
+      const std::lock_guard<std::mutex> lock(changing);
+      idle.push_back(std::move(natural));
+    }
   });
   PlaceWeights all;
   const Progress joining = stages.Next();

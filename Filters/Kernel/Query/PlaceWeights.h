@@ -19,13 +19,13 @@
  *        \ . / \ . /        each triangle of the region at v1; and through p, v1, v2.
  *         \v4-------'
  *
- * The weights reproduce planes: what rounding leaves, linear weights take away. Between vertices
- * the surface is smooth; at vertices it has their heights, and a kink.
+ * The weights reproduce planes. Between vertices the surface is smooth; at vertices it has their
+ * heights, and a kink.
  *
  * Guarantees: whether a triangle or a circle contains a place is exact. The result does not depend
  * on the number of threads.
- * Cost: finding a place takes constant time on average, about as much as a triangle does in the
- * index. Natural neighbours take linear time in their number, mostly six.
+ * Cost: finding a place takes about log n for n triangles, wherever they are. Natural neighbours take
+ * linear time in their number, mostly six.
  *
  * [Sibson 1981] A brief description of natural neighbour interpolation.
  */
@@ -33,6 +33,7 @@
 #define elevation_Query_PlaceWeights_h
 
 #include "Kernel/Mesh/Mesh.h"
+#include "TriangleTree.h"
 
 #include <vector>
 
@@ -66,7 +67,7 @@ public:
 
 private:
   const Mesh& Surface;
-  CellGrid Grid;
+  TriangleTree Tree;
 };
 
 } // namespace elevation

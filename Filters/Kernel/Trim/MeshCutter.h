@@ -29,16 +29,6 @@ struct InsertedVertex
   double Weights[3]; ///< 0 to 1, their sum is 1; on an edge, the opposite corner's is 0
 };
 
-/**
- * ab - cd, with an error of few units in the last place also where most digits cancel (Kahan). The
- * second fused multiplication gives the rounding error of cd, which is part of the first one.
- */
-inline double DifferenceOfProducts(double a, double b, double c, double d)
-{
-  const double cd = c * d;
-  return std::fma(a, b, -cd) + std::fma(-c, d, cd);
-}
-
 /** Appends new vertices and parts to the mesh. */
 class MeshCutter
 {

@@ -176,6 +176,30 @@ TEST(Overlay, MapsTheDifference)
   EXPECT_NEAR(volume, sum.Above - sum.Below, 1e-11);
 }
 
+// Triangles a rounding error wide, as along straight oblique borders, have no volume worth speaking of.
+TEST(Overlay, OfSliversIsANumber)
+{
+  Random random(15);
+  for (int i = 0; i < 20000; ++i)
+  {
+    const double x = 1e6 * random.Unit(), y = 1e6 * random.Unit();
+    Terrain terrain;
+    terrain.Surface.Points = { { x, y }, { x + random.Unit(), y + random.Unit() }, { x, y } };
+    const double share = random.Unit();
+    Point2& last = terrain.Surface.Points[2];
+    last.X += share * (terrain.Surface.Points[1].X - x);
+    last.Y += share * (terrain.Surface.Points[1].Y - y);
+    const Sign side = Orientation(terrain.Surface.Points[0], terrain.Surface.Points[1], last);
+    if (side != Zero)
+    {
+      terrain.Surface.Triangles = { 0, side == Positive ? 1 : 2, side == Positive ? 2 : 1 };
+      terrain.Elevations = { random.Unit(), random.Unit(), random.Unit() };
+      const OverlaidTriangle sum = Compare(terrain, terrain);
+      EXPECT_LT(sum.Above + sum.Below + sum.Common, 1e-8);
+    }
+  }
+}
+
 TEST(Overlay, DoesNotDependOnThreads)
 {
   const Terrain one = MakeTerrain(5000, 10, 0.0, 10.0, Hills);

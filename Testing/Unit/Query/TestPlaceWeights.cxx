@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DelaunayMesh.h"
 #include "Kernel/Query/Query.h"
+#include "WorkOf.h"
 
 #ifdef ES_TEST_CGAL
 #include "Query/CGALNaturalNeighbors.h"
@@ -174,6 +175,58 @@ TEST(PlaceWeights, OfNaturalNeighborsDoNotDependOnDiagonals)
       EXPECT_NEAR(WeightsOf(all, place)[corner], 0.25, 1e-8);
     }
   }
+}
+
+// Points on a straight oblique side, in large coordinates, are rounded to triangles that are a
+// billionth wide.
+TEST(PlaceWeights, NearAnObliqueSideStayWithinTheirNeighbors)
+{
+  Random random(12);
+  const Point2 corner{ 430000.0, 5300000.0 }, along{ 0.8, 0.6 };
+  const auto at = [&](double right, double up) {
+    return Point2{ corner.X + right * along.X - up * along.Y,
+      corner.Y + right * along.Y + up * along.X };
+  };
+  std::vector<Point2> points, places;
+  for (int i = 0; i < 300; ++i)
+  {
+    points.push_back(at(300.0 * random.Unit(), i % 3 == 0 ? 0.0 : 200.0 * random.Unit()));
+    places.push_back(at(300.0 * random.Unit(), 0.0));
+    places.push_back(at(300.0 * random.Unit(), 1e-6 * random.Unit()));
+    places.push_back(at(300.0 * random.Unit(), 10.0 * random.Unit()));
+  }
+  const Mesh mesh = Delaunay(points);
+  const PlaceFinder finder(mesh);
+  for (const bool areNatural : { false, true })
+  {
+    const PlaceWeights all = finder.Find(places, areNatural);
+    EXPECT_GT(all.Weights.size(), 1000u);
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      const std::map<Index, double> weights = WeightsOf(all, i);
+      for (const auto& each : weights)
+      {
+        EXPECT_GE(each.second, -1e-6);
+        EXPECT_LE(each.second, 1.0 + 1e-6);
+      }
+      if (!weights.empty())
+      {
+        EXPECT_NEAR(Interpolated(weights, points, Plane), Plane(places[i]), 2e-7);
+      }
+    }
+  }
+}
+
+// A single point far away must not make the search slow.
+TEST(PlaceWeights, AreFoundAsFastInADenseClusterAsAnywhere)
+{
+  std::vector<Point2> points = RandomPoints(20000, 13);
+  points.push_back({ 1e9, 1e9 });
+  const Mesh mesh = Delaunay(points);
+  const PlaceFinder finder(mesh);
+  const std::vector<Point2> places = RandomPoints(1000, 14);
+  const std::size_t work = testing_work::WorkOf([&] { finder.Find(places, false); });
+  EXPECT_LT(work, 60 * places.size()); // triangles looked at
 }
 
 TEST(PlaceWeights, OfNaturalNeighborsArePositive)
