@@ -13,6 +13,8 @@
  * is the plane of projection, z the elevation. Cells that are hidden (vtkGhostType), or have a
  * hidden point, do not count as cells, not even in messages.
  *
+ * Input 1, optional: areas, that choose which holes are filled; see AreaMode.
+ *
  * @par Outputs:
  * - 0, the surface: the points and cells of the input, with their ids, then the new points and
  *   triangles, counter-clockwise seen from +z. It has the point arrays FilledPoint
@@ -92,6 +94,14 @@ public:
     FAILED = 3,         ///< could not be filled; a warning says why
     REPLACED = 4,       ///< filled: long triangles bridged it, see OpenEdgeLength
     CUT_OUT = 5,        ///< left open: a given boundary has cut it out, see FillCutOuts
+    NOT_CHOSEN = 6,     ///< left open because of the areas, see AreaMode
+  };
+
+  /** What becomes of holes that touch the areas: the values of AreaMode. */
+  enum AreaModeType
+  {
+    FILL_ONLY = 0, ///< they are filled, and others stay open (default)
+    KEEP_OPEN = 1  ///< they stay open, and others are filled
   };
 
   /** How z of new points is found: the values of Interpolation, and of the array of output 1. */
@@ -229,6 +239,34 @@ public:
 
   ///@{
   /**
+   * Input 1, optional: closed lines or polygons, whose x,y bound areas. Rings may nest, by the
+   * even-odd rule: a ring in another one is no area, as an island in a lake; so a place in two
+   * overlapping rings is in none. Lines whose ends meet are joined. An open line, or a ring of
+   * fewer than three points, is an error that names it. Decided exactly. With ranks, the areas may
+   * be on any of them.
+   */
+  void SetAreasConnection(vtkAlgorithmOutput* output);
+  void SetAreasData(vtkPolyData* areas);
+  vtkPolyData* GetAreas();
+  ///@}
+
+  ///@{
+  /**
+   * What becomes of holes, and regions of OpenEdgeLength, that touch the areas of input 1: whose
+   * region or rim has a point in common with an area or its edge. An AreaModeType, to which other
+   * numbers are clamped. Default: FILL_ONLY. Holes that stay open because of it have the status
+   * NOT_CHOSEN, whatever else is true of them; other limits apply to the rest. If no hole touches
+   * the areas, a warning says where these are.
+   */
+  vtkSetClampMacro(AreaMode, int, FILL_ONLY, KEEP_OPEN);
+  vtkGetMacro(AreaMode, int);
+  void SetAreaModeToFillOnly() { this->SetAreaMode(FILL_ONLY); }
+  void SetAreaModeToKeepOpen() { this->SetAreaMode(KEEP_OPEN); }
+  const char* GetAreaModeAsString() const;
+  ///@}
+
+  ///@{
+  /**
    * Whether to fill holes that a boundary given to vtkTrimOutwardTriangles has cut out: a lake, an
    * island, a building. Such a hole has an edge, of its rim or of an island, between two points
    * that are 1 in the input's point array OnBoundary, which that filter makes; so a gap in the data
@@ -353,8 +391,8 @@ public:
    * which are "Words": NothingToFill, HoleNotFilled and RegionNotFilled (with a reason:
    * BordersTouch, SizeOutOfRange, MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall,
    * PointsCoincide), MoreHolesNotFilled, ErrorsOutgrowRoughness, LinesDisagree, BordersMeet,
-   * TooManyPointsToFill,
-   * TooManyPointsByDefault,
+   * AreasTouchNoHole, RingsRepeated, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
+   * TooManyPointsToFill, TooManyPointsByDefault,
    * InvalidOpenEdgeLength, InvalidHoleSize, InvalidHoleEdges, InvalidSpacing, InvalidConfidence,
    * InvalidInsertedPoints, InvalidExpectedPoints, InvalidThreads, InvalidPrecision, FoldsInSingle,
    * OriginalIdsReplaced, EdgeLengthRenamed, ArraysLeftOut, OnOneRank (with a reason:
@@ -374,6 +412,7 @@ protected:
   double MaximumHoleSize = 0.0;
   vtkIdType MaximumHoleEdges = 0;
   vtkIdType MaximumNumberOfInsertedPoints = 100000000;
+  int AreaMode = FILL_ONLY;
   bool FillCutOuts = false;
   vtkIdType MaximumNumberOfExpectedPoints = 0;
   double Spacing = 0.0;

@@ -11,6 +11,7 @@
  */
 #include "PatchedSurface.h"
 
+#include "ArrayChecks.h"
 #include "DataArrays.h"
 #include "MeshConversion.h"
 #include "Requests.h"
@@ -39,7 +40,7 @@ namespace
 constexpr const char* HoleIdName = "HoleId";
 // Of FillStatus and Interpolation.
 constexpr const char* StatusNames[] = { "filled", "too large", "too many edges", "failed",
-  "replaced", "cut out" };
+  "replaced", "cut out", "not chosen" };
 constexpr const char* InterpolationNames[] = { "neighbor mean", "membrane", "thin plate",
   "adaptive", "cubic spline" };
 } // namespace
@@ -376,11 +377,29 @@ void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& o
   }
 }
 
+std::shared_ptr<const Areas> ToAreas(
+  vtkPolyData* lines, const Progress& progress, std::vector<Message>& warnings)
+{
+  if (!lines)
+  {
+    return nullptr;
+  }
+  CheckArrays(lines, std::string("The ") + AreaInputName + "'s");
+  Message repeated;
+  auto areas =
+    std::make_shared<const Areas>(ToBoundaryLines(lines, progress, AreaInputName), &repeated);
+  if (!repeated.IsEmpty())
+  {
+    warnings.push_back(repeated);
+  }
+  return areas;
+}
+
 /*
  * The first few holes that failed, each with its reason; then how many more. Holes that a limit of
  * the user leaves out are no warning. Then misties, those of all holes together.
  */
-std::vector<Message> WarningsOf(const FillResult& patches)
+std::vector<Message> WarningsOf(const FillResult& patches, const FillOptions& options)
 {
   const Holes& holes = patches.Found;
   constexpr int listed = 5;
@@ -401,6 +420,14 @@ std::vector<Message> WarningsOf(const FillResult& patches)
   if (failed > listed)
   {
     warnings.push_back(MakeMessage<sentences::MoreHolesNotFilled>(failed - listed));
+  }
+  const auto notChosen = std::count_if(patches.Reports.begin(), patches.Reports.end(),
+    [](const HoleReport& hole) { return hole.Status == FillStatus::NotChosen; });
+  const bool fillsOnly = options.Mode == AreaMode::FillOnly;
+  if (options.Chosen && holes.Count() > 0 && notChosen == (fillsOnly ? holes.Count() : 0))
+  {
+    warnings.push_back(MakeMessage<sentences::AreasTouchNoHole>(holes.Count(),
+      NameOf(options.Chosen->Extent()), fillsOnly ? "none is filled" : "none is kept open"));
   }
   double outgrowth = 0.0;
   Index outgrown = 0, first = None;

@@ -108,6 +108,11 @@ largest hole                      | MaximumHoleSize=4.0        | coast and lakes
 most edges of a hole              | MaximumHoleEdges=13        | coast and lakes              | s  s  s  s  s  s  s
 cut-outs of the boundary, open    |                            | coast and lakes              | s  s  s  s  s  s  s
 cut-outs of the boundary, filled  | FillCutOuts=True           | coast and lakes              | s  s  s  s  s  s  s
+only holes that touch areas filled | AreaMode=0                 | coast and lakes + areas      | s  s  s  s  s  s  s
+holes that touch areas kept open  | AreaMode=1                 | coast and lakes + areas      | s  s  s  s  s  s  s
+areas on one rank only            |                            | coast and lakes + areas + on one | s  s  s  s  s  s  s
+areas, long triangles opened      | OpenEdgeLength=2.5         | coast and lakes + areas      | s  s  s  s  s  s  s
+areas, points of floats           |                            | coast and lakes + areas + float | s  s  s  s  s  s  s
 most points inserted              | MaximumNumberOfInsertedPoints=50, Trim.BoundaryEdges=1 | coast and lakes              | s  s  s  s  s  s  s
 most points expected              | MaximumNumberOfExpectedPoints=20 | coast and lakes              | s  s  s  s  s  s  s
 spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  s

@@ -489,6 +489,12 @@ HoleReport MeasureHole(const Mesh& mesh, const Holes& holes, Index hole, const F
       report.Status = isCut ? FillStatus::CutOut : report.Status;
     });
   }
+  // Before any other reason: that is what the user has chosen.
+  const bool isToTouch = options.Mode == AreaMode::FillOnly;
+  if (options.Chosen && options.Chosen->Touch(mesh, holes, hole) != isToTouch)
+  {
+    report.Status = FillStatus::NotChosen;
+  }
   if (!IsMeasurable(report.Size))
   {
     report.Area = std::numeric_limits<double>::quiet_NaN();
