@@ -70,7 +70,8 @@ static_assert(vtkFillElevationHoles::NEIGHBOR_MEAN == int(elevation::Interpolati
     vtkFillElevationHoles::MEMBRANE == int(elevation::Interpolation::Membrane) &&
     vtkFillElevationHoles::THIN_PLATE == int(elevation::Interpolation::ThinPlate) &&
     vtkFillElevationHoles::ADAPTIVE == int(elevation::Interpolation::Adaptive) &&
-    vtkFillElevationHoles::CUBIC_SPLINE == int(elevation::Interpolation::Cubic),
+    vtkFillElevationHoles::CUBIC_SPLINE == int(elevation::Interpolation::Cubic) &&
+    vtkFillElevationHoles::LEVEL == int(elevation::Interpolation::Level),
   "the kernel's names are those of the filter");
 static_assert(vtkFillElevationHoles::REPLACED == int(elevation::FillStatus::Replaced) &&
     vtkFillElevationHoles::CUT_OUT == int(elevation::FillStatus::CutOut) &&
@@ -262,7 +263,7 @@ const char* vtkFillElevationHoles::GetAreaModeAsString() const
 const char* vtkFillElevationHoles::GetInterpolationAsString() const
 {
   static const char* const names[] = { "NeighborMean", "Membrane", "ThinPlate", "Adaptive",
-    "CubicSpline" };
+    "CubicSpline", "Level" };
   return names[this->Interpolation];
 }
 

@@ -28,7 +28,7 @@
  *   data: HoleId, Status (HoleStatusType) and StatusName, the same in words, Size (for comparison
  *   with MaximumHoleSize), NumberOfEdges, Perimeter, Area, NumberOfInsertedPoints, Interpolation
  *   (the one used), InterpolationName ("" if nothing was inserted), NumberOfPointsDrawnBack and
- *   LargestDrawBack (see InterpolationType).
+ *   LargestDrawBack, Level, RimAboveLevel and RimBelowLevel (see InterpolationType).
  *
  * Field data of both: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
@@ -111,7 +111,8 @@ public:
     MEMBRANE = 1,      ///< stays within the heights of the hole's boundary
     THIN_PLATE = 2,    ///< continues slope and curvature
     ADAPTIVE = 3,      ///< for each hole what predicts the surface around it best (default)
-    CUBIC_SPLINE = 4   ///< as THIN_PLATE, but smoother
+    CUBIC_SPLINE = 4,  ///< as THIN_PLATE, but smoother
+    LEVEL = 5          ///< one z for each hole, as of water
   };
 
   ///@{
@@ -127,6 +128,10 @@ public:
    * - THIN_PLATE: continues slope and curvature from the boundary and the ring of points around
    *   it, like a plate that bends as little as it can. Continues planes exactly.
    * - CUBIC_SPLINE: as THIN_PLATE, but smoother: better on calm terrain, worse on noise.
+   * - LEVEL: all new points of a hole have one z, as of water: that of the rim which a tenth of the
+   *   rim's points do not exceed. The rim stays as it is; output 1 has the level, and how far the
+   *   highest point of the rim lies above it and the lowest below. Other arrays as by NEIGHBOR_MEAN;
+   *   errors are NaN.
    * - ADAPTIVE: for each hole the one of MEMBRANE, THIN_PLATE and CUBIC_SPLINE that predicts the
    *   surface around it best. The hole's boundary is moved to up to 16 places beside the hole,
    *   where the surface is known, and each method predicts what is inside. Methods that predict it
@@ -153,13 +158,14 @@ public:
    * points determine no spline, because they are nearly on one line, MEMBRANE is used; where z
    * around the hole is not finite, NEIGHBOR_MEAN.
    */
-  vtkSetClampMacro(Interpolation, int, NEIGHBOR_MEAN, CUBIC_SPLINE);
+  vtkSetClampMacro(Interpolation, int, NEIGHBOR_MEAN, LEVEL);
   vtkGetMacro(Interpolation, int);
   void SetInterpolationToNeighborMean() { this->SetInterpolation(NEIGHBOR_MEAN); }
   void SetInterpolationToMembrane() { this->SetInterpolation(MEMBRANE); }
   void SetInterpolationToThinPlate() { this->SetInterpolation(THIN_PLATE); }
   void SetInterpolationToAdaptive() { this->SetInterpolation(ADAPTIVE); }
   void SetInterpolationToCubicSpline() { this->SetInterpolation(CUBIC_SPLINE); }
+  void SetInterpolationToLevel() { this->SetInterpolation(LEVEL); }
   const char* GetInterpolationAsString() const;
   ///@}
 

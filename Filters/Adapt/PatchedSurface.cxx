@@ -42,7 +42,7 @@ constexpr const char* HoleIdName = "HoleId";
 constexpr const char* StatusNames[] = { "filled", "too large", "too many edges", "failed",
   "replaced", "cut out", "not chosen" };
 constexpr const char* InterpolationNames[] = { "neighbor mean", "membrane", "thin plate",
-  "adaptive", "cubic spline" };
+  "adaptive", "cubic spline", "level" };
 } // namespace
 
 void CheckOptions(const FillOptions& options, double openEdgeLength)
@@ -341,6 +341,12 @@ void MakeReport(
     [](const HoleReport& report) { return report.Drawn.Count; });
   add("LargestDrawBack", vtkNew<vtkDoubleArray>().Get(),
     [](const HoleReport& report) { return report.Drawn.Most; });
+  add("Level", vtkNew<vtkDoubleArray>().Get(),
+    [](const HoleReport& report) { return report.Water.Height; });
+  add("RimAboveLevel", vtkNew<vtkDoubleArray>().Get(),
+    [](const HoleReport& report) { return report.Water.RimAbove; });
+  add("RimBelowLevel", vtkNew<vtkDoubleArray>().Get(),
+    [](const HoleReport& report) { return report.Water.RimBelow; });
   add("InterpolationName", vtkNew<vtkStringArray>().Get(), [](const HoleReport& report) {
     // A patch without new points has nothing that was interpolated.
     return report.NumberOfInsertedPoints ? InterpolationNames[static_cast<int>(report.Method)] : "";

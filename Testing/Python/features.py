@@ -102,6 +102,7 @@ interpolation: membrane           | Interpolation=1            | coast and lakes
 interpolation: thin plate         | Interpolation=2            | coast and lakes              | s  s  s  s  s  s  s
 interpolation: adaptive           | Interpolation=3            | coast and lakes              | s  s  s  s  s  s  s
 interpolation: cubic spline       | Interpolation=4            | coast and lakes              | s  s  s  s  s  s  s
+interpolation: level              | Interpolation=5            | coast and lakes              | s  s  s  s  s  s  s
 on the nodes of a lattice         |                            | lattice and lakes            | s  s  s  s  s  s  s
 long triangles opened             | OpenEdgeLength=2.5         | coast and lakes              | s  s  s  s  s  s  s
 largest hole                      | MaximumHoleSize=4.0        | coast and lakes              | s  s  s  s  s  s  s

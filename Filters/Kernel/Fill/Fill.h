@@ -118,6 +118,14 @@ struct WholeSurface
   ElevationRange Elevations;  ///< that of all triangles; empty: it is looked for
 };
 
+/** Of a hole that is filled level: NaN of others. */
+struct WaterLevel
+{
+  double Height = std::numeric_limits<double>::quiet_NaN();
+  double RimAbove = std::numeric_limits<double>::quiet_NaN(); ///< the highest of the rim above it
+  double RimBelow = std::numeric_limits<double>::quiet_NaN(); ///< the lowest of the rim below it
+};
+
 struct HoleReport
 {
   FillStatus Status = FillStatus::Filled;
@@ -131,6 +139,7 @@ struct HoleReport
   Interpolation Method = Interpolation::NeighborMean; ///< as used; never Adaptive
   double Outgrowth = 0.0;                             ///< BetweenLines::Outgrowth()
   DrawnBack Drawn;                                    ///< elevations that overshot
+  WaterLevel Water;
   std::vector<double> Misties; ///< by how much lines disagree that cross in it, where they do
   bool NeedsMoreSurroundings = false; ///< not filled: its surroundings are too small
   Message Reason;                     ///< if Failed: without the hole's name
