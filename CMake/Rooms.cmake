@@ -84,6 +84,7 @@ set(es_kernel_Trim
   Outline
   Trim)
 set(es_kernel_Fill
+  Areas
   Multigrid
   Membrane
   Spline

@@ -30,6 +30,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 namespace elevation
 {
@@ -44,6 +45,7 @@ FillOptions OptionsOf(vtkFillElevationHoles* filter)
   };
   options.MaximumHoleEdges = toIndex(filter->GetMaximumHoleEdges(), VTK_INT_MAX);
   options.Spacing = filter->GetSpacing();
+  options.Mode = static_cast<AreaMode>(filter->GetAreaMode());
   options.FillCutOuts = filter->GetFillCutOuts();
   options.ConfidenceLevel = filter->GetConfidenceLevel();
   // The assertions below hold the numbers of both together.
@@ -68,11 +70,16 @@ static_assert(vtkFillElevationHoles::NEIGHBOR_MEAN == int(elevation::Interpolati
     vtkFillElevationHoles::MEMBRANE == int(elevation::Interpolation::Membrane) &&
     vtkFillElevationHoles::THIN_PLATE == int(elevation::Interpolation::ThinPlate) &&
     vtkFillElevationHoles::ADAPTIVE == int(elevation::Interpolation::Adaptive) &&
-    vtkFillElevationHoles::CUBIC_SPLINE == int(elevation::Interpolation::Cubic),
+    vtkFillElevationHoles::CUBIC_SPLINE == int(elevation::Interpolation::Cubic) &&
+    vtkFillElevationHoles::LEVEL == int(elevation::Interpolation::Level),
   "the kernel's names are those of the filter");
 static_assert(vtkFillElevationHoles::REPLACED == int(elevation::FillStatus::Replaced) &&
-    vtkFillElevationHoles::CUT_OUT == int(elevation::FillStatus::CutOut),
+    vtkFillElevationHoles::CUT_OUT == int(elevation::FillStatus::CutOut) &&
+    vtkFillElevationHoles::NOT_CHOSEN == int(elevation::FillStatus::NotChosen),
   "the kernel's statuses are those of the filter");
+static_assert(vtkFillElevationHoles::FILL_ONLY == int(elevation::AreaMode::FillOnly) &&
+    vtkFillElevationHoles::KEEP_OPEN == int(elevation::AreaMode::KeepOpen),
+  "the kernel's modes are those of the filter");
 
 namespace
 {
@@ -94,6 +101,8 @@ FillResult FillBlock(
   Report(progress, 0.0);
   elevation::CheckOptions(options, openEdgeLength);
   elevation::CheckArrays(input);
+  std::vector<elevation::Message> warnings;
+  options.Chosen = elevation::ToAreas(block.Second, progress.Between(0.0, 0.0), warnings);
   const elevation::DataSetPoints points = elevation::ViewPoints(input);
   const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
   Mesh mesh;
@@ -132,7 +141,8 @@ FillResult FillBlock(
   MakeSurface(input, mesh, patches, interpolates, later.Next(), block.Outputs[0]);
   MakeReport(input, patches, later.Next(), block.Outputs[1]);
   AddHoleCounts(patches, block.Outputs);
-  block.Warnings = WarningsOf(patches);
+  block.Warnings = WarningsOf(patches, options);
+  block.Warnings.insert(block.Warnings.begin(), warnings.begin(), warnings.end());
   // Instead of others: there can be none. A filter before this one may have warned already.
   if (mesh.NumberOfTriangles() == 0 && elevation::NeedsWarning(input))
   {
@@ -145,6 +155,7 @@ FillResult FillBlock(
 
 vtkFillElevationHoles::vtkFillElevationHoles()
 {
+  this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(2);
   this->SetController(vtkMultiProcessController::GetGlobalController());
 }
@@ -174,11 +185,30 @@ vtkTypeBool vtkFillElevationHoles::ProcessRequest(
   });
 }
 
+void vtkFillElevationHoles::SetAreasConnection(vtkAlgorithmOutput* output)
+{
+  this->SetInputConnection(1, output);
+}
+
+void vtkFillElevationHoles::SetAreasData(vtkPolyData* areas)
+{
+  this->SetInputData(1, areas);
+}
+
+vtkPolyData* vtkFillElevationHoles::GetAreas()
+{
+  return this->GetNumberOfInputConnections(1) > 0
+    ? vtkPolyData::SafeDownCast(this->GetInputDataObject(1, 0))
+    : nullptr;
+}
+
 int vtkFillElevationHoles::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   elevation::FilterRun call(
     this, this->Controller, request, inputVector, outputVector, this->Messages);
+  call.Second = elevation::AreaInputName;
+  call.SecondGivesPoints = false;
   call.CleanedOutputs = this->RemoveUnusedPoints ? 1 : 0;
   call.Precision = this->OutputPointsPrecision;
   call.Sums = { &this->NumberOfHoles, &this->NumberOfFilledHoles };
@@ -191,13 +221,21 @@ int vtkFillElevationHoles::RequestData(
   // A block on several ranks: without gathering it, if that can be done.
   call.Spread = [&](elevation::Block& block, const elevation::Ranks& ranks) {
     FillResult patches;
-    if (!elevation::FillOnRanks(ranks, options, interpolates, this->OpenEdgeLength, block, patches))
+    FillOptions chosen = options;
+    std::vector<elevation::Message> warnings;
+    // The areas are the same on all ranks.
+    ranks.Agree([&] {
+      chosen.Chosen = elevation::ToAreas(block.Second, block.Progress.Between(0.0, 0.0), warnings);
+    });
+    if (!elevation::FillOnRanks(ranks, chosen, interpolates, this->OpenEdgeLength, block, patches))
     {
       return false;
     }
     // FillBlock() does these two for a block on one rank.
     AddHoleCounts(patches, block.Outputs);
-    block.Warnings = WarningsOf(patches);
+    const std::vector<elevation::Message> found = WarningsOf(patches, chosen);
+    block.Warnings.insert(block.Warnings.end(), warnings.begin(), warnings.end());
+    block.Warnings.insert(block.Warnings.end(), found.begin(), found.end());
     if (ranks.OwnRank() == 0) // all ranks know them
     {
       addCounts(patches);
@@ -217,10 +255,15 @@ void vtkFillElevationHoles::SetMaximumEdgeLength(double length)
   this->SetOpenEdgeLength(length);
 }
 
+const char* vtkFillElevationHoles::GetAreaModeAsString() const
+{
+  return this->AreaMode == KEEP_OPEN ? "KeepOpen" : "FillOnly";
+}
+
 const char* vtkFillElevationHoles::GetInterpolationAsString() const
 {
   static const char* const names[] = { "NeighborMean", "Membrane", "ThinPlate", "Adaptive",
-    "CubicSpline" };
+    "CubicSpline", "Level" };
   return names[this->Interpolation];
 }
 
@@ -231,6 +274,7 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumHoleSize: " << this->MaximumHoleSize << "\n";
   os << indent << "MaximumHoleEdges: " << this->MaximumHoleEdges << "\n";
   os << indent << "MaximumNumberOfInsertedPoints: " << this->MaximumNumberOfInsertedPoints << "\n";
+  os << indent << "AreaMode: " << this->GetAreaModeAsString() << "\n";
   os << indent << "FillCutOuts: " << (this->FillCutOuts ? "On" : "Off") << "\n";
   os << indent << "MaximumNumberOfExpectedPoints: " << this->MaximumNumberOfExpectedPoints << "\n";
   os << indent << "Spacing: " << this->Spacing << "\n";

@@ -13,6 +13,8 @@
  * is the plane of projection, z the elevation. Cells that are hidden (vtkGhostType), or have a
  * hidden point, do not count as cells, not even in messages.
  *
+ * Input 1, optional: areas, that choose which holes are filled; see AreaMode.
+ *
  * @par Outputs:
  * - 0, the surface: the points and cells of the input, with their ids, then the new points and
  *   triangles, counter-clockwise seen from +z. It has the point arrays FilledPoint
@@ -26,7 +28,7 @@
  *   data: HoleId, Status (HoleStatusType) and StatusName, the same in words, Size (for comparison
  *   with MaximumHoleSize), NumberOfEdges, Perimeter, Area, NumberOfInsertedPoints, Interpolation
  *   (the one used), InterpolationName ("" if nothing was inserted), NumberOfPointsDrawnBack and
- *   LargestDrawBack (see InterpolationType).
+ *   LargestDrawBack, Level, RimAboveLevel and RimBelowLevel (see InterpolationType).
  *
  * Field data of both: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
@@ -92,6 +94,14 @@ public:
     FAILED = 3,         ///< could not be filled; a warning says why
     REPLACED = 4,       ///< filled: long triangles bridged it, see OpenEdgeLength
     CUT_OUT = 5,        ///< left open: a given boundary has cut it out, see FillCutOuts
+    NOT_CHOSEN = 6,     ///< left open because of the areas, see AreaMode
+  };
+
+  /** What becomes of holes that touch the areas: the values of AreaMode. */
+  enum AreaModeType
+  {
+    FILL_ONLY = 0, ///< they are filled, and others stay open (default)
+    KEEP_OPEN = 1  ///< they stay open, and others are filled
   };
 
   /** How z of new points is found: the values of Interpolation, and of the array of output 1. */
@@ -101,7 +111,8 @@ public:
     MEMBRANE = 1,      ///< stays within the heights of the hole's boundary
     THIN_PLATE = 2,    ///< continues slope and curvature
     ADAPTIVE = 3,      ///< for each hole what predicts the surface around it best (default)
-    CUBIC_SPLINE = 4   ///< as THIN_PLATE, but smoother
+    CUBIC_SPLINE = 4,  ///< as THIN_PLATE, but smoother
+    LEVEL = 5          ///< one z for each hole, as of water
   };
 
   ///@{
@@ -117,6 +128,10 @@ public:
    * - THIN_PLATE: continues slope and curvature from the boundary and the ring of points around
    *   it, like a plate that bends as little as it can. Continues planes exactly.
    * - CUBIC_SPLINE: as THIN_PLATE, but smoother: better on calm terrain, worse on noise.
+   * - LEVEL: all new points of a hole have one z, as of water: that of the rim which a tenth of the
+   *   rim's points do not exceed. The rim stays as it is; output 1 has the level, and how far the
+   *   highest point of the rim lies above it and the lowest below. Other arrays as by NEIGHBOR_MEAN;
+   *   errors are NaN.
    * - ADAPTIVE: for each hole the one of MEMBRANE, THIN_PLATE and CUBIC_SPLINE that predicts the
    *   surface around it best. The hole's boundary is moved to up to 16 places beside the hole,
    *   where the surface is known, and each method predicts what is inside. Methods that predict it
@@ -143,13 +158,14 @@ public:
    * points determine no spline, because they are nearly on one line, MEMBRANE is used; where z
    * around the hole is not finite, NEIGHBOR_MEAN.
    */
-  vtkSetClampMacro(Interpolation, int, NEIGHBOR_MEAN, CUBIC_SPLINE);
+  vtkSetClampMacro(Interpolation, int, NEIGHBOR_MEAN, LEVEL);
   vtkGetMacro(Interpolation, int);
   void SetInterpolationToNeighborMean() { this->SetInterpolation(NEIGHBOR_MEAN); }
   void SetInterpolationToMembrane() { this->SetInterpolation(MEMBRANE); }
   void SetInterpolationToThinPlate() { this->SetInterpolation(THIN_PLATE); }
   void SetInterpolationToAdaptive() { this->SetInterpolation(ADAPTIVE); }
   void SetInterpolationToCubicSpline() { this->SetInterpolation(CUBIC_SPLINE); }
+  void SetInterpolationToLevel() { this->SetInterpolation(LEVEL); }
   const char* GetInterpolationAsString() const;
   ///@}
 
@@ -225,6 +241,34 @@ public:
    */
   vtkSetMacro(MaximumNumberOfInsertedPoints, vtkIdType);
   vtkGetMacro(MaximumNumberOfInsertedPoints, vtkIdType);
+  ///@}
+
+  ///@{
+  /**
+   * Input 1, optional: closed lines or polygons, whose x,y bound areas. Rings may nest, by the
+   * even-odd rule: a ring in another one is no area, as an island in a lake; so a place in two
+   * overlapping rings is in none. Lines whose ends meet are joined. An open line, or a ring of
+   * fewer than three points, is an error that names it. Decided exactly. With ranks, the areas may
+   * be on any of them.
+   */
+  void SetAreasConnection(vtkAlgorithmOutput* output);
+  void SetAreasData(vtkPolyData* areas);
+  vtkPolyData* GetAreas();
+  ///@}
+
+  ///@{
+  /**
+   * What becomes of holes, and regions of OpenEdgeLength, that touch the areas of input 1: whose
+   * region or rim has a point in common with an area or its edge. An AreaModeType, to which other
+   * numbers are clamped. Default: FILL_ONLY. Holes that stay open because of it have the status
+   * NOT_CHOSEN, whatever else is true of them; other limits apply to the rest. If no hole touches
+   * the areas, a warning says where these are.
+   */
+  vtkSetClampMacro(AreaMode, int, FILL_ONLY, KEEP_OPEN);
+  vtkGetMacro(AreaMode, int);
+  void SetAreaModeToFillOnly() { this->SetAreaMode(FILL_ONLY); }
+  void SetAreaModeToKeepOpen() { this->SetAreaMode(KEEP_OPEN); }
+  const char* GetAreaModeAsString() const;
   ///@}
 
   ///@{
@@ -353,8 +397,8 @@ public:
    * which are "Words": NothingToFill, HoleNotFilled and RegionNotFilled (with a reason:
    * BordersTouch, SizeOutOfRange, MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall,
    * PointsCoincide), MoreHolesNotFilled, ErrorsOutgrowRoughness, LinesDisagree, BordersMeet,
-   * TooManyPointsToFill,
-   * TooManyPointsByDefault,
+   * AreasTouchNoHole, RingsRepeated, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
+   * TooManyPointsToFill, TooManyPointsByDefault,
    * InvalidOpenEdgeLength, InvalidHoleSize, InvalidHoleEdges, InvalidSpacing, InvalidConfidence,
    * InvalidInsertedPoints, InvalidExpectedPoints, InvalidThreads, InvalidPrecision, FoldsInSingle,
    * OriginalIdsReplaced, EdgeLengthRenamed, ArraysLeftOut, OnOneRank (with a reason:
@@ -374,6 +418,7 @@ protected:
   double MaximumHoleSize = 0.0;
   vtkIdType MaximumHoleEdges = 0;
   vtkIdType MaximumNumberOfInsertedPoints = 100000000;
+  int AreaMode = FILL_ONLY;
   bool FillCutOuts = false;
   vtkIdType MaximumNumberOfExpectedPoints = 0;
   double Spacing = 0.0;

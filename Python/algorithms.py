@@ -222,7 +222,8 @@ class ReconstructElevationSurface(ReportingAlgorithm):
     """Makes an elevation surface of points: reconstruct() as an algorithm.
 
     Input 0: a point set, image, rectilinear grid or table, or a composite of these: each block then
-    is a surface for itself. Inputs 1 and 2, optional: boundary and faults, lines or polygons.
+    is a surface for itself. Inputs 1 to 4, optional: boundary and faults, lines or polygons; and polygons
+    as fill_only or keep_open.
     Outputs: the surface with the point array Elevation; the outlines of holes; the boundary; the
     report as vtkTable. GetReport() gives the report as text.
 
@@ -239,7 +240,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
     }
 
     def __init__(self):
-        super().__init__(3, 4)
+        super().__init__(5, 4)
         self._properties, self._exaggeration, self._chosen = {}, 1.0, {}
 
     def GetReport(self):
@@ -294,7 +295,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
     def work_on(self, controller, inputs, outputs):
         data = vtkDataObject.GetData(inputs[0])
         lines = {}
-        for name, given in (("boundary", inputs[1]), ("faults", inputs[2])):
+        for name, given in zip(("boundary", "faults", "fill_only", "keep_open"), inputs[1:]):
             if given.GetNumberOfInformationObjects():
                 given = vtkDataObject.GetData(given)
                 lines[name] = joined(shared(controller, lambda: lines_of(given, name)))

@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from . import reading
 from .clouds import Cloud, ReadOptions, bare_lines, crs_of, merged, notes_on, set_crs
 from .gdal_common import check_system, name_of, reference_of
-from .given_lines import fitted
+from .given_lines import RINGS, fitted
 from .several_heights import check_heights
 from .messages import ElevationSurfaceError, PictureError, counted
 from .options import (
@@ -127,18 +127,27 @@ class Run:
         self.set_crs(cloud)
         crs = project(options.file, cloud) if options.project else cloud.crs
         self.read_questions(cloud)
-        lines = {}
-        if options.boundary:
-            lines["boundary"] = reading.read_boundary(options.boundary)
+        lines = self.read_rings()
         if options.faults:
             lines["faults"] = self.read_faults(cloud)
         for data in lines.values() if options.project else ():
             set_crs(data, crs_of(data) or crs)  # lines without one are in that of the points
-        names = {"points": options.files[0], "boundary": options.boundary, "faults": options.faults}
+        names = {"points": options.files[0], **self.line_files()}
         cloud, lines = in_plane(cloud, lines, options.properties)
         lines, notes = fitted(cloud, lines, names, options.properties, options.strict)
         cloud.notes += notes + notes_on(cloud, lines)
-        return cloud, lines.get("boundary"), lines.get("faults")
+        return cloud, lines
+
+    def line_files(self):
+        """{name: file} of the lines that are given."""
+        files = {name: getattr(self.options, name) for name in (*RINGS, "faults")}
+        return {name: path for name, path in files.items() if path}
+
+    def read_rings(self):
+        """{name: vtkPolyData} of those of them that are closed lines."""
+        return {
+            name: reading.read_boundary(path) for name, path in self.line_files().items() if name in RINGS
+        }
 
     def check_spacing(self, reach):
         try:
@@ -203,7 +212,7 @@ class Run:
             self.results.add(other, lambda partial: write_prj(partial, result.crs))
         return notes
 
-    def reconstruct(self, cloud, boundary, faults):
+    def reconstruct(self, cloud, lines):
         options = self.options
         ranks = self.ranks if total(self.ranks, not can_be_scattered(cloud.points)) == 0 else None
         if options.properties.get("maximum_elevation_error"):
@@ -216,8 +225,7 @@ class Run:
             part.points = scatter(ranks, cloud.points)
             result = run_chain(
                 part,
-                boundary,
-                faults,
+                lines,
                 options.properties,
                 trim=options.trim,
                 fill=options.fill,
@@ -227,7 +235,7 @@ class Run:
                 heights=heights,
             )
         except ElevationSurfaceError as error:
-            path = {"boundary": options.boundary, "faults": options.faults}.get(error.about)
+            path = self.line_files().get(error.about)
             raise Failure(f"{path or options.file}: {error}") from None
         result.boundary_name, result.faults_name = options.boundary, options.faults
         self.progress("measuring", 0.0)
@@ -271,8 +279,7 @@ class Run:
 
     def nothing(self):
         """What a rank that reads nothing has: no points, and no lines where others have some."""
-        options = self.options
-        return Cloud(vtkPolyData()), options.boundary and vtkPolyData(), options.faults and vtkPolyData()
+        return Cloud(vtkPolyData()), {name: vtkPolyData() for name in self.line_files()}
 
     def write_all(self, result):
         """Writes the results, which do not appear yet. Returns the report."""

@@ -13,12 +13,15 @@ from .messages import FileError
 from .names import option
 from .ranks import extremes
 
+RINGS = ("boundary", "fill_only", "keep_open")  # lines that are closed
+
 
 def fitted(cloud, lines, names, given, strict=False, ranks=None):
     """(lines, notes): in the coordinate reference system of the points, closed, valid, with z.
 
     cloud   the points
-    lines   {"boundary": vtkPolyData, "faults": vtkPolyData}, of these what there is
+    lines   {"boundary": vtkPolyData, "faults": vtkPolyData, ...} by the name of a property, of RINGS and
+            faults what there is
     names   how messages call the "points" and each of the lines
     given   properties, see checked()
     strict  True: what would be changed is an error
@@ -27,8 +30,9 @@ def fitted(cloud, lines, names, given, strict=False, ranks=None):
     Raises ElevationSurfaceError.
     """
     lines, notes = dict(lines), []
-    if "boundary" in lines:  # while places are still those of its file
-        lines["boundary"], notes = mended(lines["boundary"], names["boundary"], strict)
+    for name in [name for name in RINGS if name in lines]:  # while places are still those of its file
+        lines[name], more = mended(lines[name], names[name], strict, name)
+        notes = notes + more
     for name, data in lines.items():
         lines[name], more = in_system(data, names[name], cloud, names["points"], strict, ranks)
         notes = notes + more

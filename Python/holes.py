@@ -12,6 +12,8 @@ from .names import option
 from .properties import INTERPOLATIONS
 from .ranks import all_values, before, summed, together, total
 
+MOST_LEVELS = 5  # of holes that are level, that have a line each
+
 
 def holes_of(result):
     """The part of the report on holes."""
@@ -34,11 +36,14 @@ def hole_report(outlines, bridged, fill, why_opened=None, ranks=None):
                    that the boundary has cut out is found only if it is filled
     cut_out        count of those that stay open
     bridged_left   count of voids whose triangles are left as they are
+    list           of each hole also "level", where that is how it was filled, and how far the highest point
+                   of its rim lies above and the lowest below
     drawn_back     of filled points that would be too far beyond the surface around: their count, and by
                    how much z was drawn back at most
     """
     names = ("HoleId", "NumberOfEdges", "Perimeter", "Area", "Size", "NumberOfInsertedPoints",
-             "Interpolation", "NumberOfPointsDrawnBack", "LargestDrawBack")
+             "Interpolation", "NumberOfPointsDrawnBack", "LargestDrawBack", "Level",
+             "RimAboveLevel", "RimBelowLevel")
     columns = [column_of(outlines, name).tolist() for name in names]
     statuses = words_of(outlines.GetCellData(), "StatusName")
     rows = zip(*columns, statuses, bridged.tolist(), *hole_places(outlines))
@@ -58,8 +63,11 @@ def hole_report(outlines, bridged, fill, why_opened=None, ranks=None):
             "interpolation": INTERPOLATIONS[way] if inserted else None,
             "points_drawn_back": drawn,
             "largest_draw_back": most,
+            "level": level if level == level else None,
+            "rim_above_level": above if above == above else None,
+            "rim_below_level": below if below == below else None,
         }
-        for (hole, edges, perimeter, area, size, inserted, way, drawn, most,
+        for (hole, edges, perimeter, area, size, inserted, way, drawn, most, level, above, below,
              status, bridged, centre, box) in rows
     ]
     by_status = {}
@@ -173,6 +181,12 @@ def hole_lines(holes, line):
     if drawn["points"]:
         words = counted(drawn["points"], "filled point")
         line("", f"{words} drawn back, by up to {drawn['most']:.4g}: beyond the heights around")
+    water = [hole for hole in holes["list"] if hole["level"] is not None]
+    for hole in water[:MOST_LEVELS]:
+        line("", f"hole {hole['hole']} level at {hole['level']:.6g}: its rim lies up to "
+             f"{hole['rim_above_level']:.4g} above and {hole['rim_below_level']:.4g} below")
+    if len(water) > MOST_LEVELS:
+        line("", f"{len(water) - MOST_LEVELS:,} more level; see the report as JSON")
     if holes["cut_out"]:
         line("", f"{holes['cut_out']:,} cut out by the boundary stay open; see {option('fill_cut_outs')}")
     for status in holes["by_status"]:

@@ -20,11 +20,12 @@ MOST_NAMED = 20  # mends of a kind that get a note each
 NEIGHBOURS = 8  # ends that may be the other side of a gap
 
 
-def mended(boundary, name, strict=False):
+def mended(boundary, name, strict=False, about="boundary"):
     """(rings, notes): a boundary whose rings are closed and do not cross themselves.
 
     name    how messages call it
     strict  True: what would be mended is an error
+    about   the property that it is, which errors are about
 
     Rings that need nothing are handed on as they are. Raises ElevationSurfaceError, also for a gap
     that is too wide, and where GEOS is needed but missing.
@@ -32,18 +33,22 @@ def mended(boundary, name, strict=False):
     names, parts = line_parts(boundary)
     if not parts or not all(numpy.isfinite(part[:, :2]).all() for part in parts):
         return boundary, []  # the filter says what is wrong
-    notes = close_gaps(names, parts, name, strict)
-    rings = make_lines(parts, names) if notes else boundary
-    if trial(rings)[0]:
-        names, parts, valid = without_crossings(names, parts, name, strict)
-        if valid:
-            notes, rings = notes + valid, make_lines(parts, names)
+    try:
+        notes = close_gaps(names, parts, name, strict)
+        rings = make_lines(parts, names) if notes else boundary
+        if trial(rings)[0]:
+            names, parts, valid = without_crossings(names, parts, name, strict)
+            if valid:
+                notes, rings = notes + valid, make_lines(parts, names)
+    except ElevationSurfaceError as error:
+        error.about = about
+        raise
     return rings, notes
 
 
 def refusal(words, strict):
     """The error for what would be mended, or could not be."""
-    return ElevationSurfaceError(words + f"; without {option('strict')} it is mended" * strict, "boundary")
+    return ElevationSurfaceError(words + f"; without {option('strict')} it is mended" * strict)
 
 
 def at(place):

@@ -232,7 +232,8 @@ def check_options(options):
     for path, _ in files_of(options):
         wanted += [path, *side_files(path)]
     other = options.volume if isinstance(options.volume, str) else None
-    given = (*options.files, options.faults, options.boundary, like, options.at, other)
+    lines = [getattr(options, name) for name, one in OPTIONS.items() if one.words["takes"] == "lines"]
+    given = (*options.files, *lines, like, options.at, other)
     inputs = [path for path in given if path]
     for i, path in enumerate(wanted):
         check_writable(path)

@@ -33,7 +33,7 @@ from .ranks import agreed, by_first, collected, rank_and_count, together, total
 from .reading.formats import recognise
 from .reading.slicing import check_sliced, read_files
 from .reading.unpacking import is_plain
-from .reconstruction import AS_GIVEN, least_reach
+from .reconstruction import AREA_MODES, AS_GIVEN, least_reach
 from .report import MOST_LISTED, OUTSIDE, REASONS, facts_of, fault_report, trimming_report
 from .results import Failure, write_report
 from .several_heights import PieceHeights
@@ -296,25 +296,30 @@ class Pieces:
         by_first(self.ranks, lambda: self.give_lines(*lines))
 
     def read_lines(self):
-        """(boundary, notes on it, faults), before points are read."""
-        options, boundary, notes, faults = self.options, None, [], None
-        if options.boundary:
-            boundary = reading.read_boundary(options.boundary)
-            boundary, notes = mended(boundary, options.boundary, options.strict)
+        """({name: rings}, notes on them, faults), before points are read."""
+        options, rings, notes, faults = self.options, self.run.read_rings(), [], None
+        for name, data in rings.items():
+            rings[name], more = mended(data, getattr(options, name), options.strict, name)
+            notes = notes + more
         if options.faults:
             faults = self.run.read_faults(self.cloud)
             self.check_faults(faults)
-        return boundary, notes, faults
+        return rings, notes, faults
 
-    def give_lines(self, boundary, notes, faults):
+    def give_lines(self, rings, notes, faults):
         """Gives lines to the filter, in the system of the points."""
         options, cloud = self.options, self.cloud
-        if boundary is not None:
-            boundary, more = in_system(
-                boundary, options.boundary, cloud, options.files[0], options.strict
+        cloud.notes += notes
+        for name, data in rings.items():
+            data, more = in_system(
+                data, getattr(options, name), cloud, options.files[0], options.strict
             )
-            cloud.notes += notes + more
-            self.source.GetTrim().SetBoundaryData(boundary)
+            cloud.notes += more
+            if name == "boundary":
+                self.source.GetTrim().SetBoundaryData(data)
+            else:
+                self.source.GetFill().SetAreasData(data)
+                self.source.GetFill().SetAreaMode(AREA_MODES[name])
         if faults is not None:
             self.check_faults(faults)
             faults, more = in_system(faults, options.faults, cloud, options.files[0], options.strict)

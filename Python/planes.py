@@ -81,7 +81,7 @@ def in_plane(cloud, lines, given, ranks=None):
         if bare_lines(data).any() or is_zero and not given.get("faults_z"):
             raise ElevationSurfaceError(
                 f"{argument('plane')} best needs lines with z, which the {name} lacks"
-                if name == "boundary" else
+                if name != "faults" else
                 f"{argument('plane')} best needs lines with z, which the {name} lack", name)
     turned = cloud.copy()
     turned.grid = turned.pixels = None

@@ -21,7 +21,7 @@ from vtkmodules.vtkCommonDataModel import (
 
 from .clouds import Cloud, coordinates_of, make_lines, make_points
 from .description import KINDS, listing, view_angles
-from .given_lines import fitted
+from .given_lines import RINGS, fitted
 from .several_heights import check_heights, heights_on_ranks
 from .holes import BridgedVoids, hole_counts
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
@@ -29,7 +29,7 @@ from .names import argument
 from .open_edge_length import length_to_open
 from .paths import check_suffix
 from .planes import in_plane, turn_back
-from .properties import COLOURS, PROPERTIES, checked
+from .properties import COLOURS, PROPERTIES, check_together, checked
 from .ranks import extremes, total
 from .reading.arrays import column_cloud, grid_cloud, named_columns
 from .reading.facing import find_faces, notes_on_faces
@@ -132,6 +132,9 @@ def as_lines(lines: Lines, what: str, are_rings: bool) -> vtkPolyData:
 
 # ---- the chain --------------------------------------------------------------------------------
 
+AREA_MODES = {
+    "fill_only": vtkFillElevationHoles.FILL_ONLY, "keep_open": vtkFillElevationHoles.KEEP_OPEN,
+}
 AS_GIVEN = "as given"  # the length of edges above which triangles are opened
 
 
@@ -352,16 +355,17 @@ class Reconstruction:
 
 
 def run_chain(
-    cloud, boundary, faults, given, *, trim=True, fill=True, progress=None, strict=False, ranks=None,
+    cloud, lines, given, *, trim=True, fill=True, progress=None, strict=False, ranks=None,
     heights=None,
 ):
-    """reconstruct() on what has been checked: a Cloud, vtkPolyData or None, and checked().
+    """reconstruct() on what has been checked: a Cloud, lines as fitted() returns them, and checked().
 
-    ranks  the controller of those that run it together, or None. Each has some of the points; boundary
-           and faults may be on one or on all, but are None on none or on all. Each gets its part
+    ranks  the controller of those that run it together, or None. Each has some of the points; lines
+           may be on one or on all, but all have the same names. Each gets its part
     heights  what check_heights() has given where one rank had all points
     """
     result = Reconstruction(cloud, ranks)
+    boundary, faults = lines.get("boundary"), lines.get("faults")
     result.progress = progress
     result.boundary_name = "given" if boundary is not None else None
     result.faults_name = "given" if faults is not None else None
@@ -385,6 +389,10 @@ def run_chain(
         filling.SetInputData(last.GetOutput())
         if boundary is None:
             filling.FillCutOutsOn()  # an outline of few points does not count as a given boundary
+        for name, mode in AREA_MODES.items():
+            if name in lines:
+                filling.SetAreasData(lines[name])
+                filling.SetAreaMode(mode)
         if "open_edge_length" in given:
             result.open_edge_length, result.why_opened = given["open_edge_length"], AS_GIVEN
         elif not given.get("maximum_elevation_error"):  # else long edges are not voids
@@ -429,16 +437,19 @@ def reconstruct_cloud(cloud, lines, names, given, *, strict=False, ranks=None, *
 
     lines, names  as fitted() takes them
     """
+    check_together(dict.fromkeys(lines, True), argument, lines)
     check_spacing(least_reach(cloud.points, ranks), given.get("spacing", 0.0))
     cloud, lines = in_plane(cloud, lines, given, ranks)
     lines, notes = fitted(cloud, lines, names, given, strict, ranks)
-    boundary, faults = lines.get("boundary"), lines.get("faults")
-    result = run_chain(cloud, boundary, faults, given, strict=strict, ranks=ranks, **options)
+    result = run_chain(cloud, lines, given, strict=strict, ranks=ranks, **options)
     result.notes[:0] = notes
     return result
 
 
-NAMES = {"points": "the points", "boundary": "the boundary", "faults": "the faults"}
+NAMES = {
+    "points": "the points", "boundary": "the boundary", "faults": "the faults",
+    "fill_only": "fill_only", "keep_open": "keep_open",
+}
 Points = Union[Cloud, vtkPointSet, numpy.ndarray, Sequence]
 Lines = Union[vtkPolyData, numpy.ndarray, Sequence, None]
 
@@ -451,6 +462,8 @@ def reconstruct(
     y: Any = None,
     boundary: Lines = None,
     faults: Lines = None,
+    fill_only: Lines = None,
+    keep_open: Lines = None,
     trim: bool = True,
     fill: bool = True,
     progress: Optional[Callable[[str, float], None]] = None,
@@ -470,6 +483,8 @@ def reconstruct(
               closed, and rings that cross themselves made valid (that needs python3-gdal)
     faults    lines that become edges: vtkPolyData, an (n, 3) array, or a list of such arrays; those
               of (n, 2), and others without z, follow the surface of the points (see faults_z)
+    fill_only, keep_open  polygons, as boundary: only holes that touch one are filled, or they stay
+              open; one of both. A ring inside another one is no area
     trim      False keeps all triangles, also those outside the boundary
     fill      False leaves all holes open
     progress  None, or a function that is called with a step's name and its fraction done; what it
@@ -488,12 +503,10 @@ def reconstruct(
     """
     given = checked(properties)
     cloud = as_cloud(points, x, y)
-    if boundary is not None:
-        boundary = as_lines(boundary, "boundary", True)
-    if faults is not None:
-        faults = as_lines(faults, "faults", False)
-    lines = {"boundary": boundary, "faults": faults}
-    lines = {name: data for name, data in lines.items() if data is not None}
+    lines = {"boundary": boundary, "faults": faults, "fill_only": fill_only, "keep_open": keep_open}
+    lines = {
+        name: as_lines(data, name, name in RINGS) for name, data in lines.items() if data is not None
+    }
     result = reconstruct_cloud(
         cloud, lines, NAMES, given, strict=strict, trim=trim, fill=fill, progress=progress
     )

@@ -11,6 +11,7 @@
  */
 #include "PatchedSurface.h"
 
+#include "ArrayChecks.h"
 #include "DataArrays.h"
 #include "MeshConversion.h"
 #include "Requests.h"
@@ -39,9 +40,9 @@ namespace
 constexpr const char* HoleIdName = "HoleId";
 // Of FillStatus and Interpolation.
 constexpr const char* StatusNames[] = { "filled", "too large", "too many edges", "failed",
-  "replaced", "cut out" };
+  "replaced", "cut out", "not chosen" };
 constexpr const char* InterpolationNames[] = { "neighbor mean", "membrane", "thin plate",
-  "adaptive", "cubic spline" };
+  "adaptive", "cubic spline", "level" };
 } // namespace
 
 void CheckOptions(const FillOptions& options, double openEdgeLength)
@@ -340,6 +341,12 @@ void MakeReport(
     [](const HoleReport& report) { return report.Drawn.Count; });
   add("LargestDrawBack", vtkNew<vtkDoubleArray>().Get(),
     [](const HoleReport& report) { return report.Drawn.Most; });
+  add("Level", vtkNew<vtkDoubleArray>().Get(),
+    [](const HoleReport& report) { return report.Water.Height; });
+  add("RimAboveLevel", vtkNew<vtkDoubleArray>().Get(),
+    [](const HoleReport& report) { return report.Water.RimAbove; });
+  add("RimBelowLevel", vtkNew<vtkDoubleArray>().Get(),
+    [](const HoleReport& report) { return report.Water.RimBelow; });
   add("InterpolationName", vtkNew<vtkStringArray>().Get(), [](const HoleReport& report) {
     // A patch without new points has nothing that was interpolated.
     return report.NumberOfInsertedPoints ? InterpolationNames[static_cast<int>(report.Method)] : "";
@@ -376,11 +383,29 @@ void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& o
   }
 }
 
+std::shared_ptr<const Areas> ToAreas(
+  vtkPolyData* lines, const Progress& progress, std::vector<Message>& warnings)
+{
+  if (!lines)
+  {
+    return nullptr;
+  }
+  CheckArrays(lines, std::string("The ") + AreaInputName + "'s");
+  Message repeated;
+  auto areas =
+    std::make_shared<const Areas>(ToBoundaryLines(lines, progress, AreaInputName), &repeated);
+  if (!repeated.IsEmpty())
+  {
+    warnings.push_back(repeated);
+  }
+  return areas;
+}
+
 /*
  * The first few holes that failed, each with its reason; then how many more. Holes that a limit of
  * the user leaves out are no warning. Then misties, those of all holes together.
  */
-std::vector<Message> WarningsOf(const FillResult& patches)
+std::vector<Message> WarningsOf(const FillResult& patches, const FillOptions& options)
 {
   const Holes& holes = patches.Found;
   constexpr int listed = 5;
@@ -401,6 +426,14 @@ std::vector<Message> WarningsOf(const FillResult& patches)
   if (failed > listed)
   {
     warnings.push_back(MakeMessage<sentences::MoreHolesNotFilled>(failed - listed));
+  }
+  const auto notChosen = std::count_if(patches.Reports.begin(), patches.Reports.end(),
+    [](const HoleReport& hole) { return hole.Status == FillStatus::NotChosen; });
+  const bool fillsOnly = options.Mode == AreaMode::FillOnly;
+  if (options.Chosen && holes.Count() > 0 && notChosen == (fillsOnly ? holes.Count() : 0))
+  {
+    warnings.push_back(MakeMessage<sentences::AreasTouchNoHole>(holes.Count(),
+      NameOf(options.Chosen->Extent()), fillsOnly ? "none is filled" : "none is kept open"));
   }
   double outgrowth = 0.0;
   Index outgrown = 0, first = None;

@@ -14,6 +14,7 @@
 
 #include "vtkType.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -48,8 +49,19 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
 void MakeReport(
   vtkPolyData* input, const FillResult& patches, const Progress& progress, vtkPolyData* output);
 
-/** Warnings about holes that failed, and about contacts. */
-std::vector<Message> WarningsOf(const FillResult& patches);
+/** What messages call the input of areas. */
+constexpr const char* AreaInputName = "area input";
+
+/**
+ * The areas that lines and polygons bound; nullptr: none.
+ * @param[out] warnings  one is added where rings are there more than once
+ * @throws Error naming the cell or point
+ */
+std::shared_ptr<const Areas> ToAreas(
+  vtkPolyData* lines, const Progress& progress, std::vector<Message>& warnings);
+
+/** Warnings about holes that failed, about areas that choose nothing, and about contacts. */
+std::vector<Message> WarningsOf(const FillResult& patches, const FillOptions& options);
 
 /** How many holes are filled. */
 vtkIdType CountFilled(const FillResult& patches);

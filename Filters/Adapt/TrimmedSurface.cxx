@@ -55,6 +55,7 @@ BoundaryLines ToBoundaryLines(
 {
   const DataSetPoints points = ViewPoints(boundary);
   BoundaryLines lines;
+  lines.Name = name;
   ForEachLine(boundary, name, progress, [&](const DataSetLine& line) {
     for (vtkIdType i = 0; i < line.Size; ++i)
     {

@@ -316,7 +316,7 @@ vtkSmartPointer<vtkPointSet> FilterRun::Prepared(
 {
   CheckPrecision(this->Precision);
   vtkSmartPointer<vtkPointSet> shown =
-    WithPointsFor(NeedsDouble(this->Precision, second != nullptr), input);
+    WithPointsFor(NeedsDouble(this->Precision, second && this->SecondGivesPoints), input);
   if (this->InputKind() == PartKind::Mesh)
   {
     shown = WithoutHiddenCells(vtkPolyData::SafeDownCast(shown));

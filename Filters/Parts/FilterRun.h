@@ -76,6 +76,7 @@ public:
     vtkInformationVector** inputs, vtkInformationVector* outputs, vtkStringArray* messages);
 
   std::string Second; ///< what messages call input 1
+  bool SecondGivesPoints = true; ///< whether input 1, which is double, may add points to outputs
   /**
    * Of how many first outputs points that no cell has are removed. Then points have original ids
    * (UsedPoints.h): on several ranks global ids or indices in the input, rank after rank.

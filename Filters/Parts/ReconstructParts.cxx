@@ -113,7 +113,7 @@ void ReconstructParts::Close()
   this->Work.reset();
   this->AllRanks.reset();
   this->Refusal.reset();
-  this->Constraints = this->Boundary = nullptr;
+  this->Constraints = this->Boundary = this->AreaLines = nullptr;
   this->NumberOfParts = 0;
   this->Gone.clear();
   this->IsLost = this->IsOnAllRanks = false;
@@ -225,11 +225,12 @@ void ReconstructParts::Begin(int count)
   this->IsOnAllRanks = true;
   try
   {
-    vtkDataObject *constraints = nullptr, *boundary = nullptr;
+    vtkDataObject *constraints = nullptr, *boundary = nullptr, *areas = nullptr;
     this->AllRanks->Agree([&]() {
       this->Prepare();
       constraints = UpdatedLines(this->Set.ConstraintsFilter);
       boundary = UpdatedLines(this->Set.BoundaryFilter);
+      areas = UpdatedLines(this->Set.AreasFilter);
     });
     // A different number on a rank would make it hold other parts than the others think.
     const std::vector<vtkIdType> counts = this->AllRanks->Collect(std::vector<vtkIdType>{ count });
@@ -240,6 +241,7 @@ void ReconstructParts::Begin(int count)
     }
     this->Constraints = ShareLines(constraints, "constraints", *this->AllRanks);
     this->Boundary = ShareLines(boundary, "boundary", *this->AllRanks);
+    this->AreaLines = ShareLines(areas, AreaInputName, *this->AllRanks);
     this->AllRanks->Agree([this]() { this->Check(); });
   }
   catch (const Error& error)
@@ -384,6 +386,9 @@ void ReconstructParts::Fill(const Progress& progress)
 {
   std::vector<Message> warnings;
   this->Do(true, [&]() {
+    this->AllRanks->Agree([&]() {
+      this->Set.Fill.Chosen = ToAreas(this->AreaLines, progress.Between(0.0, 0.0), warnings);
+    });
     this->Set.Fill.Monitor = progress;
     const auto make = [this](int part, const Progress& ofPart) {
       return this->MakeTrimmed(part, ofPart);
@@ -394,7 +399,9 @@ void ReconstructParts::Fill(const Progress& progress)
     filled->Fill();
     // Only when it has succeeded: Pass() would write from it.
     this->Filled = std::move(filled);
-    warnings = OnFirst(WarningsOf(this->Filled->Result()), *this->AllRanks);
+    const std::vector<Message> found = WarningsOf(this->Filled->Result(), this->Set.Fill);
+    warnings.insert(warnings.end(), found.begin(), found.end());
+    warnings = OnFirst(warnings, *this->AllRanks);
   });
   this->ReportWarnings(warnings);
 }

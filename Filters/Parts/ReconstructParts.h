@@ -76,6 +76,7 @@ public:
     // Their input 1 has lines of this rank, or composites of them, or there is none.
     vtkAlgorithm* ConstraintsFilter = nullptr;
     vtkAlgorithm* BoundaryFilter = nullptr;
+    vtkAlgorithm* AreasFilter = nullptr;
   };
 
   /** Of all parts, the same on all ranks after each step; what a step has not found yet is 0. */
@@ -152,7 +153,7 @@ private:
   int NumberOfParts = 0;
   std::set<int> Gone; // parts
   Settings Set;
-  vtkSmartPointer<vtkPolyData> Constraints, Boundary; // of all ranks
+  vtkSmartPointer<vtkPolyData> Constraints, Boundary, AreaLines; // of all ranks
   std::unique_ptr<TriangulateParts> Work;
   std::unique_ptr<TrimParts> Trimmed;
   std::unique_ptr<FillParts> Filled;

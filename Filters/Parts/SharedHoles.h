@@ -38,10 +38,10 @@ struct FieldsOf<HoleReport>
   template <typename Report>
   static auto In(Report& report)
   {
-    auto& [status, edges, size, perimeter, area, spacing, inserted, method, outgrowth, drawn,
+    auto& [status, edges, size, perimeter, area, spacing, inserted, method, outgrowth, drawn, water,
       misties, more, reason] = report;
     return std::tie(status, edges, size, perimeter, area, spacing, inserted, method, outgrowth,
-      drawn.Count, drawn.Most, misties, more, reason);
+      drawn.Count, drawn.Most, water.Height, water.RimAbove, water.RimBelow, misties, more, reason);
   }
 };
 

@@ -48,6 +48,7 @@ vtkReconstructPieces::vtkReconstructPieces()
     made.LongestEdge = this->Fill->GetOpenEdgeLength();
     made.ConstraintsFilter = this->Delaunay;
     made.BoundaryFilter = this->Trim;
+    made.AreasFilter = this->Fill;
     return made;
   };
   this->Parts = std::make_unique<elevation::ReconstructParts>(this, settings, this->Messages);

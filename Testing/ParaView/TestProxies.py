@@ -41,6 +41,7 @@ OTHER_VALUES = {
         "OpenEdgeLength": 1.5,
         "MaximumHoleSize": 12.5,
         "MaximumHoleEdges": 40,
+        "AreaMode": "Keep Open",
         "FillCutOuts": 1,
         "MaximumNumberOfInsertedPoints": 5000,
         "MaximumNumberOfExpectedPoints": 4000,
@@ -71,7 +72,8 @@ def members(header):
     parameters = set(re.findall(r"vtkSet\w*Macro\((\w+)", header))
     parameters |= set(re.findall(r"void Set(\w+)\([^)]+\)", header))
     # The second inputs, and the processes.
-    others = {"BoundaryConnection", "BoundaryData", "SourceConnection", "SourceData", "Controller"}
+    others = {"BoundaryConnection", "BoundaryData", "SourceConnection", "SourceData", "AreasConnection",
+              "AreasData", "Controller"}
     parameters -= others | set(re.findall(r"Deprecated.*\*/\s*void Set(\w+)", header))
     results = set(re.findall(r"vtkGet\w*Macro\((\w+)|bool Get(\w+)\(\)", header))
     results = {one or other for one, other in results} - parameters - others

@@ -173,7 +173,7 @@ class TestFillElevationHoles(unittest.TestCase):
                 table["NumberOfEdges"][hole] - 2 + 2 * table["NumberOfInsertedPoints"][hole])
 
     def test_interpolation_is_reported(self):
-        names = ("NeighborMean", "Membrane", "ThinPlate", "Adaptive", "CubicSpline")
+        names = ("NeighborMean", "Membrane", "ThinPlate", "Adaptive", "CubicSpline", "Level")
         fill = vtkFillElevationHoles()
         fill.SetInputData(self.surface)
         for number, name in enumerate(names):
@@ -189,7 +189,7 @@ class TestFillElevationHoles(unittest.TestCase):
         fill.SetInterpolation(-1)
         self.assertEqual(fill.GetInterpolation(), fill.NEIGHBOR_MEAN)
         fill.SetInterpolation(9)
-        self.assertEqual(fill.GetInterpolation(), fill.CUBIC_SPLINE)
+        self.assertEqual(fill.GetInterpolation(), fill.LEVEL)
 
     def test_splines_continue_a_slope(self):
         tilted = sheet(10, lambda i, j: 3 <= i < 7 and 3 <= j < 7, lambda x, y: 2.0 * x - y)

@@ -394,6 +394,11 @@ def _(test, _here, _printed):
     test.assertEqual(ours, 144)
 
 
+@checks("GDAL", "gdal_fillnodata.py -mask mask.tif dem.tif filled.tif")
+def _(test, _here, _printed):
+    test.assertEqual(compare_with_dem(test, "filled.tif", "there.tif"), (144, 144))
+
+
 @checks("GDAL", "gdal_fillnodata.py -b 2 dem.tif filled.tif")
 def _(test, _here, _printed):
     test.assertEqual(compare_with_dem(test, "filled.tif", "there.tif", 2), (0, 0))

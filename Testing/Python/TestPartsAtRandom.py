@@ -44,7 +44,7 @@ LATTICES = ((612000.0, 6073000.0, 25.0, 0.0, 0.0, 12.5), (612000.0, 6073000.0, 2
 NUMBERS = {
     "Delaunay.SearchStrategy": (0, 1), "Delaunay.LatticeMode": (0, 1), "Delaunay.DuplicatePolicy": (0, 1, 2, 3),
     "Trim.RecoverBoundary": (False, True), "Trim.BoundaryEdges": (0, 1, 2),
-    "Fill.Interpolation": (0, 1, 2, 3, 4), "Fill.FillCutOuts": (False, True), "Fill.MaximumHoleEdges": (5, 40),
+    "Fill.Interpolation": (0, 1, 2, 3, 4, 5), "Fill.FillCutOuts": (False, True), "Fill.AreaMode": (0, 1), "Fill.MaximumHoleEdges": (5, 40),
     "Fill.ConfidenceLevel": (0.5, 0.95), "Fill.InterpolatePointData": (False, True), "Fill.MaximumNumberOfExpectedPoints": (50, 2000),
     "Delaunay.Lattice": LATTICES,
 }
@@ -91,6 +91,8 @@ def draw(random):
     size = numpy.ptp(finite[:, :2], axis=0).max() if len(finite) else 0.0
     if name != "Delaunay" and random.random() < 0.7 and len(finite) > 2 and size > 0.0:
         case.rings = rings_for(random, finite)
+        if name == "Fill" and random.random() < 0.3:
+            case.areas = rings_for(random, finite)
     if random.random() < 0.15 and len(finite) > 2 and size > 0.0:
         places, cells = draw_lines(random, finite)
         case.lines = (places, *([ids for ids, closed in cells if closed == kind] for kind in (False, True)))

@@ -40,7 +40,10 @@ VALUES = {
     "confidence_level": "0.8",
 }
 # The second inputs and the processes, which are not numbers.
-OTHERS = {"SourceConnection", "SourceData", "BoundaryConnection", "BoundaryData", "Controller"}
+OTHERS = {
+    "SourceConnection", "SourceData", "BoundaryConnection", "BoundaryData", "AreasConnection", "AreasData",
+    "Controller",
+}
 
 
 def properties_of(step):
@@ -185,7 +188,7 @@ class Program(unittest.TestCase):
             for needs, other, _ in one.rules():
                 with self.subTest(name=name):
                     with_other = refusal_of(*arguments_of(one), *arguments_of(DESCRIBED[other]))
-                    alone = refusal_of(*arguments_of(one), "--no-trim", "--no-fill")
+                    alone = refusal_of(*arguments_of(one), "--no-trim", *["--no-fill"] * (one.step != "fill"))
                     said, not_said = (alone, with_other) if needs else (with_other, alone)
                     self.assertIn(DESCRIBED[other].options[0], said)
                     self.assertEqual(not_said, "")

@@ -187,7 +187,7 @@ class Report(Program):
     def test_interpolation_is_handed_on_and_reported(self):
         name = self.file("holed.xyz", text_of(HOLED))
         common = (name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6")
-        for method in ("neighbor-mean", "membrane", "thin-plate", "cubic-spline"):
+        for method in ("neighbor-mean", "membrane", "thin-plate", "cubic-spline", "level"):
             with self.subTest(method=method):
                 report = self.report(*common, "--interpolation", method)
                 self.assertEqual(report["holes"]["list"][0]["interpolation"], method)

@@ -102,12 +102,18 @@ interpolation: membrane           | Interpolation=1            | coast and lakes
 interpolation: thin plate         | Interpolation=2            | coast and lakes              | s  s  s  s  s  s  s
 interpolation: adaptive           | Interpolation=3            | coast and lakes              | s  s  s  s  s  s  s
 interpolation: cubic spline       | Interpolation=4            | coast and lakes              | s  s  s  s  s  s  s
+interpolation: level              | Interpolation=5            | coast and lakes              | s  s  s  s  s  s  s
 on the nodes of a lattice         |                            | lattice and lakes            | s  s  s  s  s  s  s
 long triangles opened             | OpenEdgeLength=2.5         | coast and lakes              | s  s  s  s  s  s  s
 largest hole                      | MaximumHoleSize=4.0        | coast and lakes              | s  s  s  s  s  s  s
 most edges of a hole              | MaximumHoleEdges=13        | coast and lakes              | s  s  s  s  s  s  s
 cut-outs of the boundary, open    |                            | coast and lakes              | s  s  s  s  s  s  s
 cut-outs of the boundary, filled  | FillCutOuts=True           | coast and lakes              | s  s  s  s  s  s  s
+only holes that touch areas filled | AreaMode=0                 | coast and lakes + areas      | s  s  s  s  s  s  s
+holes that touch areas kept open  | AreaMode=1                 | coast and lakes + areas      | s  s  s  s  s  s  s
+areas on one rank only            |                            | coast and lakes + areas + on one | s  s  s  s  s  s  s
+areas, long triangles opened      | OpenEdgeLength=2.5         | coast and lakes + areas      | s  s  s  s  s  s  s
+areas, points of floats           |                            | coast and lakes + areas + float | s  s  s  s  s  s  s
 most points inserted              | MaximumNumberOfInsertedPoints=50, Trim.BoundaryEdges=1 | coast and lakes              | s  s  s  s  s  s  s
 most points expected              | MaximumNumberOfExpectedPoints=20 | coast and lakes              | s  s  s  s  s  s  s
 spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  s

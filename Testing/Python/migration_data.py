@@ -122,6 +122,15 @@ def write_dem(path):
         raster.GetRasterBand(i).WriteArray(numpy.where(z == -9999, z, z + 100 * (i - 1)))
 
 
+def write_mask(path):
+    """0 in the small gap of write_dem(), 1 elsewhere."""
+    rows, columns = KNOWN
+    raster = gdal.GetDriverByName("GTiff").Create(path, columns, rows, 1, gdal.GDT_Byte)
+    mask = numpy.ones((rows, columns), "u1")
+    mask[5:7, 8:10] = 0
+    raster.GetRasterBand(1).WriteArray(mask)
+
+
 def write_las(path):
     """Points of class 2, but the last 100 of class 6; LAS 1.2, format 0, in thousandths."""
     low, high = XYZ.min(axis=0), XYZ.max(axis=0)
@@ -140,6 +149,8 @@ def write_files():
     numpy.savetxt("survey.csv", XYZ, delimiter=",", header="X,Y,Z", comments="")
     write_las("survey.las")
     write_dem("dem.tif")
+    write_mask("mask.tif")
+    write_vectors("lakes.gpkg", ["POLYGON ((5085 8935, 5095 8935, 5095 8945, 5085 8945, 5085 8935))"])
     points = ["POINT Z (%r %r %r)" % tuple(map(float, p)) for p in XYZ]
     write_vectors("points.gpkg", points, height=XYZ[:, 2] + 1000)
     write_vectors("lines.gpkg", ["LINESTRING Z (10.5 10.25 3, 90.125 20.5 5)"])

@@ -39,7 +39,7 @@ def case_of(xyz, **more):
     """Points; each has its number as a value, so that points at one place can be distinguished."""
     case = types.SimpleNamespace(
         xyz=xyz, arrays={"Number": numpy.arange(float(len(xyz)))}, roles={}, dealt={}, lines=None, rings=None,
-        triangles=None, cells={}, on_one=False, copies=False, composite=None, kind=vtkPolyData)
+        areas=None, triangles=None, cells={}, on_one=False, copies=False, composite=None, kind=vtkPolyData)
     vars(case).update(more)
     return case
 
@@ -169,6 +169,11 @@ def coast_and_lakes(random, count):
     return with_lakes(points(random, count))
 
 
+def areas_of(rings):
+    """Around every second lake, so that others are not chosen."""
+    return [1.2 * (ring - ring.mean(axis=0)) + ring.mean(axis=0) for ring in rings[1::2]]
+
+
 def coast_along_edges(random, count):
     """A boundary whose edges are those of a lattice."""
     case = case_of(with_heights(random, nodes(random, count, 1.0)))
@@ -265,6 +270,7 @@ CHANGES = {
     "normals": adding("Normals", Normal=lambda n, r: unit(r.random((len(n), 3)) - (0.5, 0.5, -2.0))),
     "copies": lambda case: vars(case).update(copies=True),
     "on one": lambda case: vars(case).update(on_one=True),
+    "areas": lambda case: vars(case).update(areas=areas_of(case.rings)),
     "multiblock": lambda case: vars(case).update(composite=vtkMultiBlockDataSet),
     "partitions": lambda case: vars(case).update(composite=vtkPartitionedDataSet),
     "collection": lambda case: vars(case).update(composite=vtkPartitionedDataSetCollection),
@@ -385,6 +391,8 @@ def set_properties(row, of):
 def chain(row, case, data, threads, has_second=True):
     """{name: filter}: those up to the row's."""
     steps = {name: make() for name, make in FILTERS.items()}
+    if case.areas:
+        steps["Fill"].SetAreasData(meshes.rings(case.areas) if has_second else vtkPolyData())
     lines = meshes.lines(*case.lines) if case.lines and has_second else vtkPolyData()
     rings = meshes.rings(case.rings) if case.rings and has_second else vtkPolyData()
     if case.lines:
@@ -446,6 +454,8 @@ def piece_source(row, case, folder, is_alone=False):
         of["Delaunay"].SetSourceData(meshes.lines(*case.lines))
     if case.rings:
         of["Trim"].SetBoundaryData(meshes.rings(case.rings))
+    if case.areas:
+        of["Fill"].SetAreasData(meshes.rings(case.areas))
     source.SetTrimOutward(row.filter == "Trim")
     source.SetFillHoles(row.filter == "Fill")
     source.SetHoleMemory(1e9)

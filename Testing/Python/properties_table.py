@@ -22,7 +22,8 @@ TITLES = {
     "results": "Results",
 }
 SAME_TITLE = {"delaunay": "faults", "": "faults", "picture": "results"}
-SECOND_INPUTS = {"faults": "SetSourceData", "boundary": "SetBoundaryData"}
+SECOND_INPUTS = {"faults": "SetSourceData", "boundary": "SetBoundaryData",
+                 "fill_only": "SetAreasData", "keep_open": "SetAreasData"}
 
 
 def row_of(one):

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -132,8 +133,10 @@ public:
   FillResult Run()
   {
     Stages stages(this->Options.Monitor, { 2, 1, 97 });
-    // The neighbours' mean looks at the patch alone; all other methods are tried around the hole.
-    const bool needsStars = this->Options.Method != Interpolation::NeighborMean;
+    // The neighbours' mean and a level look at the patch alone; all other methods are tried around
+    // the hole.
+    const bool needsStars = this->Options.Method != Interpolation::NeighborMean &&
+      this->Options.Method != Interpolation::Level;
     this->Least = needsStars ? PointsPerTrial : PointsPerPatch;
     this->PlanAll(stages.Next());
     this->GrantPoints();
@@ -398,6 +401,15 @@ private:
       FindNeighbors(patch, stages.Next());
       FindNearest(patch, stages.Next());
       const Values elevation = [this](Index id) { return this->Points.Elevation(id); };
+      if (this->Options.Method == Interpolation::Level)
+      {
+        const Index rim = this->GivenHoles.Rim(hole);
+        std::vector<double> heights;
+        std::transform(this->GivenHoles.Walks.Begin(rim), this->GivenHoles.Walks.End(rim),
+          std::back_inserter(heights), elevation);
+        SetLevel(this->Surface, std::move(heights), this->Options, filled, report);
+        return;
+      }
       const Progress betweenLines = stages.Next();
       if (!mayHaveLines ||
         !ElevateBetweenLines(this->Surface, this->Stars.get(), this->GivenHoles.LongestEdge,
@@ -488,6 +500,12 @@ HoleReport MeasureHole(const Mesh& mesh, const Holes& holes, Index hole, const F
       const bool isCut = options.OnBoundary[a] != 0 && options.OnBoundary[b] != 0;
       report.Status = isCut ? FillStatus::CutOut : report.Status;
     });
+  }
+  // Before any other reason: that is what the user has chosen.
+  const bool isToTouch = options.Mode == AreaMode::FillOnly;
+  if (options.Chosen && options.Chosen->Touch(mesh, holes, hole) != isToTouch)
+  {
+    report.Status = FillStatus::NotChosen;
   }
   if (!IsMeasurable(report.Size))
   {

@@ -35,6 +35,7 @@
 #ifndef elevation_Fill_Fill_h
 #define elevation_Fill_Fill_h
 
+#include "Areas.h"
 #include "Heights.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
@@ -43,6 +44,7 @@
 #include "Overshoot.h"
 
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -57,11 +59,21 @@ enum class FillStatus : unsigned char
   TooManyEdges = 2,
   Failed = 3,   ///< the report's Reason says why
   Replaced = 4, ///< filled: a region of long triangles (LongTriangles.h), which the patch replaces
-  CutOut = 5    ///< not filled: the boundary that the surface was trimmed along has cut it out
+  CutOut = 5,   ///< not filled: the boundary that the surface was trimmed along has cut it out
+  NotChosen = 6 ///< not filled: by the areas that choose holes
+};
+
+/** What becomes of a hole that touches the areas. */
+enum class AreaMode
+{
+  FillOnly, ///< it is filled, and others are not
+  KeepOpen  ///< it is not filled, and others are
 };
 
 struct FillOptions
 {
+  std::shared_ptr<const Areas> Chosen; ///< that choose holes; none: all are filled
+  AreaMode Mode = AreaMode::FillOnly;
   /** Larger holes, by the diagonal of the rim's bounding box, are not filled; 0: no limit. */
   double MaximumHoleSize = 0.0;
   /** Holes with more edges, of rim and islands, are not filled; 0: no limit. */
@@ -106,6 +118,14 @@ struct WholeSurface
   ElevationRange Elevations;  ///< that of all triangles; empty: it is looked for
 };
 
+/** Of a hole that is filled level: NaN of others. */
+struct WaterLevel
+{
+  double Height = std::numeric_limits<double>::quiet_NaN();
+  double RimAbove = std::numeric_limits<double>::quiet_NaN(); ///< the highest of the rim above it
+  double RimBelow = std::numeric_limits<double>::quiet_NaN(); ///< the lowest of the rim below it
+};
+
 struct HoleReport
 {
   FillStatus Status = FillStatus::Filled;
@@ -119,6 +139,7 @@ struct HoleReport
   Interpolation Method = Interpolation::NeighborMean; ///< as used; never Adaptive
   double Outgrowth = 0.0;                             ///< BetweenLines::Outgrowth()
   DrawnBack Drawn;                                    ///< elevations that overshot
+  WaterLevel Water;
   std::vector<double> Misties; ///< by how much lines disagree that cross in it, where they do
   bool NeedsMoreSurroundings = false; ///< not filled: its surroundings are too small
   Message Reason;                     ///< if Failed: without the hole's name

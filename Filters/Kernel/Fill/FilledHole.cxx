@@ -6,7 +6,9 @@
 #include "Heights.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 namespace elevation
@@ -80,6 +82,30 @@ void Elevate(const Mesh& mesh, const VertexStars* stars, const Values& elevation
   report.Method = heights.Used();
   filled.Errors = heights.StandardErrors();
   filled.HalfIntervals = heights.HalfIntervals(options.ConfidenceLevel);
+}
+
+void SetLevel(const Mesh& mesh, std::vector<double> rim, const FillOptions& options,
+  FilledHole& filled, HoleReport& report)
+{
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  rim.erase(
+    std::remove_if(rim.begin(), rim.end(), [](double z) { return !std::isfinite(z); }), rim.end());
+  std::sort(rim.begin(), rim.end());
+  if (!rim.empty())
+  {
+    const double height = rim[(rim.size() - 1) / 10];
+    report.Water = { height, rim.back() - height, height - rim.front() };
+  }
+  const std::size_t count = static_cast<std::size_t>(filled.Triangles.NumberOfNewVertices());
+  SetElevations(std::vector<double>(count, report.Water.Height), filled.Triangles);
+  for (const Values& values : options.Attributes)
+  {
+    filled.Attributes.push_back(
+      Heights(mesh, nullptr, filled.Triangles, Interpolation::NeighborMean, values).Apply(values));
+  }
+  report.Method = Interpolation::Level;
+  filled.Errors.assign(count, unknown);
+  filled.HalfIntervals.assign(count, unknown);
 }
 
 void Append(const FilledHole& filled, Index firstNewId, FillResult& result)

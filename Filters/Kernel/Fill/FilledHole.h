@@ -47,6 +47,15 @@ void Elevate(const Mesh& mesh, const VertexStars* stars, const Values& elevation
   const FillOptions& options, const ElevationRange& range, const Progress& progress,
   FilledHole& filled, HoleReport& report);
 
+/**
+ * Sets all elevations to a tenth percentile of those of the rim: a measured one, which a tenth of
+ * them do not exceed, so that single low points do not count. Attributes as by NeighborMean; errors
+ * are not known.
+ * @param[in] rim  its elevations; those that are not finite do not count
+ */
+void SetLevel(const Mesh& mesh, std::vector<double> rim, const FillOptions& options,
+  FilledHole& filled, HoleReport& report);
+
 /** Appends a patch whose new points get ids from @a firstNewId + result.NumberOfPoints() on. */
 void Append(const FilledHole& filled, Index firstNewId, FillResult& result);
 

@@ -105,7 +105,8 @@ enum class Interpolation : unsigned char
   Membrane = 1,
   ThinPlate = 2,
   Adaptive = 3,
-  Cubic = 4
+  Cubic = 4,
+  Level = 5 ///< one elevation for a hole: SetLevel() of FilledHole.h, not here
 };
 
 class Heights

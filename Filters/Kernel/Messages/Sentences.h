@@ -4,7 +4,7 @@
  * @file
  * All warnings, and all errors that a program may want as data: what they say, and what they name.
  *
- * Names of values are lower-case words; {input} is "constraints" or "boundary". A property is named
+ * Names of values are lower-case words; {input} is "constraints", "boundary" or "area input". A property is named
  * as the filters name it. The headers of the filters list the codes that each may give, so that a
  * code stays once it is there; its text may change.
  */
@@ -148,7 +148,7 @@ ELEVATION_SENTENCE(BoundaryLeavesOutAll,
   "that is no surface. A larger {property:GapTolerance} keeps more: try {better}. Or give the "
   "boundary.");
 ELEVATION_SENTENCE(RingsRepeated,
-  "Rings of the boundary that are there more than once ({count} more, the first of them "
+  "Rings of the {input} that are there more than once ({count} more, the first of them "
   "{first}) count once.");
 ELEVATION_SENTENCE(
   BoundaryEnclosesNothing, "The boundary encloses no triangle of the mesh. {reason}");
@@ -201,6 +201,9 @@ ELEVATION_SENTENCE(ErrorsOutgrowRoughness,
 ELEVATION_SENTENCE(LinesDisagree,
   "{crossings} crossings of survey lines disagree by up to {most} (median {median}). The points of "
   "lines stay as they are; what is filled between lines goes between them there.");
+ELEVATION_SENTENCE(AreasTouchNoHole,
+  "None of the {holes} holes touches the areas, which are at {box}; so {outcome}. Are areas and "
+  "surface in the same coordinates?");
 ELEVATION_SENTENCE(BordersMeet,
   "At {places} places a point lies inside a border edge or on another point, the first at point "
   "{point}; there the surface is not connected, so that an enclosed region may not be a hole. "

@@ -97,7 +97,7 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines)
       const Point2& p = lines.Points[*point];
       if (!std::isfinite(p.X) || !std::isfinite(p.Y))
       {
-        throw Error("The boundary's " + NameOf(lines.Points, *point) + " of " +
+        throw Error("The " + lines.Name + "'s " + NameOf(lines.Points, *point) + " of " +
           LineName(lines, line) + " is not finite.");
       }
       if (piece.Points.empty() || lines.Points[piece.Points.back()] != p)
@@ -118,7 +118,7 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines)
     // A closed piece of two points would be an edge there and back.
     if (piece.IsClosed && piece.Points.size() < 3)
     {
-      throw Error("The boundary's " + LineName(lines, line) + " has only " +
+      throw Error("The " + lines.Name + "'s " + LineName(lines, line) + " has only " +
         std::to_string(piece.Points.size()) + " different point" +
         (piece.Points.size() == 1 ? "" : "s") + "; a ring has at least three.");
     }
@@ -170,7 +170,7 @@ Message DropRepeated(const BoundaryLines& lines, std::vector<Piece>& pieces)
   pieces = std::move(kept);
   return count == 0
     ? Message()
-    : MakeMessage<sentences::RingsRepeated>(count, "the " + LineName(lines, firstLine));
+    : MakeMessage<sentences::RingsRepeated>(lines.Name, count, "the " + LineName(lines, firstLine));
 }
 
 /**
@@ -237,8 +237,9 @@ private:
       const std::size_t count = piece.IsClosed ? 0 : this->EndsAt.at(this->PlaceAt(end, 0)).size();
       if (count % 2 != 0)
       {
-        throw Error("The boundary is not closed: " + LineName(this->Lines, piece.Line) +
-          " ends at " + NameOf(this->Lines.Points, this->PointAt(end, 0)) +
+        throw Error("The " + this->Lines.Name +
+          " is not closed: " + LineName(this->Lines, piece.Line) + " ends at " +
+          NameOf(this->Lines.Points, this->PointAt(end, 0)) +
           (count == 1
               ? ", where no other line goes on."
               : ", where " + std::to_string(count) + " lines end, which cannot be paired."));
@@ -316,7 +317,7 @@ Rings JoinLines(const BoundaryLines& lines, Message* repeated)
   }
   if (pieces.empty())
   {
-    throw Error("The boundary has no line and no polygon.");
+    throw Error("The " + lines.Name + " has no line and no polygon.");
   }
   const Chains chains(lines, pieces);
   Rings joined;
@@ -335,7 +336,7 @@ Rings JoinLines(const BoundaryLines& lines, Message* repeated)
   }
   if (joined.Vertices.empty())
   {
-    throw Error("The boundary's " + LineName(lines, pieces.front().Line) +
+    throw Error("The " + lines.Name + "'s " + LineName(lines, pieces.front().Line) +
       " makes a ring of only two points, and so do all others; a ring has at least three.");
   }
   return joined;

@@ -65,6 +65,7 @@ private:
 /** Lines and polygons as given, each a list of points. */
 struct BoundaryLines
 {
+  std::string Name = "boundary"; ///< what messages call them
   NamedPoints Points;
   std::vector<double> Elevations; ///< of the points; none unless TakePoints() took them
   Rings Lines;                 ///< numbers of Points; a line is closed if it ends where it starts

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Kernel/Fill/Areas.h"
+
+#include "ErrorMessage.h"
+#include "FilledSurface.h"
+#include "LatticeSurface.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+using namespace elevation;
+using testing_errors::MessageFrom;
+using testing_surfaces::Draw;
+using testing_surfaces::ExpectPatchesFit;
+using testing_surfaces::Fill;
+using testing_surfaces::Outcome;
+
+namespace
+{
+using Ring = std::vector<Point2>;
+
+/** Polygons, one cell each. */
+BoundaryLines Polygons(const std::vector<Ring>& rings)
+{
+  BoundaryLines lines;
+  lines.Name = "area input";
+  for (const Ring& ring : rings)
+  {
+    for (const Point2& p : ring)
+    {
+      lines.Lines.Vertices.push_back(static_cast<Index>(lines.Points.Places.size()));
+      lines.Points.Places.push_back(p);
+    }
+    lines.Lines.Offsets.push_back(static_cast<Index>(lines.Lines.Vertices.size()));
+    lines.IsPolygon.push_back(1);
+    lines.Cells.push_back(static_cast<Index>(lines.Cells.size()));
+  }
+  return lines;
+}
+
+Ring Square(double x, double y, double size)
+{
+  return { { x, y }, { x + size, y }, { x + size, y + size }, { x, y + size } };
+}
+
+/** Whether the only hole of a surface touches areas. */
+bool Touches(const Mesh& mesh, const std::vector<Ring>& rings)
+{
+  const Holes holes = FindHoles(mesh);
+  EXPECT_EQ(holes.Count(), 1);
+  return Areas(Polygons(rings)).Touch(mesh, holes, 0);
+}
+
+// A hole from 1 to 7, with an island from 3 to 5.
+Mesh Lake()
+{
+  return Draw({ "########", "#      #", "#      #", "#  ##  #", "#  ##  #", "#      #", "#      #",
+    "########" });
+}
+
+/** What is filled of a hole on the left, from 1 to 2, and one on the right, from 4 to 7. */
+std::string Filled(const std::vector<Ring>& rings, FillOptions options)
+{
+  options.Chosen = std::make_shared<Areas>(Polygons(rings));
+  const Outcome run = Fill(Draw({ "########", "# ##   #", "####   #", "########" }), options);
+  ExpectPatchesFit(run, 1e-13);
+  std::string statuses(2, ' ');
+  for (const HoleReport& report : run.Patches.Reports)
+  {
+    statuses[report.NumberOfEdges == 4 ? 0 : 1] = report.Status == FillStatus::Filled ? 'f'
+      : report.Status == FillStatus::NotChosen                                        ? 'n'
+      : report.Status == FillStatus::TooLarge                                         ? 'l'
+                                                                                      : '?';
+  }
+  return statuses;
+}
+} // namespace
+
+TEST(Areas, TouchAHoleWhereverTheyMeetIt)
+{
+  const Mesh lake = Lake();
+  EXPECT_TRUE(Touches(lake, { Square(-1, -1, 20) })) << "all of it";
+  EXPECT_TRUE(Touches(lake, { Square(1.5, 1.5, 0.5) })) << "the ring is in the hole";
+  EXPECT_TRUE(Touches(lake, { Square(0.2, 0.2, 1.1) })) << "edges cross";
+  EXPECT_TRUE(Touches(lake, { Square(2.5, 2.5, 3) })) << "around the island alone";
+  EXPECT_FALSE(Touches(lake, { Square(3.2, 3.2, 0.5) })) << "on the island";
+  EXPECT_FALSE(Touches(lake, { Square(0.2, 0.2, 0.5) })) << "beside it";
+  EXPECT_FALSE(Touches(lake, { Square(20, 20, 5) })) << "far away";
+}
+
+TEST(Areas, TouchAHoleAtAPointOrAlongAnEdgeExactly)
+{
+  const Mesh lake = Lake();
+  EXPECT_TRUE(Touches(lake, { { { 0.5, 0.5 }, { 1, 4.5 }, { 0.2, 4 } } })) << "a corner on the rim";
+  EXPECT_FALSE(Touches(lake, { { { 0.5, 0.5 }, { std::nextafter(1.0, 0.0), 4.5 }, { 0.2, 4 } } }));
+  EXPECT_TRUE(Touches(lake, { Square(0, 2.5, 1) })) << "an edge along the rim";
+  EXPECT_TRUE(Touches(lake, { Square(0, 0, 1) })) << "corner to corner";
+  EXPECT_TRUE(Touches(lake, { { { 8, 6 }, { 6, 8 }, { 8, 8 } } })) << "the rim's corner on an edge";
+  EXPECT_TRUE(Touches(lake, { Square(3, 3, 2) })) << "the shore of the island";
+  EXPECT_TRUE(Touches(lake, { Square(1, 1, 6) })) << "the rim itself";
+  EXPECT_TRUE(Touches(lake, { Square(4, 4, 1) })) << "from within the island";
+}
+
+TEST(Areas, AreBoundedByTheEvenOddRule)
+{
+  const Mesh lake = Lake();
+  EXPECT_FALSE(Touches(lake, { Square(-10, -10, 30), Square(-1, -1, 12) })) << "in an inner ring";
+  EXPECT_TRUE(
+    Touches(lake, { Square(-10, -10, 30), Square(-2, -2, 14), Square(-1, -1, 12) }));
+  EXPECT_TRUE(Touches(lake, { Square(-10, -10, 30), Square(2, 2, 0.5) })) << "the edge counts";
+}
+
+TEST(Areas, ChooseWhatIsFilledOrKeptOpen)
+{
+  FillOptions options;
+  EXPECT_EQ(Filled({ Square(1.2, 0.2, 0.5) }, options), "nn") << "below both";
+  EXPECT_EQ(Filled({ Square(1.2, 1.2, 1) }, options), "fn");
+  EXPECT_EQ(Filled({ Square(5, 2, 0.5) }, options), "nf");
+  EXPECT_EQ(Filled({ Square(0.5, 0.5, 9) }, options), "ff");
+  options.Mode = AreaMode::KeepOpen;
+  EXPECT_EQ(Filled({ Square(1.2, 0.2, 0.5) }, options), "ff");
+  EXPECT_EQ(Filled({ Square(1.2, 1.2, 1) }, options), "nf");
+  EXPECT_EQ(Filled({ Square(0.5, 0.5, 9) }, options), "nn");
+}
+
+TEST(Areas, GoBeforeOtherLimits)
+{
+  FillOptions options;
+  options.MaximumHoleSize = 3.0;
+  EXPECT_EQ(Filled({ Square(1.2, 1.2, 1) }, options), "fn");
+  EXPECT_EQ(Filled({ Square(5, 2, 0.5) }, options), "nl");
+}
+
+TEST(Areas, ChooseRegionsOfLongTriangles)
+{
+  // A strip of triangles with long edges, between two of short ones.
+  std::vector<Point2> points;
+  std::vector<Index> triangles;
+  const double columns[] = { 0, 1, 2, 9, 10, 11 };
+  for (Index y = 0; y < 8; ++y)
+  {
+    for (const double x : columns)
+    {
+      points.push_back({ x, static_cast<double>(y) });
+    }
+    for (Index x = 0; y > 0 && x < 5; ++x)
+    {
+      const Index a = 6 * (y - 1) + x, b = a + 1, c = b + 6, d = a + 6;
+      triangles.insert(triangles.end(), { a, b, c, a, c, d });
+    }
+  }
+  const Mesh mesh = testing_surfaces::Make(points, triangles);
+  for (const bool isChosen : { true, false })
+  {
+    FillOptions options;
+    options.Chosen =
+      std::make_shared<Areas>(Polygons({ Square(isChosen ? 5.0 : 20.0, 3.0, 1.0) }));
+    const Outcome run = Fill(mesh, options, testing_surfaces::Slope, 3.0);
+    ASSERT_EQ(run.Found.Count(), 1);
+    EXPECT_EQ(
+      run.Patches.Reports[0].Status, isChosen ? FillStatus::Replaced : FillStatus::NotChosen);
+    EXPECT_EQ(run.Patches.NumberOfPoints() > 0, isChosen);
+  }
+}
+
+TEST(Areas, AreRefusedByTheNameOfTheirInput)
+{
+  const auto refusal = [](const BoundaryLines& lines) {
+    return MessageFrom([&] { Areas areas(lines); });
+  };
+  EXPECT_EQ(refusal(BoundaryLines{ "area input" }), "The area input has no line and no polygon.");
+  EXPECT_EQ(refusal(Polygons({ { { 0, 0 }, { 1, 0 } } })),
+    "The area input's polygon (cell 0) has only 2 different points; a ring has at least three.");
+  BoundaryLines open = Polygons({ Square(0, 0, 1) });
+  open.IsPolygon[0] = 0;
+  EXPECT_EQ(refusal(open).find("The area input is not closed: line (cell 0) ends at point 0"), 0u)
+    << refusal(open);
+  Message repeated;
+  Areas(Polygons({ Square(0, 0, 1), Square(0, 0, 1) }), &repeated);
+  EXPECT_EQ(repeated.Words(),
+    "Rings of the area input that are there more than once (1 more, the first of them the polygon "
+    "(cell 1)) count once.");
+}
