@@ -11,9 +11,6 @@
 //   R plane = (Q' values)_3 - T' v   the first three then give the plane.
 #include "Spline.h"
 
-#include "Kernel/Base/Base.h"
-#include "Kernel/Bins/Bins.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -121,15 +118,17 @@ ELEVATION_WIDE void AddEitherWide(Spline::Kernel kernel, double x, double y, dou
 }
 #endif
 
-void AddKernel(Spline::Kernel kernel, double x, double y, double weight, const double* px,
-  const double* py, std::size_t n, double* out)
+void AddKernel(bool isWide, Spline::Kernel kernel, double x, double y, double weight,
+  const double* px, const double* py, std::size_t n, double* out)
 {
 #ifdef ELEVATION_HAS_AVX2
-  if (WidestInstructions() != InstructionSet::Scalar)
+  if (isWide)
   {
     AddEitherWide(kernel, x, y, weight, px, py, n, out);
     return;
   }
+#else
+  static_cast<void>(isWide);
 #endif
   AddEither(kernel, x, y, weight, px, py, n, out);
 }
@@ -169,7 +168,8 @@ bool Spline::Prepare(
   {
     // The diagonal is f(0) = 0. Entries above it are never read.
     a.col(i).tail(n - i).setZero();
-    AddKernel(kernel, this->X[i], this->Y[i], 1.0, &this->X[i], &this->Y[i], n - i, &a(i, i));
+    AddKernel(
+      this->IsWide, kernel, this->X[i], this->Y[i], 1.0, &this->X[i], &this->Y[i], n - i, &a(i, i));
     a(i, i) += nuggets.empty() ? 0.0 : nuggets[i];
   }
   Eigen::VectorXd mirror(n);
@@ -259,7 +259,8 @@ void Spline::AddSets(
     }
     for (Eigen::Index j = 0; j < n; ++j)
     {
-      AddKernel(this->F, this->X[j], this->Y[j], 1.0, x, y, size, parts.col(j).data());
+      AddKernel(
+        this->IsWide, this->F, this->X[j], this->Y[j], 1.0, x, y, size, parts.col(j).data());
     }
     Eigen::Map<Sets>(values + begin * sets, size, sets).noalias() += parts * all;
   }
@@ -291,7 +292,7 @@ void Spline::Add(
     }
     for (std::size_t j = 0; j < n; ++j)
     {
-      AddKernel(this->F, this->X[j], this->Y[j], weights[j], x, y, size, sums);
+      AddKernel(this->IsWide, this->F, this->X[j], this->Y[j], weights[j], x, y, size, sums);
     }
     for (std::size_t i = 0; i < size; ++i)
     {
