@@ -64,6 +64,20 @@ def triangulated(points, lines=None, **properties):
     return delaunay
 
 
+def survey(gap, levels=0.0, mistie=0.0):
+    """Gently waved heights on lines with levels up to some height, and a mistie of lines across them."""
+    random = numpy.random.RandomState(1)
+    along = numpy.arange(121.0)
+    x, y = numpy.meshgrid(along, numpy.arange(0.0, 121.0, gap))
+    z = 8 * numpy.sin(x / 15) * numpy.cos(y / 19) + levels * random.random_sample((len(y), 1))
+    points = [numpy.column_stack([a.ravel() for a in (x + 0.1 * random.random_sample(x.shape), y, z)])]
+    for at in (20.41, 50.41, 80.41) if mistie else ():
+        z = 8 * numpy.sin(at / 15) * numpy.cos(along / 19) + mistie
+        points.append(numpy.column_stack(
+            (numpy.full(121, at), along + 0.05 + 0.1 * random.random_sample(121), z)))
+    return make_points(numpy.concatenate(points))
+
+
 def two_size_ring():
     """A square with a hole, in which a grid's spacing is left."""
     points = grid(12)
@@ -162,6 +176,24 @@ class Data(unittest.TestCase):
         fill.SetMaximumNumberOfInsertedPoints(1000)
         self.assertEqual(run(fill), ([], []))
         self.assertEqual(messages_of(fill, "warning"), [])  # those of the last run alone
+
+    def test_survey_lines_have_their_warnings(self):
+        def warnings_of(points):
+            delaunay, fill = triangulated(points), vtkFillElevationHoles()
+            fill.SetInputConnection(delaunay.GetOutputPort())
+            fill.SetOpenEdgeLength(2.5)
+            errors, warnings = run(fill)
+            self.assertEqual(errors, [])
+            return warnings
+
+        self.assertEqual(warnings_of(survey(5.0)), [])
+        (warning,) = warnings_of(survey(5.0, levels=3.0))
+        self.check(warning, "ErrorsOutgrowRoughness", holes="1", hole="0")
+        self.assertGreater(float(warning.values["factor"]), 1.5)
+        (warning,) = warnings_of(survey(10.0, mistie=5.0))
+        self.check(warning, "LinesDisagree")
+        self.assertGreater(int(warning.values["crossings"]), 20)
+        self.assertAlmostEqual(float(warning.values["median"]), 5.0, delta=1.0)
 
     def test_a_block_is_a_value(self):
         blocks = vtkMultiBlockDataSet()

@@ -11,9 +11,6 @@
 //   R plane = (Q' values)_3 - T' v   the first three then give the plane.
 #include "Spline.h"
 
-#include "Kernel/Base/Base.h"
-#include "Kernel/Bins/Bins.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -124,10 +121,10 @@ using Adder = void(
   Spline::Kernel, double, double, double, const double*, const double*, std::size_t, double*);
 constexpr Adder* Adders[NumberOfInstructionSets] = ELEVATION_VERSIONS(AddEither);
 
-void AddKernel(Spline::Kernel kernel, double x, double y, double weight, const double* px,
-  const double* py, std::size_t n, double* out)
+void AddKernel(InstructionSet set, Spline::Kernel kernel, double x, double y, double weight,
+  const double* px, const double* py, std::size_t n, double* out)
 {
-  Adder* const add = Adders[static_cast<int>(WidestInstructions())];
+  Adder* const add = Adders[static_cast<int>(set)];
   (add ? add : &HWY_STATIC_DISPATCH(AddEither))(kernel, x, y, weight, px, py, n, out);
 }
 } // namespace
@@ -166,7 +163,8 @@ bool Spline::Prepare(
   {
     // The diagonal is f(0) = 0. Entries above it are never read.
     a.col(i).tail(n - i).setZero();
-    AddKernel(kernel, this->X[i], this->Y[i], 1.0, &this->X[i], &this->Y[i], n - i, &a(i, i));
+    AddKernel(
+      this->Instructions, kernel, this->X[i], this->Y[i], 1.0, &this->X[i], &this->Y[i], n - i, &a(i, i));
     a(i, i) += nuggets.empty() ? 0.0 : nuggets[i];
   }
   Eigen::VectorXd mirror(n);
@@ -256,7 +254,8 @@ void Spline::AddSets(
     }
     for (Eigen::Index j = 0; j < n; ++j)
     {
-      AddKernel(this->F, this->X[j], this->Y[j], 1.0, x, y, size, parts.col(j).data());
+      AddKernel(
+        this->Instructions, this->F, this->X[j], this->Y[j], 1.0, x, y, size, parts.col(j).data());
     }
     Eigen::Map<Sets>(values + begin * sets, size, sets).noalias() += parts * all;
   }
@@ -288,7 +287,7 @@ void Spline::Add(
     }
     for (std::size_t j = 0; j < n; ++j)
     {
-      AddKernel(this->F, this->X[j], this->Y[j], weights[j], x, y, size, sums);
+      AddKernel(this->Instructions, this->F, this->X[j], this->Y[j], weights[j], x, y, size, sums);
     }
     for (std::size_t i = 0; i < size; ++i)
     {

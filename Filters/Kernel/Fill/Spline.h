@@ -27,10 +27,12 @@
 #define elevation_Fill_Spline_h
 
 #include "Kernel/Base/Base.h"
+#include "Kernel/Bins/Bins.h"
 
 #include "vtk_eigen.h"
 #include VTK_EIGEN(Dense)
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -45,6 +47,12 @@ public:
     ThinPlate,
     Cubic
   };
+
+  /** @param[in] widest  of the sets of instructions; all give the same, to the bit */
+  explicit Spline(InstructionSet widest = WidestInstructions())
+    : Instructions(std::min(widest, WidestInstructions()))
+  {
+  }
 
   /**
    * The weights of the centres, then a, b and c of the plane. Of several sets of values, the
@@ -80,6 +88,7 @@ private:
   void AddSets(
     const Weights& weights, const Point2* points, std::size_t count, double* values) const;
 
+  InstructionSet Instructions;
   Kernel F = Kernel::ThinPlate;
   std::vector<double> X;
   std::vector<double> Y;
