@@ -278,7 +278,7 @@ class Reconstruction:
         return_errors  returns (elevations, errors) instead: the standard errors of what was filled, 0 in
                 other triangles, NaN where it is not known; None where nothing was filled
 
-        Takes about a second for a million places. Raises ValueError for arrays of another shape, and
+        Takes about 1.4 seconds for a million places. Raises ValueError for arrays of another shape, and
         ElevationSurfaceError for a surface with plane=best.
         """
         from .query import Heights, check_over_xy, places_of

@@ -43,7 +43,7 @@ void SurfaceQuery::FindWeights(vtkDataArray* places, bool areNatural, const Prog
   }
   if (!this->Finder)
   {
-    this->Finder = std::make_unique<PlaceFinder>(this->Surface, indexing);
+    this->Finder = std::make_unique<PlaceFinder>(this->Surface, AvailableThreads(), indexing);
   }
   std::vector<Point2> positions(places->GetNumberOfTuples());
   for (std::size_t i = 0; i < positions.size(); ++i)

@@ -144,6 +144,7 @@ def check_properties(rows):
         named = {key for row in mine for key in row.properties if "." not in key} | {"NumberOfThreads", "Controller"}
         named |= {"SourceData", "SourceConnection"} if any(case.lines for case in cases) else set()
         named |= {"BoundaryData", "BoundaryConnection"} if any(case.rings for case in cases) else set()
+        named |= {"AreasData", "AreasConnection"} if any(case.areas for case in cases) else set()
         has = outcomes.own_names(make(), "Set")
         if name == "Fill":
             has.discard("MaximumEdgeLength")  # the old name of OpenEdgeLength

@@ -306,7 +306,7 @@ std::vector<OverlaidTriangle> Overlay(const ElevatedMesh& first, const ElevatedM
   std::unique_ptr<TriangleTree> tree;
   if (second)
   {
-    tree = std::make_unique<TriangleTree>(second->Surface, indexing);
+    tree = std::make_unique<TriangleTree>(second->Surface, threads, indexing);
   }
   const Index count = first.Surface.NumberOfTriangles();
   const Index tasks = (count + AtOnce - 1) / AtOnce;

@@ -39,9 +39,9 @@ void FindWeights(const Mesh& mesh, const Point2& place, Index triangle, NaturalN
 
 } // namespace
 
-PlaceFinder::PlaceFinder(const Mesh& mesh, const Progress& progress)
+PlaceFinder::PlaceFinder(const Mesh& mesh, int threads, const Progress& progress)
   : Surface(mesh)
-  , Tree(mesh, progress)
+  , Tree(mesh, threads, progress)
 {
 }
 

@@ -53,7 +53,7 @@ class PlaceFinder
 {
 public:
   /** @param[in] mesh  with Twins, if natural neighbours are asked for */
-  explicit PlaceFinder(const Mesh& mesh, const Progress& progress = Progress());
+  explicit PlaceFinder(const Mesh& mesh, int threads = 1, const Progress& progress = Progress());
 
   /** The first triangle that contains a place, or None. */
   Index TriangleAt(const Point2& place) const;

@@ -34,7 +34,7 @@ inline std::array<Point2, 3> TriangleCorners(const Mesh& mesh, Index triangle)
 class TriangleTree
 {
 public:
-  explicit TriangleTree(const Mesh& mesh, const Progress& progress = Progress());
+  explicit TriangleTree(const Mesh& mesh, int threads = 1, const Progress& progress = Progress());
 
   /** Calls visit(triangle), once each, for those in leaves that touch a box, in any order. */
   template <typename Visitor>
@@ -51,7 +51,13 @@ private:
   };
   static constexpr std::size_t MostInLeaf = 6;
 
-  void Build(const Mesh& mesh, std::size_t node, Item* begin, Item* end, const Progress& progress);
+  struct Range
+  {
+    std::size_t Node, Begin, End;
+  };
+
+  std::size_t Halve(std::vector<Item>& items, const Range& range) const;
+  void Build(const Mesh& mesh, std::vector<Item>& items, const Range& range);
 
   template <typename Visitor>
   void Visit(

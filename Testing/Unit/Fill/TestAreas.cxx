@@ -172,7 +172,9 @@ TEST(Areas, AreRefusedByTheNameOfTheirInput)
   const auto refusal = [](const BoundaryLines& lines) {
     return MessageFrom([&] { Areas areas(lines); });
   };
-  EXPECT_EQ(refusal(BoundaryLines{ "area input" }), "The area input has no line and no polygon.");
+  BoundaryLines none;
+  none.Name = "area input";
+  EXPECT_EQ(refusal(none), "The area input has no line and no polygon.");
   EXPECT_EQ(refusal(Polygons({ { { 0, 0 }, { 1, 0 } } })),
     "The area input's polygon (cell 0) has only 2 different points; a ring has at least three.");
   BoundaryLines open = Polygons({ Square(0, 0, 1) });
