@@ -27,8 +27,7 @@ endfunction ()
 
 # es_find_mpirun(<variable>)
 # What starts a program on several ranks, up to the option for their number; empty if it was not found.
-# The ranks outlive an mpirun that is killed, so it ends by itself before a test's time-out of 1200 s. Ranks
-# that wait use no core, so a test of several ranks counts as one processor.
+# The ranks outlive an mpirun that is killed, so it ends by itself before a test's time-out of 1200 s.
 function (es_find_mpirun variable)
   find_program(ES_MPIRUN NAMES mpirun mpiexec DOC "Starts a program on several ranks")
   set(command)
@@ -38,12 +37,6 @@ function (es_find_mpirun variable)
     if (version MATCHES "Open MPI|OpenRTE")
       # As root and on one core too; a rank that waits leaves its core to others.
       list(APPEND command --allow-run-as-root --oversubscribe --mca mpi_yield_when_idle 1 --timeout 1190)
-      if (UNIX AND NOT ES_SANITIZE) # a sanitizer wants to be loaded first itself
-        if (NOT TARGET SleepingRanks)
-          add_library(SleepingRanks MODULE "${PROJECT_SOURCE_DIR}/Testing/SleepingRanks.c")
-        endif ()
-        list(APPEND command -x "LD_PRELOAD=$<TARGET_FILE:SleepingRanks>")
-      endif ()
     endif ()
     list(APPEND command -n)
   endif ()
