@@ -13,7 +13,7 @@ from vtkmodules.util.vtkConstants import VTK_DOUBLE
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdTypeArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from .clouds import coordinates_of, crs_of, make_points, slices
+from .clouds import coordinates_of, corner_flags, crs_of, make_points, slices
 from .gdal_common import check_system
 from .messages import ElevationSurfaceError, FileError
 from .progress import no_progress
@@ -75,43 +75,41 @@ class Heights:
         filled = holes_of(surface)
         errors = surface.GetPointData().GetArray("FilledError") if (filled >= 0).any() else None
         self.errors = None if errors is None else vtk_to_numpy(errors)
+        self.values = [self.elevations] if self.errors is None else [self.elevations, self.errors]
 
     def at(self, xy, progress=no_progress):
         """(elevations, errors or None) at (n, 2) places, NaN outside."""
-        z = numpy.full(len(xy), numpy.nan)
-        errors = None if self.errors is None else z.copy()
+        layers = [numpy.empty(len(xy)) for _ in self.values]
         for part in slices(len(xy), MOST_AT_ONCE):
             places = numpy.ascontiguousarray(xy[part], dtype="f8")
-            z[part] = inside = weighted(self.linear, False, places, self.elevations)
-            if errors is not None:
-                errors[part] = weighted(self.linear, False, places, self.errors)
+            found = weighted(self.linear, False, places, self.values)
             if self.natural:
-                smooth = weighted(self.natural, True, places[~numpy.isnan(inside)], self.elevations)
-                z[part][~numpy.isnan(inside)] = smooth
+                inside = ~numpy.isnan(found[0])
+                found[0][inside] = weighted(self.natural, True, places[inside], [self.elevations])[0]
+            for layer, values in zip(layers, found):
+                layer[part] = values
             progress(part.stop / len(xy))
-        return z, errors
+        return layers[0], layers[1] if len(layers) > 1 else None
 
 
-def weighted(query, are_natural, places, values):
-    """(n,) of values of points, interpolated at places; NaN where no triangle is."""
+def weighted(query, are_natural, places, of_points):
+    """[(n,)] of each of several values of points, interpolated at places; NaN where no triangle is."""
     offsets, points, weights = vtkIdTypeArray(), vtkIdTypeArray(), vtkDoubleArray()
     raise_error("places", query.FindWeights(numpy_to_vtk(places), are_natural, offsets, points, weights))
     offsets, points, weights = (vtk_to_numpy(array) for array in (offsets, points, weights))
-    result = numpy.full(len(places), numpy.nan)
     found = numpy.diff(offsets) > 0
-    if found.any():
+    results = [numpy.full(len(places), numpy.nan) for _ in of_points]
+    for result, values in zip(results, of_points) if found.any() else ():
         # What is not known does not count where its weight is 0.
         products = numpy.where(weights == 0.0, 0.0, weights * values[points])
         result[found] = numpy.add.reduceat(products, offsets[:-1][found])
-    return result
+    return results
 
 
 def used_alone(surface):
     """The points of a surface, where those that no triangle uses are not finite: they keep numbers."""
     xyz = coordinates_of(surface).astype("f8")
-    used = numpy.zeros(len(xyz), bool)
-    used[vtk_to_numpy(surface.GetPolys().GetConnectivityArray())] = True
-    xyz[~used] = numpy.nan
+    xyz[~corner_flags(vtk_to_numpy(surface.GetPolys().GetConnectivityArray()), len(xyz))] = numpy.nan
     return make_points(xyz)
 
 

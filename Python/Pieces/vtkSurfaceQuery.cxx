@@ -31,11 +31,15 @@ void vtkSurfaceQuery::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Surface: " << (this->Query ? "set" : "none") << "\n";
 }
 
-std::string vtkSurfaceQuery::Try(const std::function<void()>& work)
+std::string vtkSurfaceQuery::Try(
+  const std::function<void(const std::function<bool(double)>&)>& work)
 {
   try
   {
-    work();
+    work([this](double fraction) {
+      this->InvokeEvent(vtkCommand::ProgressEvent, &fraction);
+      return true;
+    });
   }
   catch (const std::bad_alloc&)
   {
@@ -51,17 +55,14 @@ std::string vtkSurfaceQuery::Try(const std::function<void()>& work)
 std::string vtkSurfaceQuery::SetSurface(vtkPolyData* surface)
 {
   this->Query.reset();
-  return this->Try([&] { this->Query = std::make_unique<elevation::SurfaceQuery>(surface); });
+  return this->Try(
+    [&](const auto&) { this->Query = std::make_unique<elevation::SurfaceQuery>(surface); });
 }
 
 std::string vtkSurfaceQuery::FindWeights(vtkDataArray* places, bool areNatural,
   vtkIdTypeArray* offsets, vtkIdTypeArray* points, vtkDoubleArray* weights)
 {
-  const auto report = [this](double fraction) {
-    this->InvokeEvent(vtkCommand::ProgressEvent, &fraction);
-    return true;
-  };
-  return !this->Query ? NoSurface : this->Try([&] {
+  return !this->Query ? NoSurface : this->Try([&](const auto& report) {
     this->Query->FindWeights(places, areNatural, report, offsets, points, weights);
   });
 }
@@ -69,15 +70,7 @@ std::string vtkSurfaceQuery::FindWeights(vtkDataArray* places, bool areNatural,
 std::string vtkSurfaceQuery::CompareWith(vtkSurfaceQuery* other, double level, vtkDataArray* values,
   vtkDoubleArray* result, vtkPolyData* map)
 {
-  if (!this->Query || (other && !other->Query))
-  {
-    return NoSurface;
-  }
-  const auto report = [this](double fraction) {
-    this->InvokeEvent(vtkCommand::ProgressEvent, &fraction);
-    return true;
-  };
-  return this->Try([&] {
+  return !this->Query || (other && !other->Query) ? NoSurface : this->Try([&](const auto& report) {
     this->Query->CompareWith(
       other ? other->Query.get() : nullptr, level, values, report, result, map);
   });

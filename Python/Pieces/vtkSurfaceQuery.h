@@ -71,7 +71,8 @@ protected:
 private:
   vtkSurfaceQuery(const vtkSurfaceQuery&) = delete;
   void operator=(const vtkSurfaceQuery&) = delete;
-  std::string Try(const std::function<void()>& work);
+  /** Calls work(a function to report a fraction to). @return why it failed */
+  std::string Try(const std::function<void(const std::function<bool(double)>&)>& work);
 
   std::unique_ptr<elevation::SurfaceQuery> Query;
 };

@@ -119,11 +119,10 @@ double IntegralAbove0(Polygon polygon, const Function& function)
 /** The corners of a triangle, seen from an origin. */
 std::array<Point2, 3> CornersFrom(const Mesh& mesh, Index triangle, const Point2& origin)
 {
-  std::array<Point2, 3> corners;
-  for (int k = 0; k < 3; ++k)
+  std::array<Point2, 3> corners = TriangleCorners(mesh, triangle);
+  for (Point2& p : corners)
   {
-    const Point2& p = mesh.PointOf(mesh.Triangles[3 * static_cast<std::size_t>(triangle) + k]);
-    corners[k] = { p.X - origin.X, p.Y - origin.Y };
+    p = { p.X - origin.X, p.Y - origin.Y };
   }
   return corners;
 }
