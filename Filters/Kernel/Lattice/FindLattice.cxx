@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 namespace elevation
@@ -22,7 +23,7 @@ constexpr std::array<double, 3> ZeroTolerances{ 0.02, 0.06, 0.15 };
 
 /**
  * The shortest differences of the points, by increasing length. Of at most 128 points
- * (FullestPart), so of some 8,000 pairs.
+ * (FullestPart), so of some 8,000 pairs: most are longer than the 128th so far, and go at once.
  */
 std::vector<Point2> ShortestDifferences(const std::vector<Point2>& points)
 {
@@ -31,27 +32,37 @@ std::vector<Point2> ShortestDifferences(const std::vector<Point2>& points)
     double Squared;
     Point2 Vector;
   };
-  std::vector<Difference> all;
+  const auto isShorter = [](const Difference& p, const Difference& q) {
+    // Ties by vector, so that the choice does not depend on the order of points.
+    return p.Squared != q.Squared ? p.Squared < q.Squared : IsLower(p.Vector, q.Vector);
+  };
+  std::vector<Difference> shortest;
+  shortest.reserve(2 * Vectors);
+  Difference bound{ std::numeric_limits<double>::infinity(), {} };
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     for (std::size_t j = i + 1; j < points.size(); ++j)
     {
       const Point2 d = Minus(points[j], points[i]);
-      all.push_back({ Dot(d, d), d });
+      const Difference difference{ Dot(d, d), d };
+      if (!isShorter(difference, bound))
+      {
+        continue;
+      }
+      shortest.push_back(difference);
+      if (shortest.size() == 2 * Vectors)
+      {
+        const auto last = shortest.begin() + Vectors - 1;
+        std::nth_element(shortest.begin(), last, shortest.end(), isShorter);
+        bound = *last;
+        shortest.resize(Vectors);
+      }
     }
   }
-  const auto isShorter = [](const Difference& p, const Difference& q) {
-    // Ties by vector, so that the choice does not depend on the order of points.
-    return p.Squared != q.Squared ? p.Squared < q.Squared : IsLower(p.Vector, q.Vector);
-  };
-  if (all.size() > Vectors)
-  {
-    std::nth_element(all.begin(), all.begin() + Vectors, all.end(), isShorter);
-    all.resize(Vectors);
-  }
-  std::sort(all.begin(), all.end(), isShorter);
+  std::sort(shortest.begin(), shortest.end(), isShorter);
+  shortest.resize(std::min(shortest.size(), Vectors));
   std::vector<Point2> vectors;
-  for (const Difference& difference : all)
+  for (const Difference& difference : shortest)
   {
     vectors.push_back(difference.Vector);
   }
@@ -63,9 +74,10 @@ std::vector<Point2> SortedOutwards(
   const LatticeSample& sample, const std::vector<Point2>& around, const Point2& middle)
 {
   std::vector<Point2> points = sample.Some();
-  // The sample reaches far, the points around are dense: the fit needs both.
-  points.insert(points.end(), around.begin(), around.end());
-  SortUnique(points);
+  // The sample reaches far, the points around are dense: the fit needs both. Both are sorted.
+  const auto middleOfBoth = points.insert(points.end(), around.begin(), around.end());
+  std::inplace_merge(points.begin(), middleOfBoth, points.end(), IsLower);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
   for (Point2& p : points)
   {
     p = Minus(p, middle);
@@ -87,7 +99,6 @@ bool FitLattice(const LatticeSample& sample, std::vector<Point2>&& inFullestPlac
   // the end.
   const std::vector<Point2> around = FullestPart(std::move(inFullestPlace), progress);
   const Point2 middle = around[around.size() / 2];
-  const std::vector<Point2> points = SortedOutwards(sample, around, middle);
   const double width = sample.Width(), height = sample.Height(), extent = width + height;
   // The mean area a point in the fullest part, at least a thousandth of that of all points.
   const Box part = BoxOf(around);
@@ -99,12 +110,20 @@ bool FitLattice(const LatticeSample& sample, std::vector<Point2>&& inFullestPlac
   // A lattice of the whole cloud is one of its fullest part, where differences are shortest and
   // rounding errors smallest.
   const std::vector<Point2> differences = ShortestDifferences(around);
+  std::vector<Point2> points; // not sorted before they are needed: mostly they are not
   const auto isLattice = [&](double zeroTolerance) {
     Generators generators(leastArea, 1e-9 * extent / sample.Count, zeroTolerance);
-    return std::all_of(differences.begin(), differences.end(),
-             [&](const Point2& vector) { return generators.Insert(vector); }) &&
-      FitOutwards(
-        points, generators, tolerance, extent, MaximumNodesPerPoint * sample.Count, lattice);
+    if (!std::all_of(differences.begin(), differences.end(),
+          [&](const Point2& vector) { return generators.Insert(vector); }))
+    {
+      return false;
+    }
+    if (points.empty())
+    {
+      points = SortedOutwards(sample, around, middle);
+    }
+    return FitOutwards(
+      points, generators, tolerance, extent, MaximumNodesPerPoint * sample.Count, lattice);
   };
   const bool isFound = std::any_of(ZeroTolerances.begin(), ZeroTolerances.end(), isLattice);
   // Of no meaning where none is found.

@@ -127,8 +127,13 @@ using Picked = std::vector<std::vector<Point2>>;
 std::vector<Point2> JoinPicked(Picked sets, const Progress& progress)
 {
   Stages stages(progress, { 50, 50 });
-  PlaceSet all;
   const Progress joining = stages.Next();
+  if (sets.size() == 1)
+  {
+    Sort(sets[0].begin(), sets[0].end(), IsLower, stages.Next());
+    return std::move(sets[0]);
+  }
+  PlaceSet all;
   std::size_t joined = 0;
   for (std::vector<Point2>& set : Counted(sets))
   {
@@ -247,12 +252,6 @@ void KeepFullest(std::vector<Point2>& points)
 
 } // namespace
 
-void SortUnique(std::vector<Point2>& points)
-{
-  std::sort(points.begin(), points.end(), IsLower);
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-}
-
 bool LatticeSample::MayFitLattice() const
 {
   const double width = this->Width(), height = this->Height();
@@ -274,7 +273,9 @@ void LatticeSample::Add(LatticeSample&& part)
   this->Join(part);
   this->Count += part.Count;
   this->Points.insert(this->Points.end(), part.Points.begin(), part.Points.end());
-  SortUnique(this->Points);
+  std::sort(this->Points.begin(), this->Points.end(), IsLower);
+  this->Points.erase(
+    std::unique(this->Points.begin(), this->Points.end()), this->Points.end());
 }
 
 // Each range of points has its own set; they are joined, and sorted, at the end.
