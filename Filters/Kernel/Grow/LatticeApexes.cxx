@@ -134,16 +134,20 @@ private:
 };
 } // namespace
 
+namespace
+{
+/** Of cocircular apexes over the edge to e: whether p comes before q, see IsBetter(). */
+bool IsFirst(const Offset& p, const Offset& q, const Offset& e)
+{
+  return e.Y >= 0 ? Cross(p, q) > 0
+                  : Cross({ q.X - e.X, q.Y - e.Y }, { p.X - e.X, p.Y - e.Y }) > 0;
+}
+} // namespace
+
 bool IsBetter(const Apex& p, const Apex& q, const Offset& e)
 {
   const int order = CompareQuotients(p, q);
-  if (order != 0)
-  {
-    return order < 0;
-  }
-  return e.Y >= 0 ? Cross(p.Position, q.Position) > 0
-                  : Cross({ q.Position.X - e.X, q.Position.Y - e.Y },
-                      { p.Position.X - e.X, p.Position.Y - e.Y }) > 0;
+  return order != 0 ? order < 0 : IsFirst(p.Position, q.Position, e);
 }
 
 LatticeApexes::LatticeApexes(const LatticeNodes& nodes, const LatticeMetric& metric)
@@ -202,38 +206,54 @@ std::int64_t LatticeApexes::NumberOfGaps() const
 const LatticeApexes::Entries* LatticeApexes::MakeList(
   const Offset& e, std::atomic<const Entries*>& slot) const
 {
+  // Of products this small (dot below 2^31, cross below 2^9), different quotients are different
+  // doubles: they are 2^-18 apart at least, and rounded by 2^-22 at most.
+  struct Candidate
+  {
+    double Quotient;
+    Offset Position;
+  };
   constexpr std::size_t most = 64;
-  std::vector<Apex> all;
+  std::vector<Candidate> all;
   // All nodes in range on the left of the edge, whether occupied or not: the list serves every edge
   // with this vector.
+  all.reserve((2 * Range + 1) * (2 * Range + 1));
   for (std::int64_t y = e.Y < 0 ? -Range : 0; y <= Range; ++y)
   {
     for (std::int64_t x = -Range; x <= Range; ++x)
     {
-      if (Cross(e, { x, y }) > 0 && (e.Y < 0 || y > 0 || x > 0))
+      const Apex apex = ApexAt(this->Metric, e, { x, y });
+      if (apex.Cross > 0 && (e.Y < 0 || y > 0 || x > 0))
       {
-        all.push_back(ApexAt(this->Metric, e, { x, y }));
+        all.push_back(
+          { static_cast<double>(apex.Dot) / static_cast<double>(apex.Cross), apex.Position });
       }
     }
   }
-  const std::size_t length = std::min(all.size(), most);
-  std::partial_sort(all.begin(), all.begin() + length, all.end(),
-    [&](const Apex& p, const Apex& q) { return IsBetter(p, q, e); });
-  all.resize(length);
+  const auto isBetter = [&](const Candidate& p, const Candidate& q) {
+    return p.Quotient != q.Quotient ? p.Quotient < q.Quotient
+                                    : IsFirst(p.Position, q.Position, e);
+  };
+  if (all.size() > most)
+  {
+    std::nth_element(all.begin(), all.begin() + most, all.end(), isBetter);
+    all.resize(most);
+  }
+  std::sort(all.begin(), all.end(), isBetter);
   auto made = std::make_unique<Entries>();
   EdgeDisc disc(this->Metric, e);
-  for (const Apex& apex : all)
+  for (const Candidate& candidate : all)
   {
     // Apexes come by growing circles. If a circle leaves the range, nodes outside of the list may
     // lie in it, so neither this apex nor a later one is certain.
-    disc.Set(disc.PositionOf(apex));
+    const Offset& p = candidate.Position;
+    disc.Set(disc.PositionOf(ApexAt(this->Metric, e, p)));
     const double limit = Range + 1 - 1e-6;
     if (!(disc.Left > -limit && disc.Right < limit && disc.Top < limit) ||
       (e.Y < 0 && !(disc.Bottom > -limit)))
     {
       break;
     }
-    const Offset& p = apex.Position;
     made->push_back({ static_cast<Index>(p.Y * this->Nodes.WordsPerRow * 64 + p.X),
       static_cast<std::int16_t>(p.X), static_cast<std::int16_t>(p.Y) });
   }
