@@ -45,7 +45,7 @@ std::vector<Point2> ShortestDifferences(const std::vector<Point2>& points)
     {
       const Point2 d = Minus(points[j], points[i]);
       const Difference difference{ Dot(d, d), d };
-      if (!isShorter(difference, bound))
+      if (difference.Squared > bound.Squared || !isShorter(difference, bound))
       {
         continue;
       }
@@ -76,7 +76,8 @@ std::vector<Point2> SortedOutwards(
   std::vector<Point2> points = sample.Some();
   // The sample reaches far, the points around are dense: the fit needs both. Both are sorted.
   const auto middleOfBoth = points.insert(points.end(), around.begin(), around.end());
-  std::inplace_merge(points.begin(), middleOfBoth, points.end(), IsLower);
+  std::inplace_merge(points.begin(), middleOfBoth, points.end(),
+    [](const Point2& p, const Point2& q) { return IsLower(p, q); });
   points.erase(std::unique(points.begin(), points.end()), points.end());
   for (Point2& p : points)
   {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 namespace elevation
@@ -60,77 +59,51 @@ std::uint64_t HashLimit(double size, double count)
   return static_cast<std::uint64_t>(std::min(size / count, 1.0) * 0x1p32);
 }
 
-/** A hash set of distinct points. */
+/** Passed to a sort, this is compiled into it; the function would be called. */
+constexpr auto Lower = [](const Point2& p, const Point2& q) { return IsLower(p, q); };
+
+/** Collects distinct points: whenever they have doubled, repeated ones go. */
 class alignas(64) PlaceSet // against false sharing
 {
 public:
-  // Half full at most, so a search ends after few slots.
   void Add(const Point2& p)
   {
-    if (2 * this->Count >= this->Slots.size())
+    this->Places.push_back(p);
+    if (this->Places.size() >= this->Most)
     {
-      this->Grow();
+      this->Compact(Progress());
     }
-    this->Count += this->Put(p);
   }
 
-  /** In no particular order. */
-  std::vector<Point2> Places() const
+  /** Gives the points away, sorted. */
+  std::vector<Point2> Take(const Progress& progress = Progress())
   {
-    std::vector<Point2> places;
-    places.reserve(this->Count);
-    std::copy_if(this->Slots.begin(), this->Slots.end(), std::back_inserter(places), IsTaken);
-    return places;
+    this->Compact(progress);
+    return std::move(this->Places);
   }
 
 private:
-  static bool IsTaken(const Point2& slot) { return slot.X == slot.X; } // free ones are NaN
-
-  /** @return whether the place is new */
-  bool Put(const Point2& p)
+  void Compact(const Progress& progress)
   {
-    // Hashes of a sample are small: they differ in the lowest bits.
-    std::size_t at = HashOf(p) & (this->Slots.size() - 1);
-    while (IsTaken(this->Slots[at]))
-    {
-      if (this->Slots[at] == p)
-      {
-        return false;
-      }
-      at = (at + 1) & (this->Slots.size() - 1);
-    }
-    this->Slots[at] = p;
-    return true;
+    Sort(this->Places.begin(), this->Places.end(), Lower, progress);
+    this->Places.erase(std::unique(this->Places.begin(), this->Places.end()), this->Places.end());
+    this->Most = std::max(this->Most, 2 * this->Places.size());
   }
 
-  /** Doubles the slots, which are a power of two so that a mask chooses one. */
-  void Grow()
-  {
-    const std::vector<Point2> places = this->Places();
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    // Twice as many; 64 at first.
-    this->Slots.assign(std::max<std::size_t>(64, 4 * this->Count), { nan, nan });
-    for (const Point2& p : places)
-    {
-      this->Put(p);
-    }
-  }
-
-  std::vector<Point2> Slots; ///< a power of two of them, at most half of them taken
-  std::size_t Count = 0;
+  std::vector<Point2> Places;
+  std::size_t Most = 4096;
 };
 
-/** Distinct points, by range. */
+/** Distinct points, sorted, by range. */
 using Picked = std::vector<std::vector<Point2>>;
 
 /** The distinct points of all ranges, sorted. */
 std::vector<Point2> JoinPicked(Picked sets, const Progress& progress)
 {
   Stages stages(progress, { 50, 50 });
-  const Progress joining = stages.Next();
+  const Progress joining = stages.Next(), sorting = stages.Next();
   if (sets.size() == 1)
   {
-    Sort(sets[0].begin(), sets[0].end(), IsLower, stages.Next());
     return std::move(sets[0]);
   }
   PlaceSet all;
@@ -144,9 +117,7 @@ std::vector<Point2> JoinPicked(Picked sets, const Progress& progress)
     }
     set = std::vector<Point2>();
   }
-  std::vector<Point2> places = all.Places();
-  Sort(places.begin(), places.end(), IsLower, stages.Next());
-  return places;
+  return all.Take(sorting);
 }
 
 /**
@@ -272,10 +243,10 @@ void LatticeSample::Add(LatticeSample&& part)
 {
   this->Join(part);
   this->Count += part.Count;
-  this->Points.insert(this->Points.end(), part.Points.begin(), part.Points.end());
-  std::sort(this->Points.begin(), this->Points.end(), IsLower);
-  this->Points.erase(
-    std::unique(this->Points.begin(), this->Points.end()), this->Points.end());
+  const auto middle =
+    this->Points.insert(this->Points.end(), part.Points.begin(), part.Points.end());
+  std::inplace_merge(this->Points.begin(), middle, this->Points.end(), Lower);
+  this->Points.erase(std::unique(this->Points.begin(), this->Points.end()), this->Points.end());
 }
 
 // Each range of points has its own set; they are joined, and sorted, at the end.
@@ -293,7 +264,7 @@ LatticeSample SampleForLattice(const PointView& points, double totalCount, int t
     }
   });
   std::transform(
-    sets.begin(), sets.end(), picked.begin(), [](const PlaceSet& set) { return set.Places(); });
+    sets.begin(), sets.end(), picked.begin(), [](PlaceSet& set) { return set.Take(); });
   LatticeSample sample;
   static_cast<Box&>(sample) = extent;
   sample.CloudSize = totalCount;
@@ -343,7 +314,7 @@ std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
           here.Add(p);
         }
       });
-      picked[range] = here.Places();
+      picked[range] = here.Take();
     });
   return JoinPicked(std::move(picked), stages.Next());
 }
