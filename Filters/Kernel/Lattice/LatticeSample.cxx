@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 namespace elevation
@@ -62,39 +63,67 @@ std::uint64_t HashLimit(double size, double count)
 /** Passed to a sort, this is compiled into it; the function would be called. */
 constexpr auto Lower = [](const Point2& p, const Point2& q) { return IsLower(p, q); };
 
-/** Collects distinct points: whenever they have doubled, repeated ones go. */
+/** A hash set of distinct points. */
 class alignas(64) PlaceSet // against false sharing
 {
 public:
+  // Half full at most, so a search ends after few slots.
   void Add(const Point2& p)
   {
-    this->Places.push_back(p);
-    if (this->Places.size() >= this->Most)
+    if (2 * this->Count >= this->Slots.size())
     {
-      this->Compact(Progress());
+      this->Grow();
     }
+    this->Count += this->Put(p);
   }
 
-  /** Gives the points away, sorted. */
-  std::vector<Point2> Take(const Progress& progress = Progress())
+  /** In no particular order. */
+  std::vector<Point2> Places() const
   {
-    this->Compact(progress);
-    return std::move(this->Places);
+    std::vector<Point2> places;
+    places.reserve(this->Count);
+    std::copy_if(this->Slots.begin(), this->Slots.end(), std::back_inserter(places), IsTaken);
+    return places;
   }
 
 private:
-  void Compact(const Progress& progress)
+  static bool IsTaken(const Point2& slot) { return slot.X == slot.X; } // free ones are NaN
+
+  /** @return whether the place is new */
+  bool Put(const Point2& p)
   {
-    Sort(this->Places.begin(), this->Places.end(), Lower, progress);
-    this->Places.erase(std::unique(this->Places.begin(), this->Places.end()), this->Places.end());
-    this->Most = std::max(this->Most, 2 * this->Places.size());
+    // Hashes of a sample are small: they differ in the lowest bits.
+    std::size_t at = HashOf(p) & (this->Slots.size() - 1);
+    while (IsTaken(this->Slots[at]))
+    {
+      if (this->Slots[at] == p)
+      {
+        return false;
+      }
+      at = (at + 1) & (this->Slots.size() - 1);
+    }
+    this->Slots[at] = p;
+    return true;
   }
 
-  std::vector<Point2> Places;
-  std::size_t Most = 4096;
+  /** Doubles the slots, which are a power of two so that a mask chooses one. */
+  void Grow()
+  {
+    const std::vector<Point2> places = this->Places();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    // Twice as many; 64 at first.
+    this->Slots.assign(std::max<std::size_t>(64, 4 * this->Count), { nan, nan });
+    for (const Point2& p : places)
+    {
+      this->Put(p);
+    }
+  }
+
+  std::vector<Point2> Slots; ///< a power of two of them, at most half of them taken
+  std::size_t Count = 0;
 };
 
-/** Distinct points, sorted, by range. */
+/** Distinct points, by range. */
 using Picked = std::vector<std::vector<Point2>>;
 
 /** The distinct points of all ranges, sorted. */
@@ -102,22 +131,23 @@ std::vector<Point2> JoinPicked(Picked sets, const Progress& progress)
 {
   Stages stages(progress, { 50, 50 });
   const Progress joining = stages.Next(), sorting = stages.Next();
-  if (sets.size() == 1)
+  if (sets.size() != 1) // a small cloud is one range
   {
-    return std::move(sets[0]);
-  }
-  PlaceSet all;
-  std::size_t joined = 0;
-  for (std::vector<Point2>& set : Counted(sets))
-  {
-    ReportStep(joining, joined++, sets.size(), 16);
-    for (const Point2& p : set)
+    PlaceSet all;
+    std::size_t joined = 0;
+    for (std::vector<Point2>& set : Counted(sets))
     {
-      all.Add(p);
+      ReportStep(joining, joined++, sets.size(), 16);
+      for (const Point2& p : set)
+      {
+        all.Add(p);
+      }
+      set = std::vector<Point2>();
     }
-    set = std::vector<Point2>();
+    sets.assign(1, all.Places());
   }
-  return all.Take(sorting);
+  Sort(sets[0].begin(), sets[0].end(), Lower, sorting);
+  return std::move(sets[0]);
 }
 
 /**
@@ -264,7 +294,7 @@ LatticeSample SampleForLattice(const PointView& points, double totalCount, int t
     }
   });
   std::transform(
-    sets.begin(), sets.end(), picked.begin(), [](PlaceSet& set) { return set.Take(); });
+    sets.begin(), sets.end(), picked.begin(), [](const PlaceSet& set) { return set.Places(); });
   LatticeSample sample;
   static_cast<Box&>(sample) = extent;
   sample.CloudSize = totalCount;
@@ -314,7 +344,7 @@ std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
           here.Add(p);
         }
       });
-      picked[range] = here.Take();
+      picked[range] = here.Places();
     });
   return JoinPicked(std::move(picked), stages.Next());
 }
