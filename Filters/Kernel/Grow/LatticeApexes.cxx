@@ -139,8 +139,7 @@ namespace
 /** Of cocircular apexes over the edge to e: whether p comes before q, see IsBetter(). */
 bool IsFirst(const Offset& p, const Offset& q, const Offset& e)
 {
-  return e.Y >= 0 ? Cross(p, q) > 0
-                  : Cross({ q.X - e.X, q.Y - e.Y }, { p.X - e.X, p.Y - e.Y }) > 0;
+  return e.Y >= 0 ? Cross(p, q) > 0 : Cross({ q.X - e.X, q.Y - e.Y }, { p.X - e.X, p.Y - e.Y }) > 0;
 }
 } // namespace
 
@@ -231,8 +230,7 @@ const LatticeApexes::Entries* LatticeApexes::MakeList(
     }
   }
   const auto isBetter = [&](const Candidate& p, const Candidate& q) {
-    return p.Quotient != q.Quotient ? p.Quotient < q.Quotient
-                                    : IsFirst(p.Position, q.Position, e);
+    return p.Quotient != q.Quotient ? p.Quotient < q.Quotient : IsFirst(p.Position, q.Position, e);
   };
   if (all.size() > most)
   {

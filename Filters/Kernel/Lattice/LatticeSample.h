@@ -35,9 +35,6 @@ struct LatticeSample : Box
   void Add(LatticeSample&& part);
 };
 
-/** Sorts points, and removes repeated ones. */
-void SortUnique(std::vector<Point2>& points);
-
 /** @param[out] notFinite  ids of points with a non-finite coordinate, increasing */
 LatticeSample SampleForLattice(const PointView& points, double totalCount, int threads,
   const Progress& progress, std::vector<Index>& notFinite);
