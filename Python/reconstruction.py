@@ -12,6 +12,7 @@ from typing import Any, Callable, Optional, Sequence, Union
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import (
+    vtkCellArray,
     vtkDataSet,
     vtkImageData,
     vtkPointSet,
@@ -356,13 +357,14 @@ class Reconstruction:
 
 def run_chain(
     cloud, lines, given, *, trim=True, fill=True, progress=None, strict=False, ranks=None,
-    heights=None,
+    heights=None, keep_steps=True,
 ):
     """reconstruct() on what has been checked: a Cloud, lines as fitted() returns them, and checked().
 
     ranks  the controller of those that run it together, or None. Each has some of the points; lines
            may be on one or on all, but all have the same names. Each gets its part
     heights  what check_heights() has given where one rank had all points
+    keep_steps  False frees the triangles of a filter's output once the next has run
     """
     result = Reconstruction(cloud, ranks)
     boundary, faults = lines.get("boundary"), lines.get("faults")
@@ -380,6 +382,8 @@ def run_chain(
         if trim:
             trim_along(run, boundary)
             result.boundary = result.trim.GetOutput(2)
+            if not keep_steps:
+                free_triangles(result.delaunay)
     note, result.several = heights or heights_on_ranks(ranks, result, policy)
     if note:
         (result.decided if "duplicates" in given else result.notes).insert(0, note)
@@ -405,6 +409,8 @@ def run_chain(
         voids = BridgedVoids(result.holes, ranks)
         voids.see(last.GetOutput())
         result.bridged = voids.find()
+        if not keep_steps:
+            free_triangles(result.trim or result.delaunay)
         result.hole_counts = hole_counts(ranks, result)
     result.surface = result.complete = last.GetOutput()
     result.points, result.reasons = follow_points(
@@ -420,6 +426,11 @@ def run_chain(
     if cloud.plane:
         turn_back(result)
     return result
+
+
+def free_triangles(step):
+    """Frees the memory of triangles that nobody reads any more, some 30 bytes each."""
+    step.GetOutput().SetPolys(vtkCellArray())
 
 
 def replaced_ids(points):
