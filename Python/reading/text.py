@@ -293,7 +293,9 @@ class Parser:
     def add_rows(self, lines, places, short, quoted):
         """Adds the lines at some places of a block. numpy reads all or none: then a tenth at once, and the
         last one by one. Those that are too short it would read wrongly."""
-        rows = self.load([lines[i] for i in places], quoted) if short.isdisjoint(places) else None
+        is_part = isinstance(places, range)  # then taking it is much faster
+        chosen = lines[places.start : places.stop] if is_part else [lines[i] for i in places]
+        rows = self.load(chosen, quoted) if short.isdisjoint(places) else None
         if rows is None and len(places) > 10:
             step = -(-len(places) // 10)
             for start in range(0, len(places), step):
@@ -306,7 +308,7 @@ class Parser:
             return
         if self.texts:
             self.keep_words([lines[i] for i in places])
-        self.parts.append((rows, self.line + 1 + numpy.fromiter(places, "i8", len(places))))
+        self.parts.append((rows, self.line + 1 + numpy.array(places, dtype="i8")))
         self.facts["count"] += len(rows)
 
     def load(self, lines, quoted):
