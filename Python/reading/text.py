@@ -293,8 +293,10 @@ class Parser:
     def add_rows(self, lines, places, short, quoted):
         """Adds the lines at some places of a block. numpy reads all or none: then a tenth at once, and the
         last one by one. Those that are too short it would read wrongly."""
-        is_part = isinstance(places, range)  # then taking it is much faster
-        chosen = lines[places.start : places.stop] if is_part else [lines[i] for i in places]
+        if isinstance(places, range):  # the usual case, many times as fast
+            chosen, at = lines[places.start : places.stop], numpy.arange(places.start, places.stop)
+        else:
+            chosen, at = [lines[i] for i in places], places
         rows = self.load(chosen, quoted) if short.isdisjoint(places) else None
         if rows is None and len(places) > 10:
             step = -(-len(places) // 10)
@@ -303,12 +305,13 @@ class Parser:
             self.alive(0.0)
             return
         if rows is None:
-            rows, places = self.rows(lines, places)
-        if not len(places):
+            rows, at = self.rows(lines, places)
+            chosen = [lines[i] for i in at]
+        if not len(at):
             return
         if self.texts:
-            self.keep_words([lines[i] for i in places])
-        self.parts.append((rows, self.line + 1 + numpy.array(places, dtype="i8")))
+            self.keep_words(chosen)
+        self.parts.append((rows, self.line + 1 + numpy.array(at, dtype="i8")))
         self.facts["count"] += len(rows)
 
     def load(self, lines, quoted):
