@@ -6,9 +6,10 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
+#include <cmath>
 #include <memory>
 #include <mutex>
+#include <numeric>
 
 namespace elevation
 {
@@ -18,6 +19,33 @@ namespace
 
 // Places that a thread works on at a time: some milliseconds.
 constexpr std::size_t AtOnce = 4096;
+
+/**
+ * The numbers of places, row by row of tiles with some places each: of places that follow each other,
+ * the tree's boxes and the triangles are in the cache then, which halves the time of random ones.
+ */
+std::vector<std::size_t> ByTiles(const std::vector<Point2>& places)
+{
+  constexpr double placesInTile = 8.0;
+  const Box box = BoxOf(places);
+  const double side = std::sqrt(static_cast<double>(places.size()) / placesInTile);
+  const auto tile = [side](double value, double low, double high) -> std::size_t {
+    const double part = (value - low) / (high - low);
+    return part >= 0.0 && part <= 1.0 ? static_cast<std::size_t>(part * side) : 0; // NaN as well
+  };
+  std::vector<std::pair<std::size_t, std::size_t>> tiles(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    const Point2& at = places[i];
+    const std::size_t row = tile(at.Y, box.Low.Y, box.High.Y);
+    tiles[i] = { (row << 32) + tile(at.X, box.Low.X, box.High.X), i };
+  }
+  std::sort(tiles.begin(), tiles.end());
+  std::vector<std::size_t> order(places.size());
+  std::transform(tiles.begin(), tiles.end(), order.begin(),
+    [](const std::pair<std::size_t, std::size_t>& each) { return each.second; });
+  return order;
+}
 
 /** @param[in] natural  nullptr: linear weights */
 void FindWeights(const Mesh& mesh, const Point2& place, Index triangle, NaturalNeighbors* natural,
@@ -67,6 +95,7 @@ PlaceWeights PlaceFinder::Find(
 {
   Stages stages(progress, { 95, 5 });
   const std::size_t count = places.size();
+  const std::vector<std::size_t> order = ByTiles(places);
   const Index tasks = static_cast<Index>((count + AtOnce - 1) / AtOnce);
   std::vector<PlaceWeights> found(tasks);
   // What a thread needs for natural neighbours has the size of the mesh, so tasks pass it on.
@@ -91,7 +120,8 @@ PlaceWeights PlaceFinder::Find(
     const std::size_t begin = task * AtOnce, end = std::min(count, begin + AtOnce);
     for (std::size_t i = begin; i < end; ++i)
     {
-      FindWeights(this->Surface, places[i], this->TriangleAt(places[i]), natural.get(), weights);
+      const Point2& place = places[order[i]];
+      FindWeights(this->Surface, place, this->TriangleAt(place), natural.get(), weights);
       for (const VertexWeight& each : weights)
       {
         found[task].Vertices.push_back(each.Vertex);
@@ -107,16 +137,23 @@ PlaceWeights PlaceFinder::Find(
   });
   PlaceWeights all;
   const Progress joining = stages.Next();
-  for (Index task = 0; task < tasks; ++task)
+  all.Offsets.resize(count + 1);
+  for (std::size_t i = 0; i < count; ++i)
   {
-    ReportStep(joining, static_cast<std::size_t>(task), static_cast<std::size_t>(tasks));
-    const PlaceWeights& own = found[task];
-    const std::size_t before = all.Vertices.size();
-    std::transform(own.Offsets.begin() + 1, own.Offsets.end(), std::back_inserter(all.Offsets),
-      [before](std::size_t offset) { return before + offset; });
-    all.Vertices.insert(all.Vertices.end(), own.Vertices.begin(), own.Vertices.end());
-    all.Weights.insert(all.Weights.end(), own.Weights.begin(), own.Weights.end());
-    found[task] = PlaceWeights();
+    const std::vector<std::size_t>& own = found[i / AtOnce].Offsets;
+    all.Offsets[order[i] + 1] = own[i % AtOnce + 1] - own[i % AtOnce];
+  }
+  std::partial_sum(all.Offsets.begin(), all.Offsets.end(), all.Offsets.begin());
+  all.Vertices.resize(all.Offsets.back());
+  all.Weights.resize(all.Offsets.back());
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    ReportStep(joining, i, count);
+    PlaceWeights& own = found[i / AtOnce];
+    const std::size_t from = own.Offsets[i % AtOnce], to = own.Offsets[i % AtOnce + 1];
+    const std::size_t at = all.Offsets[order[i]];
+    std::copy(own.Vertices.begin() + from, own.Vertices.begin() + to, all.Vertices.begin() + at);
+    std::copy(own.Weights.begin() + from, own.Weights.begin() + to, all.Weights.begin() + at);
   }
   return all;
 }
