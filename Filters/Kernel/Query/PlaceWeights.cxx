@@ -3,10 +3,10 @@
 #include "PlaceWeights.h"
 
 #include "NaturalNeighbors.h"
+#include "TileOrder.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <mutex>
 #include <numeric>
@@ -19,33 +19,6 @@ namespace
 
 // Places that a thread works on at a time: some milliseconds.
 constexpr std::size_t AtOnce = 4096;
-
-/**
- * The numbers of places, row by row of tiles with some places each: of places that follow each other,
- * the tree's boxes and the triangles are in the cache then, which halves the time of random ones.
- */
-std::vector<std::size_t> ByTiles(const std::vector<Point2>& places)
-{
-  constexpr double placesInTile = 8.0;
-  const Box box = BoxOf(places);
-  const double side = std::sqrt(static_cast<double>(places.size()) / placesInTile);
-  const auto tile = [side](double value, double low, double high) -> std::size_t {
-    const double part = (value - low) / (high - low);
-    return part >= 0.0 && part <= 1.0 ? static_cast<std::size_t>(part * side) : 0; // NaN as well
-  };
-  std::vector<std::pair<std::size_t, std::size_t>> tiles(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i)
-  {
-    const Point2& at = places[i];
-    const std::size_t row = tile(at.Y, box.Low.Y, box.High.Y);
-    tiles[i] = { (row << 32) + tile(at.X, box.Low.X, box.High.X), i };
-  }
-  std::sort(tiles.begin(), tiles.end());
-  std::vector<std::size_t> order(places.size());
-  std::transform(tiles.begin(), tiles.end(), order.begin(),
-    [](const std::pair<std::size_t, std::size_t>& each) { return each.second; });
-  return order;
-}
 
 /** @param[in] natural  nullptr: linear weights */
 void FindWeights(const Mesh& mesh, const Point2& place, Index triangle, NaturalNeighbors* natural,
@@ -95,7 +68,7 @@ PlaceWeights PlaceFinder::Find(
 {
   Stages stages(progress, { 95, 5 });
   const std::size_t count = places.size();
-  const std::vector<std::size_t> order = ByTiles(places);
+  const std::vector<std::size_t> order = OrderByTiles(places);
   const Index tasks = static_cast<Index>((count + AtOnce - 1) / AtOnce);
   std::vector<PlaceWeights> found(tasks);
   // What a thread needs for natural neighbours has the size of the mesh, so tasks pass it on.
