@@ -132,7 +132,8 @@ set(es_kernel_headers_Trim)
 set(es_kernel_headers_Fill
   HeightTrials KnownPoints Quantiles Walk)
 set(es_kernel_headers_Query
-  Query)
+  Query
+  TileOrder)
 
 # The rooms around the kernel.
 set(es_outer_rooms Adapt Parts)

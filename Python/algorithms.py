@@ -55,6 +55,7 @@ from .reading import read, read_boundary, read_faults
 from .reconstruction import NAMES, reconstruct_cloud
 from .report import crs_name
 from .spreading import gather_points
+from .steps import Kept, state_of
 
 NOTHING = "nothing was read"
 ERROR_NEEDS_ALL = (
@@ -242,6 +243,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
     def __init__(self):
         super().__init__(5, 4)
         self._properties, self._exaggeration, self._chosen = {}, 1.0, {}
+        self._kept = []  # of each surface
 
     def GetReport(self):
         """How every point was used and every hole was treated, one line each."""
@@ -316,10 +318,13 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         """Adds the Reconstruction of each Surface to results, by the Part whose place it takes. Returns
         their reports."""
         reports = []
-        for i, surface in enumerate(surfaces):
+        self._kept = (self._kept + [Kept() for _ in surfaces])[: len(surfaces)]
+        for i, (surface, kept) in enumerate(zip(surfaces, self._kept)):
             self._share = (i / len(surfaces), 1.0 / len(surfaces))
             try:
-                result, recognised_lines = agreed(surface.ranks, lambda: self.result_of(surface, lines))
+                result, recognised_lines = agreed(
+                    surface.ranks, lambda: self.result_of(surface, lines, kept)
+                )
                 if result:
                     results[surface.part] = result
                     reports.append(block_report(surface, result, recognised_lines))
@@ -329,9 +334,12 @@ class ReconstructElevationSurface(ReportingAlgorithm):
                 reports.append(failed_block_report(surface, "there is not enough memory"))
         return reports
 
-    def result_of(self, surface, lines):
+    def result_of(self, surface, lines, kept):
         """(the Reconstruction of a Surface, what its reader has found out). The Reconstruction is None on
-        a rank that has none because another makes the whole."""
+        a rank that has none because another makes the whole.
+
+        kept  the Kept of the last time: a changed property runs from the first step that it belongs to
+        """
         given, ranks = dict(self._properties), surface.ranks
         properties = {name: given[name] for name in given if name in PROPERTIES}
         properties = checked(properties, argument)
@@ -341,8 +349,15 @@ class ReconstructElevationSurface(ReportingAlgorithm):
                 "the input is a boundary, which has no elevations; choose it as Boundary, or set "
                 "Contents to Points where the file was opened"
             )
-        cloud = cloud_of(surface.data, given.get("elevation_array") or "", options, ranks)
-        drop_elevation(cloud.points, ranks)
+        elevation = given.get("elevation_array") or ""
+
+        def make_cloud():
+            cloud = cloud_of(surface.data, elevation, options, ranks)
+            drop_elevation(cloud.points, ranks)
+            return cloud
+
+        key = state_of(surface.data), elevation, options
+        cloud = kept.result("cloud", key, make_cloud, ranks).copy()
         found = recognised(cloud.points, ranks)
         cloud.notes += found + notes_on(cloud, lines, ranks)
         gathered = []
@@ -353,11 +368,14 @@ class ReconstructElevationSurface(ReportingAlgorithm):
                 return None, found
         steps = {name: given[name] for name in ("trim", "fill") if name in given}
         result = reconstruct_cloud(
-            cloud, lines, NAMES, properties, ranks=ranks, progress=self.step, **steps
+            cloud, lines, NAMES, properties, ranks=ranks, progress=self.step, kept=kept, **steps
         )
         result.gathered += gathered
         result.report  # pylint: disable=pointless-statement  (all ranks make it)
-        set_elevation(result.surface, ranks)
+        surface = vtkPolyData()
+        surface.ShallowCopy(result.surface)  # which may be an output that is kept
+        set_elevation(surface, ranks)
+        result.surface = surface
         return result, found
 
     def step(self, words, fraction):

@@ -582,6 +582,14 @@ class Part:
 WHOLE = Part()
 
 
+def are_among(values, few):
+    """Which of the values are among few others. numpy.isin() would sort all."""
+    few = numpy.unique(few)
+    if not len(few):
+        return numpy.zeros(len(values), dtype=bool)
+    return few[numpy.minimum(numpy.searchsorted(few, values), len(few) - 1)] == values
+
+
 def corner_flags(triangles, count):
     """(count,) of bool: which points are corners of triangles."""
     flags = numpy.zeros(count, dtype=bool)

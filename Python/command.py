@@ -233,6 +233,7 @@ class Run:
                 strict=options.strict,
                 ranks=ranks,
                 heights=heights,
+                keep_steps=False,
             )
         except ElevationSurfaceError as error:
             path = self.line_files().get(error.about)

@@ -6,7 +6,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .algorithm_base import words_of
-from .clouds import coordinates_of
+from .clouds import are_among, coordinates_of
 from .messages import counted
 from .names import option
 from .properties import INTERPOLATIONS
@@ -128,7 +128,7 @@ class BridgedVoids:
         """Takes the triangles of this rank, or some of them."""
         places = complex_places(surface)
         corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-        corners = corners[numpy.isin(places, self.edges[:, 0])[corners].any(axis=1)]
+        corners = corners[are_among(places, self.edges[:, 0])[corners].any(axis=1)]
         ends = places[numpy.roll(corners, -1, axis=1)]
         edges = set(zip(places[corners].ravel().tolist(), ends.ravel().tolist()))
         self.are_there += [edge in edges for edge in map(tuple, self.edges.tolist())]

@@ -12,6 +12,7 @@ from typing import Any, Callable, Optional, Sequence, Union
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import (
+    vtkCellArray,
     vtkDataSet,
     vtkImageData,
     vtkPointSet,
@@ -34,7 +35,7 @@ from .ranks import extremes, total
 from .reading.arrays import column_cloud, grid_cloud, named_columns
 from .reading.facing import find_faces, notes_on_faces
 from .spreading import ORIGINAL_IDS, follow_points, last_id, original_ids, without_unused
-from .steps import Step, triangulate, trim_along, trim_few
+from .steps import Kept, Step, state_of, triangulate, trim_along, trim_few
 from .vtkElevationSurface import vtkFillElevationHoles
 
 # ---- input ------------------------------------------------------------------------------------
@@ -356,13 +357,15 @@ class Reconstruction:
 
 def run_chain(
     cloud, lines, given, *, trim=True, fill=True, progress=None, strict=False, ranks=None,
-    heights=None,
+    heights=None, keep_steps=True, kept=None,
 ):
     """reconstruct() on what has been checked: a Cloud, lines as fitted() returns them, and checked().
 
     ranks  the controller of those that run it together, or None. Each has some of the points; lines
            may be on one or on all, but all have the same names. Each gets its part
     heights  what check_heights() has given where one rank had all points
+    keep_steps  False frees the triangles of a filter's output once the next has run
+    kept  None, or the Kept of the last run on the same cloud
     """
     result = Reconstruction(cloud, ranks)
     boundary, faults = lines.get("boundary"), lines.get("faults")
@@ -370,9 +373,7 @@ def run_chain(
     result.boundary_name = "given" if boundary is not None else None
     result.faults_name = "given" if faults is not None else None
     policy = given.get("duplicates")
-    if heights is None and not ranks:
-        heights = check_heights(cloud, policy)
-    run = Step(result, given, progress, strict, ranks)
+    run = Step(result, given, progress, strict, ranks, kept)
     if given.get("maximum_elevation_error") and trim:
         trim_few(run, boundary, faults)
     else:
@@ -380,6 +381,8 @@ def run_chain(
         if trim:
             trim_along(run, boundary)
             result.boundary = result.trim.GetOutput(2)
+            if not keep_steps:
+                free_triangles(result.delaunay)
     note, result.several = heights or heights_on_ranks(ranks, result, policy)
     if note:
         (result.decided if "duplicates" in given else result.notes).insert(0, note)
@@ -396,15 +399,20 @@ def run_chain(
         if "open_edge_length" in given:
             result.open_edge_length, result.why_opened = given["open_edge_length"], AS_GIVEN
         elif not given.get("maximum_elevation_error"):  # else long edges are not voids
-            length, result.why_opened = length_to_open(ranks, last.GetOutput(), result)
+            length, result.why_opened = run.kept.result(
+                "open edge length", (state_of([last.GetOutput()]), result.boundary_name),
+                lambda: length_to_open(ranks, last.GetOutput(), result), ranks,
+            )
             filling.SetOpenEdgeLength(length)
             result.open_edge_length = length
-        result.fill = last = run("fill", filling)
+        result.fill = last = filling = run("fill", filling)
         result.triangles["filled"] = total(ranks, last.GetOutput().GetNumberOfPolys())
         result.holes = filling.GetOutput(1)
         voids = BridgedVoids(result.holes, ranks)
         voids.see(last.GetOutput())
         result.bridged = voids.find()
+        if not keep_steps:
+            free_triangles(result.trim or result.delaunay)
         result.hole_counts = hole_counts(ranks, result)
     result.surface = result.complete = last.GetOutput()
     result.points, result.reasons = follow_points(
@@ -422,6 +430,11 @@ def run_chain(
     return result
 
 
+def free_triangles(step):
+    """Frees the memory of triangles that nobody reads any more, some 30 bytes each."""
+    step.GetOutput().SetPolys(vtkCellArray())
+
+
 def replaced_ids(points):
     """A note on an array that gives way to that of original ids, or none."""
     if not points.GetPointData().HasArray(ORIGINAL_IDS) or original_ids(points) is not None:
@@ -432,16 +445,32 @@ def replaced_ids(points):
     ]
 
 
-def reconstruct_cloud(cloud, lines, names, given, *, strict=False, ranks=None, **options):
+def reconstruct_cloud(
+    cloud, lines, names, given, *, strict=False, ranks=None, kept=None, **options
+):
     """run_chain() on points and lines as they come.
 
     lines, names  as fitted() takes them
     """
+    kept = kept or Kept()
+
+    def once(name, make, *key):  # for this cloud
+        return kept.result(name, (state_of([cloud.points]), *key), make, ranks)
+
     check_together(dict.fromkeys(lines, True), argument, lines)
-    check_spacing(least_reach(cloud.points, ranks), given.get("spacing", 0.0))
+    reach = once("reach", lambda: least_reach(cloud.points, ranks))
+    check_spacing(reach, given.get("spacing", 0.0))
     cloud, lines = in_plane(cloud, lines, given, ranks)
-    lines, notes = fitted(cloud, lines, names, given, strict, ranks)
-    result = run_chain(cloud, lines, given, strict=strict, ranks=ranks, **options)
+    # Lines that are draped lie on a surface of the points.
+    others = {name: given[name] for name in given if PROPERTIES[name].step not in ("trim", "fill")}
+    lines, notes = once(
+        "lines", lambda: fitted(cloud, lines, names, given, strict, ranks),
+        state_of(lines.values()), list(lines), names, strict, others,
+    )
+    if not ranks:
+        policy = given.get("duplicates")
+        options["heights"] = once("heights", lambda: check_heights(cloud, policy), policy)
+    result = run_chain(cloud, lines, given, strict=strict, ranks=ranks, kept=kept, **options)
     result.notes[:0] = notes
     return result
 

@@ -26,7 +26,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
-from .clouds import marked_points
+from .clouds import are_among, marked_points
 from .messages import ElevationSurfaceError, counted
 from .names import option
 from .properties import DUPLICATES
@@ -85,11 +85,10 @@ def shared_places(xyz):
     key = (key + y.view("u8")) * MIXER
     key ^= key >> numpy.uint64(29)
     ordered = numpy.sort(key)
-    again = numpy.unique(ordered[1:][ordered[1:] == ordered[:-1]])
+    again = ordered[1:][ordered[1:] == ordered[:-1]]
     if not len(again):
         return numpy.empty(0, "i8"), numpy.empty(0, "i8"), len(x)
-    near = numpy.minimum(numpy.searchsorted(again, key), len(again) - 1)
-    ids = numpy.flatnonzero(again[near] == key)
+    ids = numpy.flatnonzero(are_among(key, again))
     ids = ids[numpy.lexsort((z[ids], y[ids], x[ids]))]
     differs = (numpy.diff(x[ids]) != 0) | (numpy.diff(y[ids]) != 0)
     starts = numpy.concatenate(([0], 1 + numpy.flatnonzero(differs)))

@@ -141,7 +141,10 @@ def with_points(surface, keep):
     kept = some_points(surface, keep)
     set_places(kept, vtk_to_numpy(surface.GetPoints().GetData())[keep])
     corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
-    kept.SetPolys(cells_of(numpy.searchsorted(keep, corners).reshape(-1, 3)))
+    count = surface.GetNumberOfPoints()
+    numbers = numpy.empty(count, dtype="i4" if count < 2**31 else "i8")  # of the kept ones
+    numbers[keep] = numpy.arange(len(keep))
+    kept.SetPolys(cells_of(numbers[corners].reshape(-1, 3)))
     kept.GetCellData().ShallowCopy(surface.GetCellData())
     kept.GetFieldData().ShallowCopy(surface.GetFieldData())
     return kept

@@ -35,15 +35,53 @@ RAISED = 1.25  # times the tolerance that leaves out some
 STEPS = {"delaunay": "triangulating", "trim": "trimming", "fill": "filling holes"}
 
 
+class Kept:
+    """What a run keeps for the next one: results by name, each with the key that it was made for."""
+
+    def __init__(self):
+        self._results = {}
+
+    def result(self, name, key, make, ranks=None):
+        """The last result of this name where its key was the same on all ranks, else that of make()."""
+        old = self._results.get(name)
+        if total(ranks, old is None or old[0] != key):
+            self.forget(name)
+            old = self._results[name] = key, make()
+        return old[1]
+
+    def forget(self, name):
+        self._results.pop(name, None)
+
+
+def state_of(data):
+    """Data sets as part of a key: which they are, and when they were changed last."""
+    return [(one, one.GetMTime()) for one in data]
+
+
+def settings_of(algorithm):
+    """The inputs and the properties of a filter, as a key."""
+    inputs = [
+        algorithm.GetInputDataObject(port, i)
+        for port in range(algorithm.GetNumberOfInputPorts())
+        for i in range(algorithm.GetNumberOfInputConnections(port))
+    ]
+    getters = ["G" + name[1:] for name in vars(type(algorithm)) if name.startswith("Set")]
+    values = [getattr(algorithm, name)() for name in getters if hasattr(algorithm, name)]
+    return state_of(inputs), repr(values)
+
+
 class Step:
     """Runs a filter with progress. Its errors are raised, its warnings become notes.
 
     given  the properties of filters, see checked()
     ranks  the controller of those that run it together, or None
+    kept   None, or the Kept of the last run: a filter with the same settings does not run again
     """
 
-    def __init__(self, result, given, progress, strict, ranks):
+    def __init__(self, result, given, progress, strict, ranks, kept=None):
         self.result = result
+        self.kept = kept or Kept()
+        self.count = 0  # of filters that ran; some run twice
         self.properties = given
         self.progress = progress
         self.strict = strict
@@ -54,12 +92,36 @@ class Step:
         return set_properties(algorithm, step, self.properties)
 
     def __call__(self, name, algorithm, change=None):
-        """Returns the filter, updated.
+        """Returns the filter, updated, or that of the last run.
 
         change  called with the Messages; returns whether it has changed properties, so that the filter
                 runs again. The messages before do not count then.
         """
-        raised = []
+        self.count += 1
+        place = f"{name} {self.count}"
+        algorithm, messages, notes, error = self.kept.result(
+            place, settings_of(algorithm), lambda: self.run(name, algorithm, change), self.ranks
+        )
+        self.result.notes += notes
+
+        def end():
+            if error:
+                raise error
+            return self.report(name, messages, boundary_of(algorithm) if name == "trim" else None)
+
+        try:
+            lines = together(self.ranks, end)
+        except BaseException:
+            self.kept.forget(place)
+            raise
+        for is_on_one_rank, note in lines:
+            notes = self.result.gathered if is_on_one_rank else self.result.notes
+            notes += [note] if note not in notes else []
+        return algorithm
+
+    def run(self, name, algorithm, change):
+        """Returns the filter, its Messages, the notes of change(), and what was raised or None."""
+        raised, before = [], len(self.result.notes)
 
         def show(caller, _event):
             # What is raised in an observer does not get through VTK: the filter is aborted first.
@@ -82,16 +144,9 @@ class Step:
         times, words = self.result.times, "triangulate" if name == "delaunay" else name
         times[words] = times.get(words, 0.0) + time.perf_counter() - began
         algorithm.RemoveObserver(tag)
-
-        def end():
-            if raised:
-                raise raised[0]
-            return self.report(name, messages, boundary_of(algorithm) if name == "trim" else None)
-
-        for is_on_one_rank, note in together(self.ranks, end):
-            notes = self.result.gathered if is_on_one_rank else self.result.notes
-            notes += [note] if note not in notes else []
-        return algorithm
+        notes = self.result.notes[before:]
+        del self.result.notes[before:]
+        return algorithm, messages, notes, raised[0] if raised else None
 
     def report(self, name, messages, boundary):
         """Raises the errors of a step. Returns [whether it is OnOneRank, note] of its warnings."""
@@ -157,7 +212,7 @@ def triangulate(run, lines, error):
     delaunay.SetDrapeConstraints(total(ranks, len(bare) > 0 and bare.all()) > 0)
     if lines is not None:
         delaunay.SetSourceData(lines)
-    result.delaunay = run("delaunay", delaunay)
+    result.delaunay = delaunay = run("delaunay", delaunay)
     surface = delaunay.GetOutput()
     result.triangles["delaunay"] = total(ranks, surface.GetNumberOfPolys())
     result.lattice = lattice_of(ranks, surface)
@@ -187,7 +242,7 @@ def trim_along(run, boundary, edges=None):
         grid = result.cloud.grid
         steps = together(run.ranks, lambda: list(grid.steps) if grid else [])
         trim.SetGridSteps((steps or [0.0] * 4)[:4])
-    result.trim = run("trim", trim, LineKeeper(run, trim))
+    result.trim = trim = run("trim", trim, LineKeeper(run, trim))
     result.triangles["trimmed"] = total(run.ranks, trim.GetOutput().GetNumberOfPolys())
     if result.triangles["trimmed"] == 0:
         raise ElevationSurfaceError(

@@ -10,6 +10,7 @@ import numpy
 from ..clouds import slices
 
 MOST_OUTLINE_POINTS = 300_000
+MANY_POINTS_EACH = 10  # for a triangle: then points are numbered anew
 RINGS = 6  # of a cell, around its middle
 
 
@@ -40,6 +41,9 @@ def outline(triangles):
     if len(triangles) == 0:
         return numpy.empty((0, 2), dtype="i8")
     count = int(triangles.max()) + 1
+    if count > MANY_POINTS_EACH * len(triangles):
+        ids, places = numpy.unique(triangles, return_inverse=True)
+        return ids[outline(places.reshape(-1, 3))]
     # Around a point inside, every neighbour is once the next corner and once the one before, so that
     # the differences of any numbers of theirs add up to 0. Sums of such numbers are exact.
     numbers = numpy.random.default_rng(0).integers(0, 2**40, count).astype("f8")

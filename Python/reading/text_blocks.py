@@ -74,7 +74,9 @@ def plain(data):
     end = data.rstrip(END_MARKS)
     if b"\x1a" in data[len(end) :] or b"\0" in data[len(end) :]:
         data = end and end + b"\n"
-    return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").replace(b"\xe2\x88\x92", b"-")
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    return data.replace(b"\xe2\x88\x92", b"-")
 
 
 def block_lines(block):

@@ -9,6 +9,7 @@ copies of the file in memory. This one holds a few megabytes, and a full disk is
 
 import binascii
 import zlib
+from concurrent.futures import ThreadPoolExecutor
 from xml.sax.saxutils import quoteattr
 
 import numpy
@@ -162,19 +163,20 @@ class Writer:
         place = self.stream.tell()
         self.stream.write(binascii.b2a_base64(sizes, newline=False))
         level, waiting = 1, b""
-        for i, start in enumerate(pieces):
-            block = zlib.compress(raw[start : start + BLOCK], level)
-            if i == 0 and len(raw) > ALWAYS_COMPRESSED and 2 * len(block) > BLOCK:
-                level = 0
-            sizes[3 + i] = len(block)
-            waiting += block
-            if i % AT_ONCE == AT_ONCE - 1:
+        if len(raw) > ALWAYS_COMPRESSED and 2 * len(zlib.compress(raw[:BLOCK], level)) > BLOCK:
+            level = 0
+        with ThreadPoolExecutor() as threads:
+            for first in range(0, len(pieces), AT_ONCE):
+                some = pieces[first : first + AT_ONCE]
+                blocks = list(threads.map(lambda start: zlib.compress(raw[start : start + BLOCK], level), some))
+                sizes[3 + first : 3 + first + len(blocks)] = [len(block) for block in blocks]
+                waiting += b"".join(blocks)
                 # Three bytes are four letters.
                 whole = len(waiting) - len(waiting) % 3
                 self.stream.write(binascii.b2a_base64(waiting[:whole], newline=False))
                 waiting = waiting[whole:]
                 if self.progress:
-                    self.progress(min(1.0, (self.done + start) / self.total))
+                    self.progress(min(1.0, (self.done + some.stop) / self.total))
         self.stream.write(binascii.b2a_base64(waiting, newline=False))
         self.done += len(raw)
         sizes[:3] = len(pieces), BLOCK, len(raw) % BLOCK

@@ -26,6 +26,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkPolyData,
     vtkTable,
 )
+from vtkmodules.vtkFiltersSources import vtkRegularPolygonSource
 
 
 def errors_of(algorithm, event="ErrorEvent"):
@@ -81,6 +82,79 @@ class Algorithms(unittest.TestCase):
         numpy.testing.assert_array_equal(ids.reshape(-1, 3), triangles)
         self.assertIn("4,650 read", chain.GetReport())
         self.assertGreater(chain.GetOutputDataObject(3).GetNumberOfRows(), 5)
+
+    def test_changed_properties_run_from_their_own_step_and_give_what_a_new_chain_gives(self):
+        random = numpy.random.default_rng(11)
+        xyz = random.uniform(0, 40, (900, 3)) * [1, 1, 0.1]
+        xyz = xyz[numpy.hypot(xyz[:, 0] - 20, xyz[:, 1] - 15) > 5]
+        cloud, boundary = vtkPolyData(), vtkPolyData()
+        cloud.SetPoints(vtkPoints())
+        cloud.GetPoints().SetData(numpy_to_vtk(xyz, deep=True))
+        outline = vtkRegularPolygonSource()
+        outline.SetRadius(17)
+        outline.SetCenter(20, 20, 0)
+        outline.SetNumberOfSides(50)
+        outline.Update()
+        boundary.ShallowCopy(outline.GetOutput())
+        changes = [
+            ("SetMaximumEdgeLength", [0.0, 6.0], "Triangulating"),
+            ("SetGapTolerance", [0.0, 6.0], "Trimming"),
+            ("SetOpenEdgeLength", [-1, 0.0, 5.0], "Filling holes"),
+            ("SetInterpolation", [0, 1], "Filling holes"),
+            ("SetSpacing", [0.0, 0.7], "Filling holes"),
+            ("SetTrim", [True, False], "Trimming"),
+            ("SetFillHoles", [True, False], "Filling holes"),
+            ("SetMaximumHoleSize", [0.0, 5.0], "Filling holes"),
+            ("SetMaximumElevationError", [0.0, 1.0], "Triangulating"),
+            ("SetRemoveUnusedPoints", [True, False], "Measuring"),
+            ("boundary", [None, boundary], "Trimming"),
+            ("points", [None], "Triangulating"),
+        ]
+        order = ["Triangulating", "Trimming", "Filling holes", "Measuring"]
+        values, kept, ran = {}, ReconstructElevationSurface(), []
+
+        def note(caller, _event):
+            ran.append(caller.GetProgressText())
+
+        def apply(chain):
+            chain.SetInputDataObject(0, cloud)
+            for name, value in values.items():
+                if name == "boundary":
+                    chain.SetInputDataObject(1, value)
+                elif name != "points":
+                    getattr(chain, name)(value)
+            chain.Update()
+            return [self.contents(chain.GetOutputDataObject(port)) for port in range(3)] + [
+                re.sub(r"(?m)^  time .*$", "", chain.GetReport())]
+
+        kept.AddObserver("ProgressEvent", note)
+        apply(kept)
+        for _ in range(60):
+            name, choices, first = changes[random.integers(len(changes))]
+            value = choices[random.integers(len(choices))]
+            if name == "points":
+                cloud.GetPoints().SetPoint(random.integers(len(xyz)), random.uniform(0, 30, 3))
+                cloud.GetPoints().Modified()
+            elif values.get(name, choices[0]) == value:
+                continue
+            values[name] = value
+            kept.SetProgressText("")
+            ran.clear()
+            self.assertEqual(apply(kept), apply(ReconstructElevationSurface()), (name, values))
+            # Few points within an error are chosen along an outline that is made anew.
+            earlier = [] if values.get("SetMaximumElevationError") else order[: order.index(first)]
+            self.assertEqual([words for words in ran if words in earlier], [], (name, values))
+
+    def contents(self, data):
+        """All that a surface holds, in words."""
+        attributes = [data.GetPointData(), data.GetCellData(), data.GetFieldData()]
+        arrays = [one.GetAbstractArray(i) for one in attributes for i in range(one.GetNumberOfArrays())]
+        columns = {array.GetName(): [array.GetVariantValue(i).ToString()
+                   for i in range(array.GetNumberOfValues())] for array in arrays}
+        places = points(data).tolist() if data.GetPoints() else []
+        cells = [vtk_to_numpy(cells.GetConnectivityArray()).tolist()
+                 for cells in (data.GetVerts(), data.GetLines(), data.GetPolys())]
+        return repr((places, cells, columns))
 
     def test_a_table_of_words_and_numbers(self):
         x, y = GRID

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Overlay.h"
 
+#include "TileOrder.h"
 #include "TriangleTree.h"
 
 #include <algorithm>
@@ -309,12 +310,19 @@ std::vector<OverlaidTriangle> Overlay(const ElevatedMesh& first, const ElevatedM
   }
   const Index count = first.Surface.NumberOfTriangles();
   const Index tasks = (count + AtOnce - 1) / AtOnce;
+  std::vector<Point2> corners(count);
+  for (Index t = 0; t < count; ++t)
+  {
+    corners[t] = TriangleCorners(first.Surface, t)[0];
+  }
+  const std::vector<std::size_t> order = OrderByTiles(corners);
   std::vector<OverlaidTriangle> result(count);
   std::vector<DifferenceMap> maps(map ? tasks : 0);
   ForEachTask(tasks, threads, stages.Next(), [&](Index task) {
     Overlaying overlaying(first, second, level, values, tree.get());
-    for (Index t = task * AtOnce; t < std::min(count, (task + 1) * AtOnce); ++t)
+    for (Index i = task * AtOnce; i < std::min(count, (task + 1) * AtOnce); ++i)
     {
+      const Index t = static_cast<Index>(order[i]);
       result[t] = overlaying.Overlay(t, map ? &maps[task] : nullptr);
     }
   });

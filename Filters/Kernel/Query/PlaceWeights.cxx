@@ -3,12 +3,13 @@
 #include "PlaceWeights.h"
 
 #include "NaturalNeighbors.h"
+#include "TileOrder.h"
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <memory>
 #include <mutex>
+#include <numeric>
 
 namespace elevation
 {
@@ -67,6 +68,7 @@ PlaceWeights PlaceFinder::Find(
 {
   Stages stages(progress, { 95, 5 });
   const std::size_t count = places.size();
+  const std::vector<std::size_t> order = OrderByTiles(places);
   const Index tasks = static_cast<Index>((count + AtOnce - 1) / AtOnce);
   std::vector<PlaceWeights> found(tasks);
   // What a thread needs for natural neighbours has the size of the mesh, so tasks pass it on.
@@ -91,7 +93,8 @@ PlaceWeights PlaceFinder::Find(
     const std::size_t begin = task * AtOnce, end = std::min(count, begin + AtOnce);
     for (std::size_t i = begin; i < end; ++i)
     {
-      FindWeights(this->Surface, places[i], this->TriangleAt(places[i]), natural.get(), weights);
+      const Point2& place = places[order[i]];
+      FindWeights(this->Surface, place, this->TriangleAt(place), natural.get(), weights);
       for (const VertexWeight& each : weights)
       {
         found[task].Vertices.push_back(each.Vertex);
@@ -107,16 +110,23 @@ PlaceWeights PlaceFinder::Find(
   });
   PlaceWeights all;
   const Progress joining = stages.Next();
-  for (Index task = 0; task < tasks; ++task)
+  all.Offsets.resize(count + 1);
+  for (std::size_t i = 0; i < count; ++i)
   {
-    ReportStep(joining, static_cast<std::size_t>(task), static_cast<std::size_t>(tasks));
-    const PlaceWeights& own = found[task];
-    const std::size_t before = all.Vertices.size();
-    std::transform(own.Offsets.begin() + 1, own.Offsets.end(), std::back_inserter(all.Offsets),
-      [before](std::size_t offset) { return before + offset; });
-    all.Vertices.insert(all.Vertices.end(), own.Vertices.begin(), own.Vertices.end());
-    all.Weights.insert(all.Weights.end(), own.Weights.begin(), own.Weights.end());
-    found[task] = PlaceWeights();
+    const std::vector<std::size_t>& own = found[i / AtOnce].Offsets;
+    all.Offsets[order[i] + 1] = own[i % AtOnce + 1] - own[i % AtOnce];
+  }
+  std::partial_sum(all.Offsets.begin(), all.Offsets.end(), all.Offsets.begin());
+  all.Vertices.resize(all.Offsets.back());
+  all.Weights.resize(all.Offsets.back());
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    ReportStep(joining, i, count);
+    PlaceWeights& own = found[i / AtOnce];
+    const std::size_t from = own.Offsets[i % AtOnce], to = own.Offsets[i % AtOnce + 1];
+    const std::size_t at = all.Offsets[order[i]];
+    std::copy(own.Vertices.begin() + from, own.Vertices.begin() + to, all.Vertices.begin() + at);
+    std::copy(own.Weights.begin() + from, own.Weights.begin() + to, all.Weights.begin() + at);
   }
   return all;
 }

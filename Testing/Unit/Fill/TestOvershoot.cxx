@@ -270,7 +270,7 @@ TEST(Misties, MakeNoSpikes)
   {
     const Survey survey = ShipSurvey(seed, 60.0, true);
     const auto range = std::minmax_element(survey.Offsets.begin(), survey.Offsets.end());
-    const double room = 0.15 * (*range.second - *range.first);
+    const double room = 0.05 * (*range.second - *range.first);
     VisitNew(Filled(survey), [&](const Point2& p, double z) {
       const double offset = z - (2.0 * p.X - 3.0 * p.Y);
       EXPECT_GE(offset, *range.first - room) << seed << " at " << p.X << " " << p.Y;
