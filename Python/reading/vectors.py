@@ -45,7 +45,7 @@ def open_file(path):
     try:
         return gdal.OpenEx(path, gdal.OF_VECTOR | gdal.OF_VERBOSE_ERROR, [kind], settings)
     except RuntimeError as error:
-        raise FileError(f"{path}: cannot be read: {one_line(error)}") from None
+        raise FileError(f"{path}: is cut off or damaged: {one_line(error)}") from None
 
 
 def open_layer(path, data, wanted, as_lines):
@@ -116,7 +116,7 @@ class Layer:
             # Where this format is cut off, newer GDALs end without a word.
             announced = layer.GetFeatureCount() if kind == "FlatGeobuf" else 0
         except RuntimeError as error:
-            raise FileError(f"{path}: cannot be read: {one_line(error)}") from None
+            raise FileError(f"{path}: is cut off or damaged: {one_line(error)}") from None
         if announced > count:
             raise FileError(
                 f"{path}: is cut off or damaged: {announced:,} features are announced, "

@@ -186,7 +186,7 @@ class OfProgram(Program):
         self.write("lakes.txt", LAKES)
 
     def write(self, name, rings):
-        parts = ["\n".join("%r %r" % tuple(p) for p in [*ring, ring[0]]) for ring in rings]
+        parts = ["\n".join("%.17g %.17g" % tuple(p) for p in [*ring, ring[0]]) for ring in rings]
         return self.file(name, "\n\n".join(parts))
 
     def run_it(self, *options):

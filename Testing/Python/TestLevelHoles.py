@@ -61,7 +61,7 @@ class Filter(unittest.TestCase):
 class OfProgram(Program):
     def test_fills_chosen_lakes_level_and_reports_by_how_much(self):
         self.file("survey.xyz", "\n".join("%r %r %r" % tuple(row) for row in survey().tolist()))
-        parts = ["\n".join("%r %r" % tuple(p) for p in [*ring, ring[0]]) for ring in LAKES]
+        parts = ["\n".join("%.17g %.17g" % tuple(p) for p in [*ring, ring[0]]) for ring in LAKES]
         self.file("lakes.txt", "\n\n".join(parts))
         reports = []
         for more in ([], ["--pieces", "3", "--no-trim", "--open-edge-length", "0"]):
