@@ -55,7 +55,7 @@ set(es_kernel_Triangulate
   Triangulate)
 set(es_kernel_Constrain
   SegmentNetwork
-  SegmentCrossings
+  ConstraintCrossings
   CutLines
   NearLines
   Constrain)
@@ -94,7 +94,7 @@ set(es_kernel_Fill
   Patch
   Neighbours
   Overshoot
-  Crossings
+  Misties
   Tracks
   Heights
   LineRoughness

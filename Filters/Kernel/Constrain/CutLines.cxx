@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CutLines.h"
 
+#include "ConstraintCrossings.h"
 #include "Kernel/Messages/Messages.h"
-#include "SegmentCrossings.h"
 
 #include <algorithm>
 #include <array>

@@ -10,7 +10,7 @@
  *      (SegmentNetwork.h).
  *   2. Split segments at every point of a line and every input point that lies exactly on them;
  *      then split pieces that cross at a new vertex, the crossing rounded to the nearest doubles
- *      (SegmentCrossings.h). Rounding moves pieces slightly, so this is repeated until no pieces
+ *      (ConstraintCrossings.h). Rounding moves pieces slightly, so this is repeated until no pieces
  *      cross and no vertex is on a piece. It ends because, as in snap rounding [Hobby 1999;
  *      Halperin and Packer 2002], pieces that cross are bent to an existing vertex near both of
  *      them, if there is one. Pairs are found in a grid of cells (CellGrid.h).

@@ -66,7 +66,7 @@ struct LineVertex
 
 /**
  * Vertices, and the pieces of segments between them. Plain data: CutLines.cxx and
- * SegmentCrossings.cxx both work on it, in turn.
+ * ConstraintCrossings.cxx both work on it, in turn.
  */
 struct SegmentNetwork
 {

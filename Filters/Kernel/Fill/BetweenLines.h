@@ -17,7 +17,7 @@
  * about a gap are compressed, up to a quarter of it; so are those that leave the range of all, up
  * to 5 % of it (Overshoot.h). In trials, this changes no error.
  *
- * Misties. Through two lines that cross and disagree (Crossings.h) a plate would be steep, and go
+ * Misties. Through two lines that cross and disagree (Misties.h) a plate would be steep, and go
  * on so. Where lines do, half of the median square of a line's misties is taken for the variance of
  * its heights, in squares of the roughness that the spline then finds: by so large nuggets it comes
  * near lines only, and goes between them.

@@ -21,9 +21,9 @@
 #ifndef elevation_Fill_Tracks_h
 #define elevation_Fill_Tracks_h
 
-#include "Crossings.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "Misties.h"
 
 #include <vector>
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Filled elevations do not overshoot, and lines that disagree make no spikes.
-#include "Kernel/Fill/Crossings.h"
 #include "Kernel/Fill/Fill.h"
+#include "Kernel/Fill/Misties.h"
 #include "Kernel/Fill/Overshoot.h"
 #include "Kernel/Fill/Spline.h"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SegmentCrossings.h"
+#include "ConstraintCrossings.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Crossings.h"
+#include "Misties.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,8 +10,8 @@
  *
  * Cost: n log n in the crossings, and the pieces near them.
  */
-#ifndef elevation_Constrain_SegmentCrossings_h
-#define elevation_Constrain_SegmentCrossings_h
+#ifndef elevation_Constrain_ConstraintCrossings_h
+#define elevation_Constrain_ConstraintCrossings_h
 
 #include "SegmentNetwork.h"
 

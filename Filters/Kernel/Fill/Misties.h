@@ -21,8 +21,8 @@
  *
  * Cost: linear.
  */
-#ifndef elevation_Fill_Crossings_h
-#define elevation_Fill_Crossings_h
+#ifndef elevation_Fill_Misties_h
+#define elevation_Fill_Misties_h
 
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
