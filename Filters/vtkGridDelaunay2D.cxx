@@ -56,6 +56,10 @@ DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter)
   options.Strategy = static_cast<SearchStrategy>(filter->GetSearchStrategy());
   options.MaximumEdgeLength = filter->GetMaximumEdgeLength();
   options.MaximumElevationError = filter->GetMaximumElevationError();
+  // No cloud has more points than an Index can hold; a negative number is refused as such.
+  options.MostVertices = static_cast<Index>(std::max<vtkIdType>(
+    std::min<vtkIdType>(filter->GetMaximumNumberOfPoints(), std::numeric_limits<Index>::max()),
+    std::numeric_limits<Index>::min()));
   options.SimplifyConstraints = filter->GetSimplifyConstraints();
   options.Edges =
     filter->GetDataDependentEdges() ? EdgeCriterion::DataDependent : EdgeCriterion::Delaunay;
@@ -267,8 +271,9 @@ elevation::ConstrainedTriangulation TriangulateBlock(
       Drape(draped, points.View, options.NumberOfThreads, ofDraping, block.Warnings, output)));
   }
   elevation::AddReport(made, stages.Next(), output->GetFieldData());
-  if (options.MaximumElevationError > 0.0)
+  if (options.IsSimplified())
   {
+    elevation::WarnOfNumber(options, made.Result, block.Warnings);
     elevation::AddSimplification(made.Result, output->GetFieldData());
   }
   elevation::Report(progress, 1.0);
@@ -394,12 +399,14 @@ int vtkGridDelaunay2D::RequestData(
   };
   // A block on several ranks: its surface stays spread, unless what is asked for needs all points.
   call.Spread = [&](elevation::Block& block, const elevation::Ranks& ranks) {
-    // Both need the whole surface: the least set of points for an error, and the triangles along a
-    // line.
+    // All need the whole surface: the least set of points for an error, or the best one of some
+    // number, and the triangles along a line.
     const bool isDraped = this->DrapeConstraints && block.Second;
-    if (options.MaximumElevationError != 0.0 || isDraped)
+    const bool hasNumber = options.MostVertices != 0;
+    if (options.MaximumElevationError != 0.0 || hasNumber || isDraped)
     {
       block.WhyGathered = isDraped ? elevation::MakeMessage<elevation::sentences::DrapingNeedsAll>()
+        : hasNumber                ? elevation::MakeMessage<elevation::sentences::NumberNeedsAll>()
                                    : elevation::MakeMessage<elevation::sentences::ErrorNeedsAll>();
       return false;
     }
@@ -433,6 +440,7 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SearchStrategy: " << this->GetSearchStrategyAsString() << "\n";
   os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
   os << indent << "MaximumElevationError: " << this->MaximumElevationError << "\n";
+  os << indent << "MaximumNumberOfPoints: " << this->MaximumNumberOfPoints << "\n";
   os << indent << "DataDependentEdges: " << (this->DataDependentEdges ? "On" : "Off") << "\n";
   os << indent << "SimplifyConstraints: " << (this->SimplifyConstraints ? "On" : "Off") << "\n";
   os << indent << "DrapeConstraints: " << (this->DrapeConstraints ? "On" : "Off") << "\n";

@@ -28,6 +28,7 @@ from .options import (
 from .names import PROGRAM, written_for
 from .pieces import Pieces
 from .planes import in_plane
+from .properties import is_simplified
 from .projecting import project
 from .ranks import agreed, by_first, together, total
 from .reconstruction import check_spacing, least_reach, run_chain
@@ -215,7 +216,7 @@ class Run:
     def reconstruct(self, cloud, lines):
         options = self.options
         ranks = self.ranks if total(self.ranks, not can_be_scattered(cloud.points)) == 0 else None
-        if options.properties.get("maximum_elevation_error"):
+        if is_simplified(options.properties):
             ranks = None  # points are chosen on one rank
         if not self.is_first and not ranks:
             return None  # the first does it alone

@@ -48,9 +48,10 @@ def make_report(result):
     unused = list_unused(ranks, reasons, ids)
     notes, limits = result.decided + result.notes, limits_of(ranks, result.surface)
     report = facts_of(result, result.number_of_points, notes, limits, unused)
-    if delaunay.GetMaximumElevationError():
+    if delaunay.GetMaximumElevationError() or delaunay.GetMaximumNumberOfPoints():
         report["simplified"] = {
             "maximum_elevation_error": delaunay.GetMaximumElevationError(),
+            "maximum_number_of_points": delaunay.GetMaximumNumberOfPoints(),
             "largest_elevation_error": delaunay.GetLargestElevationError(),
             "points_kept": int(numpy.count_nonzero(reasons == 0)),
             "points_redundant": int(numpy.count_nonzero(reasons == WITHIN_ERROR)),

@@ -294,6 +294,10 @@ void ReconstructParts::Check() const
   {
     throw MakeError<sentences::ErrorNotInPieces>();
   }
+  if (options.MostVertices > 0)
+  {
+    throw MakeError<sentences::NumberNotInPieces>();
+  }
   if (this->Constraints && this->Set.DrapeConstraints)
   {
     throw MakeError<sentences::ConstraintsNotInPieces>();

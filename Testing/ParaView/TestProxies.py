@@ -16,6 +16,7 @@ OTHER_VALUES = {
         "SearchStrategy": "Compactness",
         "MaximumEdgeLength": 2.5,
         "MaximumElevationError": 0.5,
+        "MaximumNumberOfPoints": 500,
         "DataDependentEdges": 1,
         "SimplifyConstraints": 1,
         "DrapeConstraints": 1,

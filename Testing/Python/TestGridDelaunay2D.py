@@ -47,6 +47,7 @@ class TestGridDelaunay2D(unittest.TestCase):
         self.assertEqual(delaunay.GetSearchStrategyAsString(), "VoxelTraversal")
         self.assertEqual(delaunay.GetMaximumEdgeLength(), 0.0)
         self.assertEqual(delaunay.GetMaximumElevationError(), 0.0)
+        self.assertEqual(delaunay.GetMaximumNumberOfPoints(), 0)
         self.assertFalse(delaunay.GetSimplifyConstraints())
         self.assertFalse(delaunay.GetDataDependentEdges())
         self.assertEqual(delaunay.GetDuplicatePolicy(), vtkGridDelaunay2D.KEEP_FIRST)

@@ -251,6 +251,15 @@ def _(test, _there, here):
     test.assertLessEqual(lengths(here.surface).max(), 6)
 
 
+@checks("PyVista", "points.delaunay_2d().decimate(0.9)")
+def _(test, there, here):
+    test.assertLess(abs(area(here.surface) / HULL - 1), 1e-9)
+    test.assertLessEqual(here.surface.GetNumberOfPoints(), 150)
+    test.assertTrue(0 < here.report["simplified"]["largest_elevation_error"] < 1)
+    if there is not None:
+        test.assertLess(there.GetNumberOfPoints(), 300)
+
+
 @checks("PyVista", "points.delaunay_2d(tol=0.001)")
 @checks("PyVista", "points.delaunay_2d(offset=10, bound=False)")
 def _(test, _there, here):

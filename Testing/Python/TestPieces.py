@@ -262,6 +262,7 @@ class InPieces(WithFilter):
         for name, value, words in (
             ("MaximumEdgeLength", numpy.nan, "MaximumEdgeLength is nan"),
             ("MaximumElevationError", 1.0, "in memory, not for pieces"),
+            ("MaximumNumberOfPoints", 9, "MaximumNumberOfPoints is for points in memory, not for pieces"),
             ("DrapeConstraints", True, "Constraints with DrapeConstraints are for points in memory"),
         ):
             source = self.source(points, SourceData=make_lines([star((4e5, 4e5), 9.0)]), **{name: value})

@@ -58,6 +58,8 @@ ELEVATION_SENTENCE(OnOneRank,
 /** @name Why: {reason} of OnOneRank @{ */
 ELEVATION_SENTENCE(ErrorNeedsAll,
   "{property:MaximumElevationError} chooses few points out of all; 0 leaves the surface spread.");
+ELEVATION_SENTENCE(NumberNeedsAll,
+  "{property:MaximumNumberOfPoints} chooses few points out of all; 0 leaves the surface spread.");
 ELEVATION_SENTENCE(DrapingNeedsAll,
   "{property:DrapeConstraints} lays constraints on the whole surface; constraints with elevations "
   "of their own leave it spread.");
@@ -124,8 +126,20 @@ ELEVATION_SENTENCE(LatticeNotUsed,
   "triangulated as they are.");
 ELEVATION_SENTENCE(InvalidElevationError,
   "{property:MaximumElevationError} is {value}; it must be 0 (off) or a distance in z.");
+ELEVATION_SENTENCE(InvalidNumberOfPoints,
+  "{property:MaximumNumberOfPoints} is {value}; it must be 0 (off) or a number of points.");
+ELEVATION_SENTENCE(TooFewPointsAllowed,
+  "{property:MaximumNumberOfPoints} is {value}, but the surface needs {least} points: {hull} at the "
+  "corners of the convex hull, and {lines} more of lines that have to be edges, constraints or the "
+  "outline.");
+ELEVATION_SENTENCE(ErrorNotReached,
+  "{property:MaximumNumberOfPoints}, {most}, is reached before {property:MaximumElevationError}, "
+  "{error}: points lie up to {largest} above or below the surface.");
 ELEVATION_SENTENCE(TwoLimits,
   "{property:MaximumEdgeLength} and {property:MaximumElevationError} are both set, but fewer "
+  "points make longer edges: set one of them to 0, and trim the surface instead.");
+ELEVATION_SENTENCE(LengthAndNumber,
+  "{property:MaximumEdgeLength} and {property:MaximumNumberOfPoints} are both set, but fewer "
   "points make longer edges: set one of them to 0, and trim the surface instead.");
 /** @} */
 
@@ -250,6 +264,8 @@ ELEVATION_SENTENCE(TooFewPiecesToFill,
   "{property:MaximumHoleSize}.");
 ELEVATION_SENTENCE(
   ErrorNotInPieces, "{property:MaximumElevationError} is for points in memory, not for pieces.");
+ELEVATION_SENTENCE(
+  NumberNotInPieces, "{property:MaximumNumberOfPoints} is for points in memory, not for pieces.");
 ELEVATION_SENTENCE(ConstraintsNotInPieces,
   "Constraints with {property:DrapeConstraints} are for points in memory, not for pieces.");
 ELEVATION_SENTENCE(UnusedPointsInPieces,
