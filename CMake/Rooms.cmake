@@ -150,6 +150,7 @@ set(es_Adapt
   PointsPrecision
   ReportMessages
   Requests
+  SoftLines
   SurfaceQuery
   TrimmedSurface
   UsedPoints)

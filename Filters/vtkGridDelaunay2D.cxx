@@ -116,13 +116,20 @@ elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
     return unconstrained;
   }
   elevation::CheckPointArrays(source, "The constraints'");
-  Stages stages(progress, { 2, 98 });
+  const double without = elevation::HasPointsWithoutZ(source) ? 40.0 : 0.0;
+  Stages stages(progress, { 2.0, without, 98.0 - without });
   elevation::WarnOfLattice(options, warnings);
   const elevation::DataSetPoints own = elevation::ViewPoints(source);
-  const ConstraintLines lines =
+  ConstraintLines lines =
     LinesOf(source, own, points, options.NumberOfThreads, stages.Next(), warnings);
+  elevation::Buffer<double> elevated;
+  const vtkIdType count =
+    elevation::TakeElevations(points, options, stages.Next(), lines, elevated);
   options.Monitor = stages.Next();
-  return elevation::TriangulateConstrained(points, lines, options);
+  elevation::ConstrainedTriangulation made =
+    elevation::TriangulateConstrained(points, lines, options);
+  made.NumberOfPointsWithoutZ = count;
+  return made;
 }
 
 /** Of the vertices of a triangulation, how many have a triangle. */
@@ -383,7 +390,7 @@ int vtkGridDelaunay2D::RequestData(
   call.ListsUnused = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
     &this->NumberOfRedundantPoints, &this->NumberOfConstraintCrossings, &this->NumberOfAddedPoints,
-    &this->NumberOfLattices };
+    &this->NumberOfPointsWithoutZ, &this->NumberOfLattices };
   // Over blocks and ranks the largest error counts, all else is added up.
   call.Maxima = { &this->LargestElevationError };
   const elevation::DelaunayOptions options = elevation::OptionsOf(this);
@@ -395,19 +402,23 @@ int vtkGridDelaunay2D::RequestData(
       std::max(this->LargestElevationError, made.Result.LargestElevationError);
     this->NumberOfConstraintCrossings += static_cast<vtkIdType>(made.NumberOfCrossings);
     this->NumberOfAddedPoints += static_cast<vtkIdType>(made.Added.size());
+    this->NumberOfPointsWithoutZ += static_cast<vtkIdType>(made.NumberOfPointsWithoutZ);
     this->NumberOfLattices += made.Result.LatticeFound ? 1 : 0;
   };
   // A block on several ranks: its surface stays spread, unless what is asked for needs all points.
   call.Spread = [&](elevation::Block& block, const elevation::Ranks& ranks) {
     // All need the whole surface: the least set of points for an error, or the best one of some
-    // number, and the triangles along a line.
+    // number; the triangles along a line, or at its points.
     const bool isDraped = this->DrapeConstraints && block.Second;
-    const bool hasNumber = options.MostVertices != 0;
-    if (options.MaximumElevationError != 0.0 || hasNumber || isDraped)
+    const bool hasNumber = options.MostVertices != 0, hasError = options.MaximumElevationError != 0.0;
+    if (hasError || hasNumber || isDraped ||
+      (block.Second && elevation::HasPointsWithoutZ(block.Second)))
     {
-      block.WhyGathered = isDraped ? elevation::MakeMessage<elevation::sentences::DrapingNeedsAll>()
-        : hasNumber                ? elevation::MakeMessage<elevation::sentences::NumberNeedsAll>()
-                                   : elevation::MakeMessage<elevation::sentences::ErrorNeedsAll>();
+      namespace why = elevation::sentences;
+      block.WhyGathered = isDraped ? elevation::MakeMessage<why::DrapingNeedsAll>()
+        : hasNumber                ? elevation::MakeMessage<why::NumberNeedsAll>()
+        : hasError                 ? elevation::MakeMessage<why::ErrorNeedsAll>()
+                                   : elevation::MakeMessage<why::PointsWithoutZNeedAll>();
       return false;
     }
     addCounts(TriangulateSpread(ranks, options, block));
@@ -464,6 +475,7 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LargestElevationError: " << this->LargestElevationError << "\n";
   os << indent << "NumberOfConstraintCrossings: " << this->NumberOfConstraintCrossings << "\n";
   os << indent << "NumberOfAddedPoints: " << this->NumberOfAddedPoints << "\n";
+  os << indent << "NumberOfPointsWithoutZ: " << this->NumberOfPointsWithoutZ << "\n";
   os << indent << "Messages: " << this->Messages->GetNumberOfTuples() << " rows\n";
 }
 VTK_ABI_NAMESPACE_END

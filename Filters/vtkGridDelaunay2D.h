@@ -10,6 +10,7 @@
  * - 0: a vtkPointSet (float or double), whose cells are ignored.
  * - 1, optional (SetSourceConnection, SetSourceData): constraints, a vtkPolyData whose lines and
  *   polygon edges become edges of the result: breaklines, faults, outlines. Nothing is cut out.
+ *   A point of them whose z is NaN takes the elevation of the surface without constraints.
  *
  * @par Output:
  * A vtkPolyData with the input's points in the same order (shared, never written), all point data
@@ -19,8 +20,8 @@
  * - UnusedPointReasons (vtkUnsignedCharArray): for each of them, 1 = duplicate (another point with
  *   the same x,y is the vertex), 2 = not finite (x, y or z), 3 = left out
  *   within LargestElevationError, 4 = hidden (HIDDENPOINT in vtkGhostType, of blanked nodes);
- * - NumberOfDuplicatePoints, NumberOfNonFinitePoints, NumberOfConstraintCrossings and
- *   NumberOfAddedPoints (vtkIdTypeArray, one value); with a MaximumElevationError or
+ * - NumberOfDuplicatePoints, NumberOfNonFinitePoints, NumberOfConstraintCrossings,
+ *   NumberOfAddedPoints and NumberOfPointsWithoutZ (vtkIdTypeArray, one value); with a MaximumElevationError or
  *   MaximumNumberOfPoints also NumberOfRedundantPoints (vtkIdTypeArray) and LargestElevationError
  *   (vtkDoubleArray);
  * - Lattice (vtkDoubleArray, one tuple of 6), if one was found: x,y of the lowest occupied node, of
@@ -322,6 +323,9 @@ public:
   /** After Update(): points that constraints have added behind those of the input. */
   vtkGetMacro(NumberOfAddedPoints, vtkIdType);
 
+  /** After Update(): points of constraints without z, which have that of the surface. */
+  vtkGetMacro(NumberOfPointsWithoutZ, vtkIdType);
+
   ///@{
   /**
    * The processes that make one surface together where each asks for its piece of as many pieces as
@@ -349,9 +353,10 @@ public:
    * InvalidEdgeLength, InvalidElevationError, InvalidNumberOfPoints, TooFewPointsAllowed,
    * ErrorNotReached, InvalidLatticeTolerance, InvalidThreads, InvalidPrecision,
    * OriginalIdsReplaced, FoldsInSingle, TwoLimits, LengthAndNumber, LatticeNotUsed, NoLines,
-   * StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, NonFinitePointOfLine, LinesElsewhere,
+   * StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, NonFinitePointOfLine,
+   * NoSurfaceForPointOfLine, LinesElsewhere,
    * LinesFarOutside, PolygonsAreLines, LinesNotDraped, LinesNotSettled, ArraysLeftOut, OnOneRank
-   * (with a reason: ErrorNeedsAll, NumberNeedsAll, DrapingNeedsAll), RankWaits, NotEnoughMemory,
+   * (with a reason: ErrorNeedsAll, NumberNeedsAll, DrapingNeedsAll, PointsWithoutZNeedAll), RankWaits, NotEnoughMemory,
    * Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
@@ -386,6 +391,7 @@ protected:
   double LargestElevationError = 0.0;
   vtkIdType NumberOfConstraintCrossings = 0;
   vtkIdType NumberOfAddedPoints = 0;
+  vtkIdType NumberOfPointsWithoutZ = 0;
   vtkMultiProcessController* Controller = nullptr;
 
 private:

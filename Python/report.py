@@ -59,6 +59,7 @@ def make_report(result):
     if result.faults_name:
         with_faults = result.outlined[0] if result.outlined else delaunay
         report["faults"] = fault_report(result.faults_name, with_faults)
+        report["faults"]["points_without_z"] = with_faults.GetNumberOfPointsWithoutZ()
     if trim:
         report["trim"] = trimming_report(
             trim.GetNumberOfOutwardTriangles(),
@@ -280,6 +281,8 @@ def triangle_lines(report, line):
             f"{faults['file']}: {counted(faults['added_points'], 'point')} added, "
             f"{counted(faults['crossings'], 'crossing')}",
         )
+        if faults.get("points_without_z"):  # none in pieces
+            line("", f"{counted(faults['points_without_z'], 'point')} without z, on the surface of the points")
     if "trim" in report:
         trim = report["trim"]
         rings = trim["boundary_rings"]

@@ -106,6 +106,7 @@ void AddReport(
   add("NumberOfNonFinitePoints", triangulation.NumberOfNotFinite);
   add("NumberOfConstraintCrossings", constrained.NumberOfCrossings);
   add("NumberOfAddedPoints", constrained.Added.size());
+  add("NumberOfPointsWithoutZ", constrained.NumberOfPointsWithoutZ);
   for (const char* const name : { "Lattice", "NumberOfRedundantPoints", "LargestElevationError" })
   {
     fieldData->RemoveArray(name); // passed from the input, of other points

@@ -302,6 +302,10 @@ void ReconstructParts::Check() const
   {
     throw MakeError<sentences::ConstraintsNotInPieces>();
   }
+  if (this->Constraints && HasPointsWithoutZ(this->Constraints))
+  {
+    throw MakeError<sentences::PointsWithoutZNotInPieces>();
+  }
   if (this->Set.RemoveUnusedPoints)
   {
     throw MakeError<sentences::UnusedPointsInPieces>();

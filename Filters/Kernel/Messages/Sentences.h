@@ -63,6 +63,9 @@ ELEVATION_SENTENCE(NumberNeedsAll,
 ELEVATION_SENTENCE(DrapingNeedsAll,
   "{property:DrapeConstraints} lays constraints on the whole surface; constraints with elevations "
   "of their own leave it spread.");
+ELEVATION_SENTENCE(PointsWithoutZNeedAll,
+  "Points of constraints without z take it from the whole surface; constraints with elevations of "
+  "their own leave it spread.");
 ELEVATION_SENTENCE(NormalsNeedAll,
   "{property:OutwardTest} InwardNormal goes along the whole boundary; Exact leaves the surface "
   "spread.");
@@ -80,6 +83,10 @@ ELEVATION_SENTENCE(TooManyPointsInLines, "The lines of the {input} have more tha
 ELEVATION_SENTENCE(NoSuchPointOfLine, "Point {point} of the {owner} cell {cell} does not exist.");
 ELEVATION_SENTENCE(NonFinitePointOfLine,
   "Point {point} of the {owner} cell {cell} has a coordinate that is not finite.");
+ELEVATION_SENTENCE(NoSurfaceForPointOfLine,
+  "Point {point} of the {owner} cell {cell}, at {x}, {y}, has no z (NaN), and lies outside of the "
+  "surface of the points, from which it would take one; in all {count} do. Give it a z, or drape "
+  "the lines, which leaves out what lies outside.");
 ELEVATION_SENTENCE(PolygonsAreLines,
   "Polygons of the constraints ({count}) are taken as lines: their edges become edges of the "
   "surface, and nothing is cut away. To cut along polygons, give them to vtkTrimOutwardTriangles "
@@ -268,6 +275,9 @@ ELEVATION_SENTENCE(
   NumberNotInPieces, "{property:MaximumNumberOfPoints} is for points in memory, not for pieces.");
 ELEVATION_SENTENCE(ConstraintsNotInPieces,
   "Constraints with {property:DrapeConstraints} are for points in memory, not for pieces.");
+ELEVATION_SENTENCE(PointsWithoutZNotInPieces,
+  "Constraints with points without z (NaN), which would take it from the surface, are for points in "
+  "memory, not for pieces.");
 ELEVATION_SENTENCE(UnusedPointsInPieces,
   "{property:RemoveUnusedPoints} is for a surface in memory; pieces keep all points.");
 ELEVATION_SENTENCE(PrecisionInPieces,
