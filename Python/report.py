@@ -58,8 +58,8 @@ def make_report(result):
         }
     if result.faults_name:
         with_faults = result.outlined[0] if result.outlined else delaunay
-        report["faults"] = fault_report(result.faults_name, with_faults)
-        report["faults"]["points_without_z"] = with_faults.GetNumberOfPointsWithoutZ()
+        without = with_faults.GetNumberOfPointsWithoutZ()
+        report["faults"] = fault_report(result.faults_name, with_faults, without)
     if trim:
         report["trim"] = trimming_report(
             trim.GetNumberOfOutwardTriangles(),
@@ -107,11 +107,12 @@ def facts_of(result, points, notes, limits, unused):
     return report
 
 
-def fault_report(name, delaunay):
-    """The part of the report on faults."""
+def fault_report(name, delaunay, points_without_z=0):
+    """The part of the report on faults. None are without z in pieces."""
     return {
         "file": name,
         "added_points": delaunay.GetNumberOfAddedPoints(),
+        "points_without_z": points_without_z,
         "crossings": delaunay.GetNumberOfConstraintCrossings(),
     }
 
@@ -281,7 +282,7 @@ def triangle_lines(report, line):
             f"{faults['file']}: {counted(faults['added_points'], 'point')} added, "
             f"{counted(faults['crossings'], 'crossing')}",
         )
-        if faults.get("points_without_z"):  # none in pieces
+        if faults["points_without_z"]:
             line("", f"{counted(faults['points_without_z'], 'point')} without z, on the surface of the points")
     if "trim" in report:
         trim = report["trim"]

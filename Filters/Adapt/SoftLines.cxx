@@ -12,6 +12,8 @@
 #include "Kernel/Triangulate/Triangulate.h"
 #include "MeshConversion.h"
 
+#include "vtkNew.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 
 #include <algorithm>
@@ -152,6 +154,26 @@ bool HasPointsWithoutZ(vtkPolyData* lines)
     });
   });
   return has;
+}
+
+vtkSmartPointer<vtkPolyData> WithAnyZ(vtkPolyData* lines)
+{
+  if (!HasPointsWithoutZ(lines))
+  {
+    return lines;
+  }
+  auto level = vtkSmartPointer<vtkPolyData>::New();
+  level->ShallowCopy(lines);
+  vtkNew<vtkPoints> points;
+  points->DeepCopy(lines->GetPoints());
+  for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)
+  {
+    double p[3];
+    points->GetPoint(id, p);
+    points->SetPoint(id, p[0], p[1], std::isnan(p[2]) ? 0.0 : p[2]);
+  }
+  level->SetPoints(points);
+  return level;
 }
 
 vtkIdType TakeElevations(const PointView& points, const DelaunayOptions& options,

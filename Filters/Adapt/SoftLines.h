@@ -15,6 +15,7 @@
 #include "Kernel/Messages/Messages.h"
 #include "VTKClasses.h"
 
+#include "vtkSmartPointer.h"
 #include "vtkType.h"
 
 namespace elevation
@@ -22,6 +23,9 @@ namespace elevation
 
 /** Whether any point of lines has x and y, but no z. */
 bool HasPointsWithoutZ(vtkPolyData* lines);
+
+/** Lines to drape, whose z does not count: those without z get 0. The lines themselves if all have one. */
+vtkSmartPointer<vtkPolyData> WithAnyZ(vtkPolyData* lines);
 
 /**
  * Gives elevations to the points of lines that have none: at the x,y of a line's point that has one,

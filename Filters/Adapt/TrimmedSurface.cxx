@@ -88,7 +88,8 @@ vtkIdType SplitSurface(
   vtkNew<vtkPolyData> before;
   before->ShallowCopy(surface);
   const DataSetTriangles triangles = ViewTriangles(before);
-  const BoundaryLines lines = ToBoundaryLines(constraints, stages.Next(), "constraints");
+  const vtkSmartPointer<vtkPolyData> elevated = WithAnyZ(constraints);
+  const BoundaryLines lines = ToBoundaryLines(elevated, stages.Next(), "constraints");
   TrimOptions options;
   options.ReturnParents = false;
   options.NumberOfThreads = threads;

@@ -268,6 +268,7 @@ class SoManyPoints(unittest.TestCase):
     def test_the_surface_has_at_most_so_many_points_within_the_error_that_the_report_has(self):
         points = cloud()
         errors = []
+        spacing = spacing_of(reconstruct(points, fill=False).boundary, None)
         for most in (150, 600):
             for boundary in (None, BOUNDARY):
                 result = reconstruct(points, boundary=boundary, fill=False, maximum_number_of_points=most)
@@ -275,7 +276,7 @@ class SoManyPoints(unittest.TestCase):
                 self.assertLessEqual(result.surface.GetNumberOfPoints(), most)
                 self.assertEqual((few["maximum_number_of_points"], few["maximum_elevation_error"]), (most, 0.0))
                 left = points[result.reasons == WITHIN_ERROR]
-                reach = 2 * ON_OUTLINE
+                reach = 2 * ON_OUTLINE * spacing
                 largest = few["largest_elevation_error"]
                 self.assertLessEqual(residuals(result, left, reach).max(), largest + reach)
                 errors.append(largest)
@@ -303,7 +304,7 @@ class SoManyPoints(unittest.TestCase):
         places = result.to_numpy()[0]
         ids = [int(numpy.flatnonzero((places == row).all(axis=1))[0]) for row in FAULT]
         self.assertEqual(set(zip(ids[:-1], ids[1:])) - edges(result), set())
-        with self.assertRaisesRegex(ElevationSurfaceError, r"of\w*points is 30, but the surface needs \d+ points: "
+        with self.assertRaisesRegex(ElevationSurfaceError, r"MaximumNumberOfPoints is 30, but the surface needs \d+ points: "
                                     r"\d+ at the corners of the convex hull, and \d+ more of lines"):
             reconstruct(cloud(), faults=FAULT, fill=False, maximum_number_of_points=30)
 
@@ -311,12 +312,12 @@ class SoManyPoints(unittest.TestCase):
         points, few = cloud(), {"trim": False, "fill": False}
         by_error = reconstruct(points, **few, maximum_elevation_error=ERROR, maximum_number_of_points=10**6)
         self.assertLessEqual(by_error.report["simplified"]["largest_elevation_error"], ERROR)
-        with self.assertWarnsRegex(ElevationSurfaceWarning, "100, is reached before .*, 0.2: points lie up to"):
+        with self.assertWarnsRegex(ElevationSurfaceWarning, "60, is reached before .*, 0.2: points lie up to"):
             by_number = reconstruct(
-                points, **few, maximum_elevation_error=ERROR, maximum_number_of_points=100)
+                points, **few, maximum_elevation_error=ERROR, maximum_number_of_points=60)
         self.assertGreater(by_number.report["simplified"]["largest_elevation_error"], ERROR)
         with self.assertRaisesRegex(ElevationSurfaceError, "is reached before"):
-            reconstruct(points, **few, maximum_elevation_error=ERROR, maximum_number_of_points=100, strict=True)
+            reconstruct(points, **few, maximum_elevation_error=ERROR, maximum_number_of_points=60, strict=True)
 
     def test_numbers_that_are_none_raise(self):
         for value in (-1, 2.5, "many", float("nan"), float("inf")):
@@ -371,7 +372,6 @@ class FewPointsInProgram(Program):
         for arguments, words in (
             (("--maximum-edge-length", "5"), "--maximum-edge-length and --maximum-elevation-error"),
             (("--maximum-elevation-error", "0", "--data-dependent-edges"), "edges needs --max"),
-            (("--maximum-number-of-points", "9", "--maximum-edge-length", "5"), "--maximum-number-of-points"),
             (("--pieces", "2", "--no-trim", "--no-fill"), "--maximum-elevation-error needs"),
         ):
             done = self.call(*few, *arguments)

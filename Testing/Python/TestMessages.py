@@ -122,8 +122,10 @@ class Data(unittest.TestCase):
              {"input": "constraints"}),
             (triangulated(grid(3), make_lines([numpy.array([[8.0, 8, 0], [9, 9, 0]])])),
              "LinesElsewhere", {"input": "constraints"}),
-            (triangulated(grid(3), make_lines([numpy.array([[0.0, 0, 0], [1, 1, numpy.nan]])])),
+            (triangulated(grid(3), make_lines([numpy.array([[0.0, 0, 0], [1, 1, numpy.inf]])])),
              "NonFinitePointOfLine", {"point": "1", "cell": "0"}),
+            (triangulated(grid(3), make_lines([numpy.array([[0.0, 0, 0], [1, 7.5, numpy.nan]])])),
+             "NoSurfaceForPointOfLine", {"point": "1", "cell": "0", "x": "1", "y": "7.5", "count": "1"}),
         ):
             errors, warnings = run(message)
             self.assertEqual((len(errors), warnings), (1, []), code)
@@ -155,7 +157,7 @@ class Data(unittest.TestCase):
 
     def test_an_error_that_a_number_of_points_does_not_allow_is_a_warning(self):
         errors, (warning,) = run(triangulated(grid(9), MaximumNumberOfPoints=6, MaximumElevationError=1e-9))
-        self.check(warning, "ErrorNotReached", most="6", error="1e-09")
+        self.check(warning, "ErrorNotReached", most="6", limit="1e-09")
         self.assertEqual(errors, [])
         self.assertGreater(float(warning.values["largest"]), 1e-9)
 

@@ -44,6 +44,7 @@ constraints                       |                            | breaklines     
 constraints on one rank only      |                            | breaklines + on one          | s  s  s  s  s  s  s
 constraints, values of points     |                            | breaklines + strings + integers | s  s  s  s  s  s  s
 constraints draped                | DrapeConstraints=True      | breaklines                   | s  s  g  g  r  r  r
+constraints, some points without z|                            | soft lines                   | s  s  g  g  r  r  r
 duplicates, keep the first        | DuplicatePolicy=0          | duplicates                   | s  s  s  s  s  s  s
 duplicates, keep the last         | DuplicatePolicy=1          | duplicates                   | s  s  s  s  s  s  s
 duplicates, keep the lowest       | DuplicatePolicy=2          | duplicates                   | s  s  s  s  s  s  s

@@ -84,9 +84,9 @@ ELEVATION_SENTENCE(NoSuchPointOfLine, "Point {point} of the {owner} cell {cell} 
 ELEVATION_SENTENCE(NonFinitePointOfLine,
   "Point {point} of the {owner} cell {cell} has a coordinate that is not finite.");
 ELEVATION_SENTENCE(NoSurfaceForPointOfLine,
-  "Point {point} of the {owner} cell {cell}, at {x}, {y}, has no z (NaN), and lies outside of the "
-  "surface of the points, from which it would take one; in all {count} do. Give it a z, or drape "
-  "the lines, which leaves out what lies outside.");
+  "Point {point} of the {owner} cell {cell}, at {x}, {y}, has no z (NaN) and lies outside of the "
+  "surface of the points, from which it would take one (such points: {count}). Give it a z, or "
+  "drape the lines, which leaves out what lies outside.");
 ELEVATION_SENTENCE(PolygonsAreLines,
   "Polygons of the constraints ({count}) are taken as lines: their edges become edges of the "
   "surface, and nothing is cut away. To cut along polygons, give them to vtkTrimOutwardTriangles "
@@ -141,7 +141,7 @@ ELEVATION_SENTENCE(TooFewPointsAllowed,
   "outline.");
 ELEVATION_SENTENCE(ErrorNotReached,
   "{property:MaximumNumberOfPoints}, {most}, is reached before {property:MaximumElevationError}, "
-  "{error}: points lie up to {largest} above or below the surface.");
+  "{limit}: points lie up to {largest} above or below the surface.");
 ELEVATION_SENTENCE(TwoLimits,
   "{property:MaximumEdgeLength} and {property:MaximumElevationError} are both set, but fewer "
   "points make longer edges: set one of them to 0, and trim the surface instead.");

@@ -89,7 +89,15 @@ TEST(MostVertices, AreThoseThatWorstFirstReachesTheSmallestErrorWith)
   int fewer = 0;
   for (const int kind : { 0, 1, 4, 7 })
   {
-    const Cloud cloud = CloudOf(kind, 1200, random);
+    Cloud cloud = CloudOf(kind, 1200, random);
+    if (kind == 1) // a lattice whose nodes are its points to the last bit, so that distances are the same
+    {
+      cloud = Cloud();
+      for (int i = 0; i < 1200; ++i)
+      {
+        cloud.Add(i % 40, i / 40, Terrain(i % 40 / 40.0, i / 40 / 30.0));
+      }
+    }
     const Triangulation corners = Triangulate(cloud.View(), WithError(1e9));
     for (const Index most : { 40, 90 })
     {
@@ -97,8 +105,7 @@ TEST(MostVertices, AreThoseThatWorstFirstReachesTheSmallestErrorWith)
       const auto [best, least] = BestByWorstFirst(
         cloud, ChosenOf(cloud, corners), static_cast<std::size_t>(most), PlainOf(made));
       EXPECT_EQ(ChosenOf(cloud, made), best) << kind << ", " << most;
-      // On a lattice it is measured by rounded coordinates.
-      EXPECT_NEAR(made.LargestElevationError, least, kind == 1 ? 0.05 : 1e-6);
+      EXPECT_NEAR(made.LargestElevationError, least, 1e-6);
       fewer += best.size() < static_cast<std::size_t>(most) ? 1 : 0;
     }
   }
@@ -108,7 +115,7 @@ TEST(MostVertices, AreThoseThatWorstFirstReachesTheSmallestErrorWith)
 TEST(MostVertices, DoNotDependOnOrderAndThreads)
 {
   std::mt19937_64 random(3);
-  for (const int kind : { 0, 1, 2, 3, 4, 6, 7 })
+  for (const int kind : { 0, 1, 2, 3, 4, 7 }) // others have thousands of corners, or duplicates
   {
     const Cloud cloud = CloudOf(kind, 60000, random);
     DelaunayOptions options = WithNumber(2500);
