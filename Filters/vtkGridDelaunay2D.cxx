@@ -414,11 +414,11 @@ int vtkGridDelaunay2D::RequestData(
     if (hasError || hasNumber || isDraped ||
       (block.Second && elevation::HasPointsWithoutZ(block.Second)))
     {
-      namespace why = elevation::sentences;
-      block.WhyGathered = isDraped ? elevation::MakeMessage<why::DrapingNeedsAll>()
-        : hasNumber                ? elevation::MakeMessage<why::NumberNeedsAll>()
-        : hasError                 ? elevation::MakeMessage<why::ErrorNeedsAll>()
-                                   : elevation::MakeMessage<why::PointsWithoutZNeedAll>();
+      namespace sentences = elevation::sentences;
+      block.WhyGathered = isDraped ? elevation::MakeMessage<sentences::DrapingNeedsAll>()
+        : hasNumber                ? elevation::MakeMessage<sentences::NumberNeedsAll>()
+        : hasError                 ? elevation::MakeMessage<sentences::ErrorNeedsAll>()
+                                   : elevation::MakeMessage<sentences::PointsWithoutZNeedAll>();
       return false;
     }
     addCounts(TriangulateSpread(ranks, options, block));

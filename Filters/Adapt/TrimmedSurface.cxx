@@ -11,6 +11,7 @@
 #include "DataArrays.h"
 #include "MeshConversion.h"
 #include "Requests.h"
+#include "SoftLines.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"

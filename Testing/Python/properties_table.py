@@ -34,8 +34,8 @@ def row_of(one):
     takes += ", in %s" % one.kind.unit if one.kind.unit else ""
     remarks = [] if one.in_pieces else ["not in pieces"]
     for needs, others, _ in one.rules():
-        names = " or ".join("`%s`" % DESCRIBED[other].options[0] for other in others)
-        remarks.append(("with " if needs else "without ") + names)
+        listed = " or ".join("`%s`" % DESCRIBED[other].options[0] for other in others)
+        remarks.append(("with " if needs else "without ") + listed)
     default = one.default_in("program" if names else "filter" if setter else one.places[0])
     cells = (" ".join(names), "`%s`" % setter if setter else "", (panels + [""])[0], takes, default,
              "; ".join([one.line, *remarks]))
