@@ -43,20 +43,21 @@ def draped(cloud, faults, name, given, strict=False, ranks=None):
     surface = Surface(cloud.points, laid, given.get("duplicates", 0), name, ranks)
     if surface.is_empty:
         return faults, notes
-    result, outside, vertices = [], [], 0
+    result, outside, followed = [], [], []
     for title, part, is_bare in zip(names, parts, bare):
         found, lost, place = surface.drape(part) if is_bare else ([part], 0.0, None)
         result += [(title, one) for one in found]
-        vertices += sum(len(one) for one in found) if is_bare else 0
+        followed += [one[:, 2] for one in found] if is_bare else []
         if lost:
             outside.append((title, lost, place))
     if not result:
         return faults, notes  # the filter says where they are, and where the points
-    z = numpy.concatenate([one[:, 2] for _, one in result])
-    notes.append(
-        f"{words}: they follow the surface of the points, with {vertices:,} vertices and z from "
-        f"{numpy.nanmin(z):.6g} to {numpy.nanmax(z):.6g}"
-    )
+    if followed:
+        z = numpy.concatenate(followed)
+        notes.append(
+            f"{words}: they follow the surface of the points, with {len(z):,} vertices and z from "
+            f"{z.min():.6g} to {z.max():.6g}"
+        )
     if outside:
         title, lost, (x, y, _) = outside[0]
         notes.append(
