@@ -11,6 +11,8 @@
 
 #include "Kernel/Base/Base.h"
 
+#include "vtkType.h"
+
 #include <functional>
 #include <string>
 

@@ -4,6 +4,7 @@
 
 #include "SampledSurface.h"
 
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -14,6 +15,7 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +31,8 @@ constexpr vtkIdType MostNodes = 250000000;
 void HideOutside(vtkImageData* grid)
 {
   vtkDataArray* const elevations = grid->GetPointData()->GetArray(elevation::ElevationName);
+  vtkUnsignedCharArray* const nodes = grid->AllocatePointGhostArray();
+  vtkUnsignedCharArray* const cells = grid->AllocateCellGhostArray();
   int size[3];
   grid->GetDimensions(size);
   for (vtkIdType node = 0; node < grid->GetNumberOfPoints(); ++node)
@@ -37,13 +41,14 @@ void HideOutside(vtkImageData* grid)
     {
       continue;
     }
-    grid->BlankPoint(node);
+    nodes->SetValue(node, vtkDataSetAttributes::HIDDENPOINT);
     const int column = static_cast<int>(node % size[0]), row = static_cast<int>(node / size[0]);
     for (int j = std::max(row - 1, 0); j <= std::min(row, size[1] - 2); ++j)
     {
       for (int i = std::max(column - 1, 0); i <= std::min(column, size[0] - 2); ++i)
       {
-        grid->BlankCell(static_cast<vtkIdType>(j) * (size[0] - 1) + i);
+        cells->SetValue(
+          static_cast<vtkIdType>(j) * (size[0] - 1) + i, vtkDataSetAttributes::HIDDENCELL);
       }
     }
   }
