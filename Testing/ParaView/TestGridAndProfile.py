@@ -94,7 +94,8 @@ check_same(array(section.GetPointData(), "FilledError"), errors, "errors along t
 valid = array(section.GetPointData(), "vtkValidPointMask")
 check_equal((valid == 0).tolist(), numpy.isnan(heights).tolist(), "points outside")
 check(0 < valid.sum() < len(valid), "the section leaves the surface")
-check(numpy.array_equal(points(section)[valid == 1, 2], heights[valid == 1]), "the section is on the surface")
+check(numpy.array_equal(points(section)[valid == 1, 2], array(section.GetPointData(), "Elevation")[valid == 1]),
+      "the section is on the surface")
 check_equal(sorted(numpy.concatenate(lines(section)).tolist()),
             [i for i in range(1001) if valid[i] and (valid[max(i - 1, 0):i + 2].sum() > 1)], "lines where the surface is")
 
@@ -125,22 +126,23 @@ for source, words in (
     (simple.ElevationProfile(Input=surface, Point1=[numpy.nan, 2, 3], Point2=[1, 2, 9]), "no length"),
     (simple.ElevationProfile(Input=surface, Line=data_source(polyline((numpy.nan, 0, 0), (1, 1, 1)))), "Point 0 of the line"),
     (simple.ElevationProfile(Input=surface, Line=data_source(vtkPolyData())), "The line has no length"),
-    (simple.ElevationGrid(Input=simple.Box()), "is not a triangle"),
+    (simple.ElevationGrid(Input=simple.Box()), "only triangles can be handled"),
 ):
     messages = messages_of(source)
     check_equal(len(messages), 1, "one error: " + words)
     check(words in " ".join(messages), "error %r: %s" % (words, messages))
     output = source.GetClientSideObject().GetOutputDataObject(0)
     check_equal(output.GetNumberOfPoints(), 0, "points after an error: " + words)
-away = simple.ElevationProfile(Input=surface, Point1=[0, 0, 0], Point2=[10, 5, 0])
+away = simple.ElevationProfile(Input=surface, Point1=[1, 2, 0], Point2=[10, 5, 0])
 (warning,) = messages_of(away, "WarningEvent")
-check("does not meet the surface: it is at x 0 to 10, y 0 to 5" in warning, "warning: " + warning)
+check("does not meet the surface: it is at x 1 to 10, y 2 to 5" in warning, "warning: " + warning)
 
 # ---- pictures ------------------------------------------------------------------------------------
 
 view = simple.CreateRenderView()
 view.ViewSize = [500, 400]
-simple.Show(grid, view)
+shown = simple.Show(grid, view)
+check_equal(shown.ColorArrayName[1], "Elevation", "the grid is coloured by elevation")
 simple.ResetCamera(view)
 check_elevation_colours(screenshot(os.path.join(temporary_folder, "grid.png"), view), "the grid")
 chart = simple.CreateView("XYChartView")
