@@ -364,7 +364,8 @@ def bare_lines(data):
     ends = [vtk_to_numpy(c.GetOffsetsArray()) for c in (data.GetLines(), data.GetPolys())]
     has_points = numpy.concatenate([numpy.diff(e) > 0 for e in ends])
     is_bare = is_bare[data.GetNumberOfVerts() :][: len(has_points)][has_points]
-    return is_bare | [bool(numpy.isnan(part[:, 2]).all()) for part in line_parts(data)[1]]
+    without = [numpy.isnan(part[:, 2]).all() for part in line_parts(data)[1]]
+    return is_bare | numpy.array(without, dtype=bool)
 
 
 def crs_of(data):
