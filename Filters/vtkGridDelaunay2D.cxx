@@ -410,7 +410,8 @@ int vtkGridDelaunay2D::RequestData(
     // All need the whole surface: the least set of points for an error, or the best one of some
     // number; the triangles along a line, or at its points.
     const bool isDraped = this->DrapeConstraints && block.Second;
-    const bool hasNumber = options.MostVertices != 0, hasError = options.MaximumElevationError != 0.0;
+    const bool hasNumber = options.MostVertices != 0,
+               hasError = options.MaximumElevationError != 0.0;
     if (hasError || hasNumber || isDraped ||
       (block.Second && elevation::HasPointsWithoutZ(block.Second)))
     {

@@ -50,8 +50,8 @@ std::vector<SoftPoint> SoftPointsOf(const ConstraintLines& lines)
     }
   });
   // A ring's first point may be its last one, too.
-  std::stable_sort(found.begin(), found.end(),
-    [](const SoftPoint& a, const SoftPoint& b) { return a.Id < b.Id; });
+  std::stable_sort(
+    found.begin(), found.end(), [](const SoftPoint& a, const SoftPoint& b) { return a.Id < b.Id; });
   found.erase(std::unique(found.begin(), found.end(),
                 [](const SoftPoint& a, const SoftPoint& b) { return a.Id == b.Id; }),
     found.end());

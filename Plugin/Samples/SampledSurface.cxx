@@ -74,7 +74,8 @@ SampledSurface::SampledSurface(vtkPolyData* surface, vtkMultiProcessController* 
         double p[3];
         surface->GetPoint(ids[k], p);
         const double values[] = { -p[0], -p[1], p[0], p[1] };
-        std::transform(values, values + 4, ends, ends, [](double a, double b) { return a > b ? a : b; });
+        std::transform(
+          values, values + 4, ends, ends, [](double a, double b) { return a > b ? a : b; });
       }
     }
   }
@@ -168,7 +169,8 @@ vtkIdType SampledSurface::Sample(
     this->TakeLargest(&isThere, 1);
     if (isThere > 0.0)
     {
-      add(name, [array](vtkIdType id) { return array ? array->GetComponent(id, 0) : std::nan(""); });
+      add(
+        name, [array](vtkIdType id) { return array ? array->GetComponent(id, 0) : std::nan(""); });
     }
   }
   const auto elevations =

@@ -89,8 +89,8 @@ int vtkElevationGrid::RequestData(
   const int columns = this->Dimensions[0], rows = this->Dimensions[1];
   if (columns < 2 || rows < 2 || static_cast<vtkIdType>(columns) * rows > MostNodes)
   {
-    vtkErrorMacro(<< "Dimensions are " << columns << " and " << rows << "; they must be 2 or more each, and "
-                  << MostNodes << " nodes at most.");
+    vtkErrorMacro(<< "Dimensions are " << columns << " and " << rows
+                  << "; they must be 2 or more each, and " << MostNodes << " nodes at most.");
     return 1;
   }
   try

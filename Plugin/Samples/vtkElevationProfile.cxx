@@ -150,7 +150,9 @@ void PassLines(const LineSamples& samples, vtkPolyData* output)
   points->SetNumberOfPoints(count);
   for (vtkIdType i = 0; i < count; ++i)
   {
-    const double z = mask->GetValue(i) ? elevations->GetComponent(i, 0) : std::isfinite(lowest) ? lowest : 0.0;
+    const double z = mask->GetValue(i) ? elevations->GetComponent(i, 0)
+      : std::isfinite(lowest)          ? lowest
+                                       : 0.0;
     points->SetPoint(i, samples.Places->GetComponent(i, 0), samples.Places->GetComponent(i, 1), z);
   }
   vtkNew<vtkCellArray> lines;
@@ -197,7 +199,8 @@ int vtkElevationProfile::RequestData(
   vtkPolyData* const output = vtkPolyData::GetData(outputVector);
   if (this->Resolution < 1 || this->Resolution > MostSteps)
   {
-    vtkErrorMacro(<< "Resolution is " << this->Resolution << "; it must be 1 to " << MostSteps << ".");
+    vtkErrorMacro(<< "Resolution is " << this->Resolution << "; it must be 1 to " << MostSteps
+                  << ".");
     return 1;
   }
   try
@@ -207,8 +210,9 @@ int vtkElevationProfile::RequestData(
     const elevation::Box& bounds = surface.Bounds();
     if (!(bounds.Low.X < bounds.High.X && bounds.Low.Y < bounds.High.Y))
     {
-      throw Error("The input has no triangles, so there is no surface. Points alone are triangulated "
-                  "first, by Reconstruct Elevation Surface.");
+      throw Error(
+        "The input has no triangles, so there is no surface. Points alone are triangulated "
+        "first, by Reconstruct Elevation Surface.");
     }
     vtkNew<vtkDoubleArray> corners;
     corners->SetNumberOfComponents(3);
@@ -228,8 +232,8 @@ int vtkElevationProfile::RequestData(
     });
     surface.Share(corners);
     surface.Agree([&] { SampleLines(corners, this->Resolution, samples); });
-    const vtkIdType found = surface.Sample(
-      samples.Places, elevation::ProgressOfSampling(this), output->GetPointData());
+    const vtkIdType found =
+      surface.Sample(samples.Places, elevation::ProgressOfSampling(this), output->GetPointData());
     if (controller && controller->GetLocalProcessId() > 0)
     {
       output->Initialize(); // the first rank has it
@@ -239,9 +243,10 @@ int vtkElevationProfile::RequestData(
     if (found == 0)
     {
       const double* const b = output->GetBounds();
-      vtkWarningMacro(<< "The line does not meet the surface: it is at x " << b[0] << " to " << b[1] << ", y "
-                      << b[2] << " to " << b[3] << ", the surface at x " << bounds.Low.X << " to "
-                      << bounds.High.X << ", y " << bounds.Low.Y << " to " << bounds.High.Y << ".");
+      vtkWarningMacro(<< "The line does not meet the surface: it is at x " << b[0] << " to " << b[1]
+                      << ", y " << b[2] << " to " << b[3] << ", the surface at x " << bounds.Low.X
+                      << " to " << bounds.High.X << ", y " << bounds.Low.Y << " to "
+                      << bounds.High.Y << ".");
     }
   }
   catch (const std::exception& failure)
@@ -258,7 +263,9 @@ int vtkElevationProfile::RequestData(
 void vtkElevationProfile::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Point1: " << this->Point1[0] << " " << this->Point1[1] << " " << this->Point1[2] << "\n";
-  os << indent << "Point2: " << this->Point2[0] << " " << this->Point2[1] << " " << this->Point2[2] << "\n";
+  os << indent << "Point1: " << this->Point1[0] << " " << this->Point1[1] << " " << this->Point1[2]
+     << "\n";
+  os << indent << "Point2: " << this->Point2[0] << " " << this->Point2[1] << " " << this->Point2[2]
+     << "\n";
   os << indent << "Resolution: " << this->Resolution << "\n";
 }

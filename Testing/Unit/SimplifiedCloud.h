@@ -188,8 +188,8 @@ inline std::pair<Index, double> FarthestFrom(
       const double u = ((q.X - at.X) * (r.Y - at.Y) - (q.Y - at.Y) * (r.X - at.X)) / whole;
       const double v = ((r.X - at.X) * (p.Y - at.Y) - (r.Y - at.Y) * (p.X - at.X)) / whole;
       const PointView view = cloud.View();
-      const double z = u * view.Elevation(c[0]) + v * view.Elevation(c[1]) +
-        (1.0 - u - v) * view.Elevation(c[2]);
+      const double z =
+        u * view.Elevation(c[0]) + v * view.Elevation(c[1]) + (1.0 - u - v) * view.Elevation(c[2]);
       const double distance = std::fabs(z - view.Elevation(i));
       if (distance > largest)
       {
@@ -202,7 +202,8 @@ inline std::pair<Index, double> FarthestFrom(
 }
 
 /** The points of a triangulation, as places. */
-inline std::set<std::pair<double, double>> PlacesOf(const Cloud& cloud, const Buffer<Index>& corners)
+inline std::set<std::pair<double, double>> PlacesOf(
+  const Cloud& cloud, const Buffer<Index>& corners)
 {
   std::set<std::pair<double, double>> places;
   for (const Index id : corners)

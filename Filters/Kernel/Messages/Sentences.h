@@ -136,7 +136,8 @@ ELEVATION_SENTENCE(InvalidElevationError,
 ELEVATION_SENTENCE(InvalidNumberOfPoints,
   "{property:MaximumNumberOfPoints} is {value}; it must be 0 (off) or a number of points.");
 ELEVATION_SENTENCE(TooFewPointsAllowed,
-  "{property:MaximumNumberOfPoints} is {value}, but the surface needs {least} points: {hull} at the "
+  "{property:MaximumNumberOfPoints} is {value}, but the surface needs {least} points: {hull} at "
+  "the "
   "corners of the convex hull, and {lines} more of lines that have to be edges, constraints or the "
   "outline.");
 ELEVATION_SENTENCE(ErrorNotReached,
@@ -276,7 +277,8 @@ ELEVATION_SENTENCE(
 ELEVATION_SENTENCE(ConstraintsNotInPieces,
   "Constraints with {property:DrapeConstraints} are for points in memory, not for pieces.");
 ELEVATION_SENTENCE(PointsWithoutZNotInPieces,
-  "Constraints with points without z (NaN), which would take it from the surface, are for points in "
+  "Constraints with points without z (NaN), which would take it from the surface, are for points "
+  "in "
   "memory, not for pieces.");
 ELEVATION_SENTENCE(UnusedPointsInPieces,
   "{property:RemoveUnusedPoints} is for a surface in memory; pieces keep all points.");

@@ -397,8 +397,8 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   CheckNumber(options, ofHull, placed.Corners.size());
   std::optional<GreedyInsertion> mesh;
   const auto restart = [&]() {
-    mesh.emplace(placed.Places, placed.Rows, placed.Metric ? &*placed.Metric : nullptr, first, fixed,
-      options.Edges);
+    mesh.emplace(placed.Places, placed.Rows, placed.Metric ? &*placed.Metric : nullptr, first,
+      fixed, options.Edges);
   };
   restart();
   const Measurement measurement(points, placed, *mesh, isCounted);

@@ -90,7 +90,8 @@ TEST(MostVertices, AreThoseThatWorstFirstReachesTheSmallestErrorWith)
   for (const int kind : { 0, 1, 4, 7 })
   {
     Cloud cloud = CloudOf(kind, 1200, random);
-    if (kind == 1) // a lattice whose nodes are its points to the last bit, so that distances are the same
+    if (kind ==
+      1) // a lattice whose nodes are its points to the last bit, so that distances are the same
     {
       cloud = Cloud();
       for (int i = 0; i < 1200; ++i)
