@@ -226,7 +226,11 @@ vtkIdType TakeElevations(const PointView& points, const DelaunayOptions& options
   }
   lines.Points = { nullptr, own.data(), before.Count };
   MoveToEnd(before, lines);
-  return static_cast<vtkIdType>(soft.size());
+  // By places, as ranks may each have given the same lines.
+  std::sort(places.begin(), places.end(), IsLower);
+  const auto isSame = [](const Point2& a, const Point2& b) { return a.X == b.X && a.Y == b.Y; };
+  return static_cast<vtkIdType>(
+    std::unique(places.begin(), places.end(), isSame) - places.begin());
 }
 
 } // namespace elevation

@@ -33,7 +33,7 @@ vtkSmartPointer<vtkPolyData> WithAnyZ(vtkPolyData* lines);
  * both cross.
  * @param[in,out] lines  afterwards with points in @a own, which must outlive them
  * @param[in] options    of the triangulation; those that make a surface of few points do not count
- * @return how many points those are
+ * @return at how many places those are
  * @throws Error naming the first one that lies outside of the points; as Triangulate()
  */
 vtkIdType TakeElevations(const PointView& points, const DelaunayOptions& options,
