@@ -151,6 +151,7 @@ set(es_Adapt
   PointsPrecision
   ReportMessages
   Requests
+  SoftLines
   SurfaceQuery
   TrimmedSurface
   UsedPoints)

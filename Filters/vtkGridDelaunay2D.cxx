@@ -56,6 +56,10 @@ DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter)
   options.Strategy = static_cast<SearchStrategy>(filter->GetSearchStrategy());
   options.MaximumEdgeLength = filter->GetMaximumEdgeLength();
   options.MaximumElevationError = filter->GetMaximumElevationError();
+  // No cloud has more points than an Index can hold; a negative number is refused as such.
+  options.MostVertices = static_cast<Index>(std::max<vtkIdType>(
+    std::min<vtkIdType>(filter->GetMaximumNumberOfPoints(), std::numeric_limits<Index>::max()),
+    std::numeric_limits<Index>::min()));
   options.SimplifyConstraints = filter->GetSimplifyConstraints();
   options.Edges =
     filter->GetDataDependentEdges() ? EdgeCriterion::DataDependent : EdgeCriterion::Delaunay;
@@ -112,13 +116,20 @@ elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
     return unconstrained;
   }
   elevation::CheckPointArrays(source, "The constraints'");
-  Stages stages(progress, { 2, 98 });
+  const double without = elevation::HasPointsWithoutZ(source) ? 40.0 : 0.0;
+  Stages stages(progress, { 2.0, without, 98.0 - without });
   elevation::WarnOfLattice(options, warnings);
   const elevation::DataSetPoints own = elevation::ViewPoints(source);
-  const ConstraintLines lines =
+  ConstraintLines lines =
     LinesOf(source, own, points, options.NumberOfThreads, stages.Next(), warnings);
+  elevation::Buffer<double> elevated;
+  const vtkIdType count =
+    elevation::TakeElevations(points, options, stages.Next(), lines, elevated);
   options.Monitor = stages.Next();
-  return elevation::TriangulateConstrained(points, lines, options);
+  elevation::ConstrainedTriangulation made =
+    elevation::TriangulateConstrained(points, lines, options);
+  made.NumberOfPointsWithoutZ = count;
+  return made;
 }
 
 /** Of the vertices of a triangulation, how many have a triangle. */
@@ -267,8 +278,9 @@ elevation::ConstrainedTriangulation TriangulateBlock(
       Drape(draped, points.View, options.NumberOfThreads, ofDraping, block.Warnings, output)));
   }
   elevation::AddReport(made, stages.Next(), output->GetFieldData());
-  if (options.MaximumElevationError > 0.0)
+  if (options.IsSimplified())
   {
+    elevation::WarnOfNumber(options, made.Result, block.Warnings);
     elevation::AddSimplification(made.Result, output->GetFieldData());
   }
   elevation::Report(progress, 1.0);
@@ -378,7 +390,7 @@ int vtkGridDelaunay2D::RequestData(
   call.ListsUnused = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
     &this->NumberOfRedundantPoints, &this->NumberOfConstraintCrossings, &this->NumberOfAddedPoints,
-    &this->NumberOfLattices };
+    &this->NumberOfPointsWithoutZ, &this->NumberOfLattices };
   // Over blocks and ranks the largest error counts, all else is added up.
   call.Maxima = { &this->LargestElevationError };
   const elevation::DelaunayOptions options = elevation::OptionsOf(this);
@@ -390,17 +402,24 @@ int vtkGridDelaunay2D::RequestData(
       std::max(this->LargestElevationError, made.Result.LargestElevationError);
     this->NumberOfConstraintCrossings += static_cast<vtkIdType>(made.NumberOfCrossings);
     this->NumberOfAddedPoints += static_cast<vtkIdType>(made.Added.size());
+    this->NumberOfPointsWithoutZ += static_cast<vtkIdType>(made.NumberOfPointsWithoutZ);
     this->NumberOfLattices += made.Result.LatticeFound ? 1 : 0;
   };
   // A block on several ranks: its surface stays spread, unless what is asked for needs all points.
   call.Spread = [&](elevation::Block& block, const elevation::Ranks& ranks) {
-    // Both need the whole surface: the least set of points for an error, and the triangles along a
-    // line.
+    // All need the whole surface: the least set of points for an error, or the best one of some
+    // number; the triangles along a line, or at its points.
     const bool isDraped = this->DrapeConstraints && block.Second;
-    if (options.MaximumElevationError != 0.0 || isDraped)
+    const bool hasNumber = options.MostVertices != 0,
+               hasError = options.MaximumElevationError != 0.0;
+    if (hasError || hasNumber || isDraped ||
+      (block.Second && elevation::HasPointsWithoutZ(block.Second)))
     {
-      block.WhyGathered = isDraped ? elevation::MakeMessage<elevation::sentences::DrapingNeedsAll>()
-                                   : elevation::MakeMessage<elevation::sentences::ErrorNeedsAll>();
+      namespace sentences = elevation::sentences;
+      block.WhyGathered = isDraped ? elevation::MakeMessage<sentences::DrapingNeedsAll>()
+        : hasNumber                ? elevation::MakeMessage<sentences::NumberNeedsAll>()
+        : hasError                 ? elevation::MakeMessage<sentences::ErrorNeedsAll>()
+                                   : elevation::MakeMessage<sentences::PointsWithoutZNeedAll>();
       return false;
     }
     addCounts(TriangulateSpread(ranks, options, block));
@@ -433,6 +452,7 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SearchStrategy: " << this->GetSearchStrategyAsString() << "\n";
   os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
   os << indent << "MaximumElevationError: " << this->MaximumElevationError << "\n";
+  os << indent << "MaximumNumberOfPoints: " << this->MaximumNumberOfPoints << "\n";
   os << indent << "DataDependentEdges: " << (this->DataDependentEdges ? "On" : "Off") << "\n";
   os << indent << "SimplifyConstraints: " << (this->SimplifyConstraints ? "On" : "Off") << "\n";
   os << indent << "DrapeConstraints: " << (this->DrapeConstraints ? "On" : "Off") << "\n";
@@ -456,6 +476,7 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LargestElevationError: " << this->LargestElevationError << "\n";
   os << indent << "NumberOfConstraintCrossings: " << this->NumberOfConstraintCrossings << "\n";
   os << indent << "NumberOfAddedPoints: " << this->NumberOfAddedPoints << "\n";
+  os << indent << "NumberOfPointsWithoutZ: " << this->NumberOfPointsWithoutZ << "\n";
   os << indent << "Messages: " << this->Messages->GetNumberOfTuples() << " rows\n";
 }
 VTK_ABI_NAMESPACE_END

@@ -10,6 +10,7 @@
  * - 0: a vtkPointSet (float or double), whose cells are ignored.
  * - 1, optional (SetSourceConnection, SetSourceData): constraints, a vtkPolyData whose lines and
  *   polygon edges become edges of the result: breaklines, faults, outlines. Nothing is cut out.
+ *   A point of them whose z is NaN takes the elevation of the surface without constraints.
  *
  * @par Output:
  * A vtkPolyData with the input's points in the same order (shared, never written), all point data
@@ -17,11 +18,12 @@
  * constraints add come after those of the input. Field data:
  * - UnusedPointIds (vtkIdTypeArray): the points that are not vertices, in increasing order;
  * - UnusedPointReasons (vtkUnsignedCharArray): for each of them, 1 = duplicate (another point with
- *   the same x,y is the vertex), 2 = not finite (x, y or z), 3 = within MaximumElevationError,
- *   4 = hidden (HIDDENPOINT in vtkGhostType, as VTK marks blanked nodes);
- * - NumberOfDuplicatePoints, NumberOfNonFinitePoints, NumberOfConstraintCrossings and
- *   NumberOfAddedPoints (vtkIdTypeArray, one value); with a MaximumElevationError also
- *   NumberOfRedundantPoints (vtkIdTypeArray) and LargestElevationError (vtkDoubleArray);
+ *   the same x,y is the vertex), 2 = not finite (x, y or z), 3 = left out
+ *   within LargestElevationError, 4 = hidden (HIDDENPOINT in vtkGhostType, of blanked nodes);
+ * - NumberOfDuplicatePoints, NumberOfNonFinitePoints, NumberOfConstraintCrossings,
+ *   NumberOfAddedPoints and NumberOfPointsWithoutZ (vtkIdTypeArray, one value); with a MaximumElevationError or
+ *   MaximumNumberOfPoints also NumberOfRedundantPoints (vtkIdTypeArray) and LargestElevationError
+ *   (vtkDoubleArray);
  * - Lattice (vtkDoubleArray, one tuple of 6), if one was found: x,y of the lowest occupied node, of
  *   the first step, and of the second step, counter-clockwise from the first; in input units.
  *
@@ -140,12 +142,27 @@ public:
 
   ///@{
   /**
-   * With a MaximumElevationError: whether edges are chosen by how near they are to the points that
-   * are left out [Dyn, Levin & Rippa 1990], as far as triangles do not become much narrower. They
-   * then follow ridges and valleys, and a tenth to a fifth fewer points are needed on terrain;
-   * where elevations are noise, more may be. It takes up to a fifth longer. The triangles are not
-   * Delaunay then, so that they cannot be had from the chosen points alone. Off (default):
-   * Delaunay. Without a MaximumElevationError it does nothing.
+   * At most so many points become vertices: again and again the one that is farthest above or below
+   * the surface, from the corners of the convex hull and the constraints on. Of the surfaces on
+   * this way the one with the smallest LargestElevationError is taken, so there may be some points
+   * fewer. With a MaximumElevationError, too, the limit that is reached first ends it; a warning
+   * says so where that is the number. The other points stay in the output, and are listed as
+   * unused. Each block of a composite may have so many. 0 (default): off. A negative value is an
+   * error; so are one that is too small for the hull and the constraints, and a MaximumEdgeLength
+   * with it.
+   */
+  vtkSetMacro(MaximumNumberOfPoints, vtkIdType);
+  vtkGetMacro(MaximumNumberOfPoints, vtkIdType);
+  ///@}
+
+  ///@{
+  /**
+   * With a MaximumElevationError or MaximumNumberOfPoints: whether edges are chosen by how near they
+   * are to the points that are left out [Dyn, Levin & Rippa 1990], as far as triangles do not become
+   * much narrower. They then follow ridges and valleys, and a tenth to a fifth fewer points are
+   * needed on terrain; where elevations are noise, more may be. It takes up to a fifth longer. The
+   * triangles are not Delaunay then, so that they cannot be had from the chosen points alone. Off
+   * (default): Delaunay. Without one of these limits it does nothing.
    */
   vtkSetMacro(DataDependentEdges, bool);
   vtkGetMacro(DataDependentEdges, bool);
@@ -154,13 +171,13 @@ public:
 
   ///@{
   /**
-   * With a MaximumElevationError: whether points of constraints may be left out, too. A point goes
-   * where exactly two pieces of lines meet, the line without it passes it within the error above or
-   * below, and within a thousandth of the shorter of the two pieces beside, and no other point
-   * changes its side of the line. Ends, corners and crossings stay. On, a straight line through the
+   * With a MaximumElevationError or MaximumNumberOfPoints: whether points of constraints may be
+   * left out, too. A point goes where exactly two pieces of lines meet, the line without it passes
+   * it within the error above or below (at any height with a number of points, of which then those
+   * come back that are worth it), and within a thousandth of the shorter of the two pieces beside,
+   * and no other point changes its side of the line. Ends, corners and crossings stay. On, a straight line through the
    * nodes of a grid has as few points as its elevations need. Off (default), lines keep all their
-   * points, also those of the cloud that lie on them. Without a MaximumElevationError it does
-   * nothing.
+   * points, also those of the cloud that lie on them. Without one of these limits it does nothing.
    */
   vtkSetMacro(SimplifyConstraints, bool);
   vtkGetMacro(SimplifyConstraints, bool);
@@ -290,13 +307,13 @@ public:
   /** After Update(): points left aside because a coordinate is infinite or not a number. */
   vtkGetMacro(NumberOfNonFinitePoints, vtkIdType);
 
-  /** After Update(): points left aside because they are within MaximumElevationError. */
+  /** After Update(): points left aside because they are within LargestElevationError. */
   vtkGetMacro(NumberOfRedundantPoints, vtkIdType);
 
   /**
    * After Update(): no point that is left aside as redundant is farther above or below the surface;
-   * rounding errors are counted in. It is at most MaximumElevationError. Of several blocks, the
-   * largest.
+   * rounding errors are counted in. It is at most MaximumElevationError, unless
+   * MaximumNumberOfPoints has ended that before. Of several blocks, the largest.
    */
   vtkGetMacro(LargestElevationError, double);
 
@@ -305,6 +322,9 @@ public:
 
   /** After Update(): points that constraints have added behind those of the input. */
   vtkGetMacro(NumberOfAddedPoints, vtkIdType);
+
+  /** After Update(): points of constraints without z, which have that of the surface. */
+  vtkGetMacro(NumberOfPointsWithoutZ, vtkIdType);
 
   ///@{
   /**
@@ -330,11 +350,14 @@ public:
    * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent,
    * whose text has the same for people, are invoked. Codes, besides those of data that are invalid,
    * which are "Words": NoTriangle, NoTriangleShown, PointsOnWall, FewTriangles, FewTrianglesAdvice,
-   * InvalidEdgeLength, InvalidElevationError, InvalidLatticeTolerance, InvalidThreads,
-   * InvalidPrecision, OriginalIdsReplaced, FoldsInSingle, TwoLimits, LatticeNotUsed, NoLines,
-   * StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, NonFinitePointOfLine, LinesElsewhere,
+   * InvalidEdgeLength, InvalidElevationError, InvalidNumberOfPoints, TooFewPointsAllowed,
+   * ErrorNotReached, InvalidLatticeTolerance, InvalidThreads, InvalidPrecision,
+   * OriginalIdsReplaced, FoldsInSingle, TwoLimits, LengthAndNumber, LatticeNotUsed, NoLines,
+   * StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, NonFinitePointOfLine,
+   * NoSurfaceForPointOfLine, LinesElsewhere,
    * LinesFarOutside, PolygonsAreLines, LinesNotDraped, LinesNotSettled, ArraysLeftOut, OnOneRank
-   * (with a reason: ErrorNeedsAll, DrapingNeedsAll), RankWaits, NotEnoughMemory, Stopped.
+   * (with a reason: ErrorNeedsAll, NumberNeedsAll, DrapingNeedsAll, PointsWithoutZNeedAll), RankWaits, NotEnoughMemory,
+   * Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 
@@ -349,6 +372,7 @@ protected:
   int SearchStrategy = VOXEL_TRAVERSAL;
   double MaximumEdgeLength = 0.0;
   double MaximumElevationError = 0.0;
+  vtkIdType MaximumNumberOfPoints = 0;
   bool DataDependentEdges = false;
   bool SimplifyConstraints = false;
   bool DrapeConstraints = false;
@@ -367,6 +391,7 @@ protected:
   double LargestElevationError = 0.0;
   vtkIdType NumberOfConstraintCrossings = 0;
   vtkIdType NumberOfAddedPoints = 0;
+  vtkIdType NumberOfPointsWithoutZ = 0;
   vtkMultiProcessController* Controller = nullptr;
 
 private:

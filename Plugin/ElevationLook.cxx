@@ -14,6 +14,7 @@
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVXMLElement.h"
+#include "vtkSMChartSeriesSelectionDomain.h"
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
@@ -219,7 +220,7 @@ void ShowElevations(vtkPVDataInformation* data, vtkSMSessionProxyManager* proxie
 {
   if (vtkPVArrayInformation* heights = data->GetArrayInformation(ARRAY, vtkDataObject::POINT))
   {
-    const double* range = heights->GetComponentRange(0);
+    const double* range = heights->GetComponentFiniteRange(0);
     vtkNew<vtkSMTransferFunctionManager> manager;
     vtkSMProxy* colours = manager->GetColorTransferFunction(ARRAY, proxies);
     ColourByElevation(colours, xml, range);
@@ -321,6 +322,8 @@ vtkStandardNewMacro(vtkSMElevationLook);
 
 void ElevationLook()
 {
+  // On the axis of elevations, an error near 0 would leave the profile of a mountain a straight line.
+  vtkSMChartSeriesSelectionDomain::AddSeriesVisibilityDefault("^FilledError$", false);
   vtkClientServerInterpreterInitializer::GetGlobalInterpreter()->AddNewInstanceFunction(
     "vtkSMElevationLook", [](void*) -> vtkObjectBase* { return vtkSMElevationLook::New(); });
 }

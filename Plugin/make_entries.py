@@ -91,7 +91,7 @@ def add_input(parent, given, place):
     element(groups, "Group", name="filters")
     types = element(made, "DataTypeDomain", name="input_type")
     if given.get("composite_data_supported"):
-        types.set("composite_data_supported", "1")
+        types.set("composite_data_supported", given.get("composite_data_supported"))
     for name in given.get("types").split():
         element(types, "DataType", value=name)
     described = DESCRIBED.get(given.get("property"))

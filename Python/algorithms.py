@@ -49,7 +49,7 @@ from .inputs import cloud_of, lines_of
 from .messages import ElevationSurfaceError, Reason, counted, counted_reason
 from .names import argument, option
 from .progress import share
-from .properties import PROPERTIES, checked
+from .properties import FEWER, PROPERTIES, checked, is_simplified
 from .ranks import agreed, controller_of, shared, together
 from .reading import read, read_boundary, read_faults
 from .reconstruction import NAMES, reconstruct_cloud
@@ -58,7 +58,7 @@ from .spreading import gather_points
 from .steps import Kept, state_of
 
 NOTHING = "nothing was read"
-ERROR_NEEDS_ALL = (
+FEW_NEED_ALL = (
     "The surface is made on one rank (process), which needs memory for all of it. {} chooses few points "
     "out of all; 0 leaves the surface spread."
 )
@@ -361,8 +361,9 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         found = recognised(cloud.points, ranks)
         cloud.notes += found + notes_on(cloud, lines, ranks)
         gathered = []
-        if ranks and properties.get("maximum_elevation_error"):
-            gathered.append(ERROR_NEEDS_ALL.format(option("maximum_elevation_error")))
+        if ranks and is_simplified(properties):
+            name = next(name for name in FEWER if properties.get(name))
+            gathered.append(FEW_NEED_ALL.format(option(name)))
             cloud.points, ranks = gather_points(ranks, cloud.points), None
             if not cloud.points.GetNumberOfPoints():
                 return None, found

@@ -355,14 +355,17 @@ def cell_names(data):
 
 
 def bare_lines(data):
-    """(n,) of bool: which of the lines of line_parts() have no z of their own."""
+    """(n,) of bool: which of the lines of line_parts() have no z of their own: they are marked, or their
+    points have none."""
     flags = data.GetCellData().GetArray(WITHOUT_Z)
     is_bare = numpy.zeros(data.GetNumberOfCells(), dtype=bool)
     if flags:
         is_bare = vtk_to_numpy(flags) != 0
     ends = [vtk_to_numpy(c.GetOffsetsArray()) for c in (data.GetLines(), data.GetPolys())]
     has_points = numpy.concatenate([numpy.diff(e) > 0 for e in ends])
-    return is_bare[data.GetNumberOfVerts() :][: len(has_points)][has_points].copy()
+    is_bare = is_bare[data.GetNumberOfVerts() :][: len(has_points)][has_points]
+    without = [numpy.isnan(part[:, 2]).all() for part in line_parts(data)[1]]
+    return is_bare | numpy.array(without, dtype=bool)
 
 
 def crs_of(data):

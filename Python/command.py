@@ -28,6 +28,7 @@ from .options import (
 from .names import PROGRAM, written_for
 from .pieces import Pieces
 from .planes import in_plane
+from .properties import is_simplified
 from .projecting import project
 from .ranks import agreed, by_first, together, total
 from .reconstruction import check_spacing, least_reach, run_chain
@@ -126,7 +127,7 @@ class Run:
         self.check_spacing(least_reach(cloud.points))
         self.set_crs(cloud)
         crs = project(options.file, cloud) if options.project else cloud.crs
-        self.read_questions(cloud)
+        self.read_questions(cloud, crs)
         lines = self.read_rings()
         if options.faults:
             lines["faults"] = self.read_faults(cloud)
@@ -155,14 +156,20 @@ class Run:
         except ValueError as error:
             raise WrongOption(f"{self.options.file}: {error}") from None
 
-    def read_questions(self, cloud):
-        """What is asked about the surface, which is refused before any work is done."""
+    def read_questions(self, cloud, crs):
+        """What is asked about the surface, which is refused before any work is done.
+
+        crs  of places whose file names none: of the points, before they are projected
+        """
         options = self.options
         if options.at:
-            from .query import read_places
+            from .query import places_in, read_places
 
-            self.places = read_places(options.at)
-            cloud.notes += check_system(options.at, self.places[1], options.file, cloud.crs)
+            places, own = read_places(options.at)
+            own = own or (crs or "EPSG:4326" if options.project else None)
+            moved, notes = places_in(cloud.crs, places, own, options.at, options.file, options.strict)
+            self.places = places, moved
+            cloud.notes += notes
         if options.volume is not None:
             from .query import other_of
 
@@ -215,7 +222,7 @@ class Run:
     def reconstruct(self, cloud, lines):
         options = self.options
         ranks = self.ranks if total(self.ranks, not can_be_scattered(cloud.points)) == 0 else None
-        if options.properties.get("maximum_elevation_error"):
+        if is_simplified(options.properties):
             ranks = None  # points are chosen on one rank
         if not self.is_first and not ranks:
             return None  # the first does it alone

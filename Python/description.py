@@ -192,12 +192,13 @@ class Property:
         return words
 
     def rules(self):
-        """[(whether it needs the other, the other's name, the words of a refusal)]"""
+        """[(whether it needs one of the others, their names, the words of a refusal)]"""
         found = []
         for rule in ("needs", "excludes"):
             if rule in self.words:
                 others, words = self.words[rule].split(": ", 1)
-                found += [(rule == "needs", other, words) for other in others.split()]
+                groups = [others.split()] if rule == "needs" else [[other] for other in others.split()]
+                found += [(rule == "needs", group, words) for group in groups]
         return found
 
 

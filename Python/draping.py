@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Faults without z: they get that of the surface that the points make without faults, everywhere.
 
-Each gets a vertex where it crosses an edge of that surface, as the surface bends there.
+Each gets a vertex where it crosses an edge of that surface, as the surface bends there. Of a line that
+has some z, the points without get it from vtkGridDelaunay2D, and the line stays straight between points.
 """
 
 import numpy
@@ -30,31 +31,33 @@ def draped(cloud, faults, name, given, strict=False, ranks=None):
     strict  True: faults without z are an error
     ranks   see fitted()
     """
-    names, parts, bare, words = without_z(faults, name, given, heights_of(cloud.points, ranks))
-    if not words:
-        return faults, []
+    names, parts, bare, words, soft = without_z(faults, name, given, heights_of(cloud.points, ranks))
     wanted = FAULTS_Z[given.get("faults_z", 0)]
-    if wanted == "given" or strict and wanted != "drape":
+    if (words or soft) and (wanted == "given" or strict and wanted != "drape"):
         advice = f"; {option('faults_z')} drape takes z of the surface of the points"
-        raise ElevationSurfaceError(words + advice, "faults")
+        raise ElevationSurfaceError((words or soft) + advice, "faults")
+    notes = [f"{soft}: these take that of the surface of the points"] if soft else []
+    if not words:
+        return faults, notes
     laid = [part for part, is_bare in zip(parts, bare) if is_bare]
     surface = Surface(cloud.points, laid, given.get("duplicates", 0), name, ranks)
     if surface.is_empty:
-        return faults, []
-    result, outside, vertices = [], [], 0
+        return faults, notes
+    result, outside, followed = [], [], []
     for title, part, is_bare in zip(names, parts, bare):
         found, lost, place = surface.drape(part) if is_bare else ([part], 0.0, None)
         result += [(title, one) for one in found]
-        vertices += sum(len(one) for one in found) if is_bare else 0
+        followed += [one[:, 2] for one in found] if is_bare else []
         if lost:
             outside.append((title, lost, place))
     if not result:
-        return faults, []  # the filter says where they are, and where the points
-    z = numpy.concatenate([one[:, 2] for _, one in result])
-    notes = [
-        f"{words}: they follow the surface of the points, with {vertices:,} vertices and z from "
-        f"{z.min():.6g} to {z.max():.6g}"
-    ]
+        return faults, notes  # the filter says where they are, and where the points
+    if followed:
+        z = numpy.concatenate(followed)
+        notes.append(
+            f"{words}: they follow the surface of the points, with {len(z):,} vertices and z from "
+            f"{z.min():.6g} to {z.max():.6g}"
+        )
     if outside:
         title, lost, (x, y, _) = outside[0]
         notes.append(
@@ -69,7 +72,8 @@ def draped(cloud, faults, name, given, strict=False, ranks=None):
 
 
 def without_z(faults, name, given, heights):
-    """(names, parts, which have no z, words about these, or ""), as draped() counts lines.
+    """(names, parts, which have no z, words about these, or "", words about points without z of the
+    others, or ""), as draped() counts lines.
 
     heights  of the points, see heights_of()
     """
@@ -86,24 +90,36 @@ def without_z(faults, name, given, heights):
             f"{name}: z of its lines is 0 everywhere and that of the points never, so that they "
             f"count as lines without z; {option('faults_z')} given takes the 0"
         )
-    if not bare.any():
-        return names, parts, bare, ""
-    return names, parts, bare, f"{words} (first: {names[int(numpy.argmax(bare))]})"
+    first = names[int(numpy.argmax(bare))] if bare.any() else ""
+    return names, parts, bare, f"{words} (first: {first})" if first else "", soft_points(names, parts, bare, name)
+
+
+def soft_points(names, parts, bare, name):
+    """Words about points without z of lines that have some, or ""."""
+    counts = []
+    for part, is_bare in zip(parts, bare):
+        is_closed = len(part) > 1 and (part[0, :2] == part[-1, :2]).all()
+        soft = numpy.isfinite(part[:, :2]).all(axis=1) & numpy.isnan(part[:, 2])
+        counts.append(0 if is_bare else int(numpy.count_nonzero(soft[: -1 if is_closed else None])))
+    if not any(counts):
+        return ""
+    first = names[int(numpy.argmax(numpy.array(counts) > 0))]
+    return f"{name}: {counted(sum(counts), 'point')} without z, of lines that have some (first: {first})"
 
 
 def check_given_z(faults, name, given, heights):
     """Raises ElevationSurfaceError for faults that would have to be draped on points that are not in
     memory; see without_z()."""
-    *_, words = without_z(faults, name, given, heights)
-    if words:
+    *_, words, soft = without_z(faults, name, given, heights)
+    if words or soft:
         raise ElevationSurfaceError(
-            f"{words}: to follow the surface of the points takes the whole surface in memory", "faults"
+            f"{words or soft}: to follow the surface of the points takes the whole surface in memory", "faults"
         )
 
 
 def is_zero_unlike_points(parts, bare, heights):
     """Whether z of all lines that have one is 0, and that of the points never is."""
-    if any(part[:, 2].any() for part, is_bare in zip(parts, bare) if not is_bare):
+    if any(numpy.nan_to_num(part[:, 2]).any() for part, is_bare in zip(parts, bare) if not is_bare):
         return False
     return heights is not None and (heights[0] > 0.0 or heights[1] < 0.0)
 

@@ -7,6 +7,8 @@ import importlib.util
 import math
 import os
 
+import numpy
+
 from .messages import FileError
 from .names import option
 
@@ -184,6 +186,29 @@ def flat(reference):
         reference.StripVertical()
     reference.DemoteTo2D()
     return reference
+
+
+def moving(crs, other):
+    """A function that moves (n, 2) places from one system to another by OGR; what is not finite stays so.
+
+    Both raise RuntimeError where there is no way, or no place.
+    """
+    from osgeo import osr
+
+    with quiet():
+        change = osr.CoordinateTransformation(*(flat(reference_of(one)) for one in (crs, other)))
+
+    def moved(places):
+        places = numpy.array(places[:, :2], "f8")
+        finite = numpy.isfinite(places).all(axis=1)
+        with quiet():
+            found = numpy.array(change.TransformPoints(places[finite].tolist())).reshape(-1, 3)[:, :2]
+        if not numpy.isfinite(found).all():
+            raise RuntimeError("some points have no place there")
+        places[finite] = found
+        return places
+
+    return moved
 
 
 NEAR = 5.0  # metres; between ETRS89 and WGS 84, which people mix, there is less than one

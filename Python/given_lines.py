@@ -7,7 +7,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .clouds import coordinates_of, crs_of, make_points, line_parts, set_crs
 from .draping import draped
-from .gdal_common import check_system, flat, is_near, name_of, quiet, reference_of, same_system
+from .gdal_common import check_system, is_near, moving, name_of, same_system
 from .mending import mended
 from .messages import FileError
 from .names import option
@@ -48,23 +48,12 @@ def in_system(data, name, cloud, points_name, strict, ranks=None):
     _, parts = line_parts(data)
     if not parts or strict or same_system(crs, cloud.crs) is not False or is_near(crs, cloud.crs):
         return data, check_system(name, crs, points_name, cloud.crs)
-    from osgeo import osr
-
     xyz = vtk_to_numpy(data.GetPoints().GetData()).astype("f8")
     try:
-        with quiet():
-            pair = (flat(reference_of(one)) for one in (crs, cloud.crs))
-            change = osr.CoordinateTransformation(*pair)
-
-            def places(points):
-                found = numpy.array(change.TransformPoints(points[:, :2].tolist())).reshape(-1, 3)
-                if not numpy.isfinite(found).all():
-                    raise RuntimeError("some points have no place there")
-                return found[:, :2]
-
-            xy = places(xyz)
-            p, q = (numpy.concatenate([part[end] for part in parts]) for end in ENDS)
-            bend = places(0.5 * (p + q)) - 0.5 * (places(p) + places(q))
+        places = moving(crs, cloud.crs)
+        xy = places(xyz)
+        p, q = (numpy.concatenate([part[end] for part in parts]) for end in ENDS)
+        bend = places(0.5 * (p + q)) - 0.5 * (places(p) + places(q))
     except RuntimeError as error:
         raise FileError(
             f"{name}: cannot be reprojected from {name_of(crs)} to {name_of(cloud.crs)}: {error}"

@@ -78,7 +78,8 @@ def in_plane(cloud, lines, given, ranks=None):
     low, high = heights_of(cloud.points, ranks) or (0.0, 0.0)
     for name, data in lines.items():
         is_zero = not coordinates_of(data)[:, 2].any() and (low > 0.0 or high < 0.0)
-        if bare_lines(data).any() or is_zero and not given.get("faults_z"):
+        lacks_z = bare_lines(data).any() or numpy.isnan(coordinates_of(data)[:, 2]).any()
+        if lacks_z or is_zero and not given.get("faults_z"):
             raise ElevationSurfaceError(
                 f"{argument('plane')} best needs lines with z, which the {name} lacks"
                 if name != "faults" else

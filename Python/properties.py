@@ -21,6 +21,7 @@ COLOURS, DUPLICATES, FAULTS_Z, INTERPOLATIONS, LATTICE_MODES, METHODS = (
     DESCRIBED[name].choices
     for name in ("colours", "duplicates", "faults_z", "interpolation", "lattice_mode", "method")
 )
+FEWER = ("maximum_number_of_points", "maximum_elevation_error")  # what makes a surface of few points
 
 
 def option_of(name):
@@ -60,11 +61,18 @@ def check_together(given, name_of=str, among=PROPERTIES):
     for name, value in given.items():
         if value is None or value is False:
             continue
-        for needs, other, words in DESCRIBED[name].rules():
-            if needs and other in among and given.get(other) in (None, False, 0):
-                raise ValueError(f"{name_of(name)} {words.format(name_of(other))}")
-            if not needs and value and given.get(other):
-                raise ValueError(f"{name_of(name)} and {name_of(other)} {words}")
+        for needs, others, words in DESCRIBED[name].rules():
+            names = " or ".join(name_of(other) for other in others)
+            is_given = [given.get(other) not in (None, False, 0) for other in others if other in among]
+            if needs and is_given and not any(is_given):
+                raise ValueError(f"{name_of(name)} {words.format(names)}")
+            if not needs and value and any(is_given):
+                raise ValueError(f"{name_of(name)} and {names} {words}")
+
+
+def is_simplified(given):
+    """Whether a surface of few points is wanted, with an elevation error or a number of points."""
+    return any(given.get(name) for name in FEWER)
 
 
 def set_properties(algorithm, step, given):

@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdTypeArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from .clouds import coordinates_of, corner_flags, crs_of, make_points, slices
-from .gdal_common import check_system
+from .gdal_common import check_system, is_near, moving, name_of, one_line, same_system
 from .messages import ElevationSurfaceError, FileError
 from .progress import no_progress
 from .properties import METHODS
@@ -274,9 +274,31 @@ def is_text(path):
 
 def read_places(path):
     """((n, 2) places of a file, its reference system or None): of text, the columns x and y; of other
-    files their points. Raises FileError."""
-    if is_text(path):
-        with unpacked(path) as (local, _):
+    files their points, which need no z. Raises FileError."""
+    with unpacked(path) as (local, _):
+        module = recognise(local)[0].module
+        if module == "text.read_text":
             return read_table(local, 2)[0], None
+        if module == "vectors":
+            from .reading.vectors import read_flat_points
+
+            return read_flat_points(local)
     cloud = read(path)
     return coordinates_of(cloud.points)[:, :2].astype("f8"), cloud.crs
+
+
+def places_in(crs, places, own, name, points_name, strict=False):
+    """((n, 2) places as a surface of some reference system has them, notes): those of a file with its own
+    system, or None, by read_places(). Raises FileError; with strict, where they would be reprojected."""
+    if strict or same_system(own, crs) is not False or is_near(own, crs):
+        return places, check_system(name, own, points_name, crs)
+    try:
+        moved = moving(own, crs)(places)
+    except RuntimeError as error:
+        raise FileError(
+            f"{name}: cannot be reprojected from {name_of(own)} to {name_of(crs)}: {one_line(error)}"
+        ) from None
+    return moved, [
+        f"{name} is in {name_of(own)}, {points_name} in {name_of(crs)}: reprojected by OGR; its table has the "
+        "places of the file"
+    ]

@@ -30,7 +30,7 @@ from .names import argument
 from .open_edge_length import length_to_open
 from .paths import check_suffix
 from .planes import in_plane, turn_back
-from .properties import COLOURS, PROPERTIES, check_together, checked
+from .properties import COLOURS, PROPERTIES, check_together, checked, is_simplified
 from .ranks import extremes, total
 from .reading.arrays import column_cloud, grid_cloud, named_columns
 from .reading.facing import find_faces, notes_on_faces
@@ -374,10 +374,10 @@ def run_chain(
     result.faults_name = "given" if faults is not None else None
     policy = given.get("duplicates")
     run = Step(result, given, progress, strict, ranks, kept)
-    if given.get("maximum_elevation_error") and trim:
+    if is_simplified(given) and trim:
         trim_few(run, boundary, faults)
     else:
-        triangulate(run, faults, given.get("maximum_elevation_error", 0.0))
+        triangulate(run, faults)
         if trim:
             trim_along(run, boundary)
             result.boundary = result.trim.GetOutput(2)
@@ -398,7 +398,7 @@ def run_chain(
                 filling.SetAreaMode(mode)
         if "open_edge_length" in given:
             result.open_edge_length, result.why_opened = given["open_edge_length"], AS_GIVEN
-        elif not given.get("maximum_elevation_error"):  # else long edges are not voids
+        elif not is_simplified(given):  # else long edges are not voids
             length, result.why_opened = run.kept.result(
                 "open edge length", (state_of([last.GetOutput()]), result.boundary_name),
                 lambda: length_to_open(ranks, last.GetOutput(), result), ranks,

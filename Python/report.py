@@ -48,16 +48,18 @@ def make_report(result):
     unused = list_unused(ranks, reasons, ids)
     notes, limits = result.decided + result.notes, limits_of(ranks, result.surface)
     report = facts_of(result, result.number_of_points, notes, limits, unused)
-    if delaunay.GetMaximumElevationError():
+    if delaunay.GetMaximumElevationError() or delaunay.GetMaximumNumberOfPoints():
         report["simplified"] = {
             "maximum_elevation_error": delaunay.GetMaximumElevationError(),
+            "maximum_number_of_points": delaunay.GetMaximumNumberOfPoints(),
             "largest_elevation_error": delaunay.GetLargestElevationError(),
             "points_kept": int(numpy.count_nonzero(reasons == 0)),
             "points_redundant": int(numpy.count_nonzero(reasons == WITHIN_ERROR)),
         }
     if result.faults_name:
         with_faults = result.outlined[0] if result.outlined else delaunay
-        report["faults"] = fault_report(result.faults_name, with_faults)
+        without = with_faults.GetNumberOfPointsWithoutZ()
+        report["faults"] = fault_report(result.faults_name, with_faults, without)
     if trim:
         report["trim"] = trimming_report(
             trim.GetNumberOfOutwardTriangles(),
@@ -105,11 +107,12 @@ def facts_of(result, points, notes, limits, unused):
     return report
 
 
-def fault_report(name, delaunay):
-    """The part of the report on faults."""
+def fault_report(name, delaunay, points_without_z=0):
+    """The part of the report on faults. None are without z in pieces."""
     return {
         "file": name,
         "added_points": delaunay.GetNumberOfAddedPoints(),
+        "points_without_z": points_without_z,
         "crossings": delaunay.GetNumberOfConstraintCrossings(),
     }
 
@@ -279,6 +282,8 @@ def triangle_lines(report, line):
             f"{faults['file']}: {counted(faults['added_points'], 'point')} added, "
             f"{counted(faults['crossings'], 'crossing')}",
         )
+        if faults["points_without_z"]:
+            line("", f"{counted(faults['points_without_z'], 'point')} without z, on the surface of the points")
     if "trim" in report:
         trim = report["trim"]
         rings = trim["boundary_rings"]

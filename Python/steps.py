@@ -23,7 +23,7 @@ from .outline import (
     simplified,
     spacing_of,
 )
-from .properties import PROPERTIES, set_properties
+from .properties import PROPERTIES, is_simplified, set_properties
 from .ranks import all_values, collected, extremes, together, total
 from .spreading import OUTSIDE_OUTLINE, WITHIN_ERROR, own_point_count, reasons_of, update
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
@@ -199,15 +199,18 @@ def boundary_of(trim):
     return trim.GetInputDataObject(1, 0) if trim.GetNumberOfInputConnections(1) else None
 
 
-def triangulate(run, lines, error):
-    """The first step, with lines or None as constraints, and a maximum elevation error."""
+def triangulate(run, lines, has_all=False):
+    """The first step, with lines or None as constraints; has_all: of all points, whatever is given."""
     result, ranks, points = run.result, run.ranks, run.result.cloud.points
     delaunay = run.configure("delaunay", vtkGridDelaunay2D())
-    delaunay.SetMaximumElevationError(error)
+    if has_all:
+        delaunay.SetMaximumElevationError(0.0)
+        delaunay.SetMaximumNumberOfPoints(0)
+    is_few = not has_all and is_simplified(run.properties)
     # A boundary that is given cuts the surface at all its points.
     delaunay.SetSimplifyConstraints(not result.boundary_name)
     delaunay.SetInputData(points)
-    bare = [] if lines is None or error else bare_lines(lines)
+    bare = [] if lines is None or is_few else bare_lines(lines)
     # A rank may have lines that others lack.
     delaunay.SetDrapeConstraints(total(ranks, len(bare) > 0 and bare.all()) > 0)
     if lines is not None:
@@ -298,9 +301,11 @@ class LineKeeper:
 
 
 def trim_few(run, boundary, faults):
-    """The first two steps for few points, within an elevation error: the outline is that of all."""
-    result, error = run.result, run.properties["maximum_elevation_error"]
-    triangulate(run, faults, 0.0)
+    """The first two steps for few points: the outline is that of all."""
+    result, error = run.result, run.properties.get("maximum_elevation_error", 0.0)
+    if run.properties.get("maximum_number_of_points"):
+        error = numpy.inf  # of the points of the outline, those come back that are worth their number
+    triangulate(run, faults, has_all=True)
     # Edges that follow the surface would have many points, each of which becomes a vertex.
     trim_along(run, boundary, vtkTrimOutwardTriangles.STRAIGHT)
     result.outlined, lattice = (result.delaunay, result.trim), result.lattice
@@ -317,7 +322,7 @@ def trim_few(run, boundary, faults):
         outline = None  # the convex hull, which stays without constraints
     else:
         lines.append(outline)
-    triangulate(run, joined(lines) if lines else None, error)
+    triangulate(run, joined(lines) if lines else None)
     if outline is None:
         outline = border_of(result.delaunay.GetOutput())
     elif boundary is None:

@@ -7,7 +7,7 @@
  * In: VTK's data sets and the properties of a filter. Out: arrays that the kernel reads in place
  * where it can (ViewPoints, ViewTriangles), and data sets made of its results. By filter:
  *
- *     vtkGridDelaunay2D         Constraints, DelaunayReport, LimitAdvice, PointsOnWall
+ *     vtkGridDelaunay2D         Constraints, SoftLines, DelaunayReport, LimitAdvice, PointsOnWall
  *     vtkTrimOutwardTriangles   TrimmedSurface, which also drapes constraints
  *     vtkFillElevationHoles     PatchedSurface
  *     the Python package        SurfaceQuery
@@ -29,6 +29,7 @@
 #include "PointsPrecision.h"
 #include "ReportMessages.h"
 #include "Requests.h"
+#include "SoftLines.h"
 #include "SurfaceQuery.h"
 #include "TrimmedSurface.h"
 #include "UsedPoints.h"

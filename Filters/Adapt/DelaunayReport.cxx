@@ -40,9 +40,13 @@ void CheckOptions(const DelaunayOptions& options)
   {
     throw MakeError<sentences::InvalidElevationError>(error);
   }
-  if (error > 0.0 && options.MaximumEdgeLength > 0.0)
+  if (options.MostVertices < 0)
   {
-    throw MakeError<sentences::TwoLimits>();
+    throw MakeError<sentences::InvalidNumberOfPoints>(options.MostVertices);
+  }
+  if (options.IsSimplified() && options.MaximumEdgeLength > 0.0)
+  {
+    throw error > 0.0 ? MakeError<sentences::TwoLimits>() : MakeError<sentences::LengthAndNumber>();
   }
 }
 
@@ -102,6 +106,7 @@ void AddReport(
   add("NumberOfNonFinitePoints", triangulation.NumberOfNotFinite);
   add("NumberOfConstraintCrossings", constrained.NumberOfCrossings);
   add("NumberOfAddedPoints", constrained.Added.size());
+  add("NumberOfPointsWithoutZ", constrained.NumberOfPointsWithoutZ);
   for (const char* const name : { "Lattice", "NumberOfRedundantPoints", "LargestElevationError" })
   {
     fieldData->RemoveArray(name); // passed from the input, of other points
@@ -118,6 +123,17 @@ void AddReport(
       lattice.StepV.X, lattice.StepV.Y };
     array->InsertNextTuple(values);
     fieldData->AddArray(array);
+  }
+}
+
+void WarnOfNumber(const DelaunayOptions& options, const Triangulation& triangulation,
+  std::vector<Message>& warnings)
+{
+  const double error = options.MaximumElevationError, largest = triangulation.LargestElevationError;
+  if (error > 0.0 && largest > error) // only a number of points ends before
+  {
+    warnings.push_back(
+      MakeMessage<sentences::ErrorNotReached>(options.MostVertices, error, largest));
   }
 }
 

@@ -9,7 +9,10 @@
 #define DelaunayReport_h
 
 #include "Kernel/Constrain/Constrain.h"
+#include "Kernel/Messages/Messages.h"
 #include "VTKClasses.h"
+
+#include <vector>
 
 namespace elevation
 {
@@ -26,7 +29,11 @@ void NameHidden(vtkUnsignedCharArray* marks, Triangulation& triangulation);
 void AddReport(
   const ConstrainedTriangulation& constrained, const Progress& progress, vtkFieldData* fieldData);
 
-/** Adds what MaximumElevationError has come to. */
+/** Warns where MaximumNumberOfPoints has not allowed to reach MaximumElevationError. */
+void WarnOfNumber(const DelaunayOptions& options, const Triangulation& triangulation,
+  std::vector<Message>& warnings);
+
+/** Adds what MaximumElevationError or MaximumNumberOfPoints has come to. */
 void AddSimplification(const Triangulation& triangulation, vtkFieldData* fieldData);
 
 } // namespace elevation

@@ -11,6 +11,7 @@
 #include "DataArrays.h"
 #include "MeshConversion.h"
 #include "Requests.h"
+#include "SoftLines.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -88,7 +89,8 @@ vtkIdType SplitSurface(
   vtkNew<vtkPolyData> before;
   before->ShallowCopy(surface);
   const DataSetTriangles triangles = ViewTriangles(before);
-  const BoundaryLines lines = ToBoundaryLines(constraints, stages.Next(), "constraints");
+  const vtkSmartPointer<vtkPolyData> elevated = WithAnyZ(constraints);
+  const BoundaryLines lines = ToBoundaryLines(elevated, stages.Next(), "constraints");
   TrimOptions options;
   options.ReturnParents = false;
   options.NumberOfThreads = threads;

@@ -294,9 +294,17 @@ void ReconstructParts::Check() const
   {
     throw MakeError<sentences::ErrorNotInPieces>();
   }
+  if (options.MostVertices > 0)
+  {
+    throw MakeError<sentences::NumberNotInPieces>();
+  }
   if (this->Constraints && this->Set.DrapeConstraints)
   {
     throw MakeError<sentences::ConstraintsNotInPieces>();
+  }
+  if (this->Constraints && HasPointsWithoutZ(this->Constraints))
+  {
+    throw MakeError<sentences::PointsWithoutZNotInPieces>();
   }
   if (this->Set.RemoveUnusedPoints)
   {

@@ -22,7 +22,7 @@
  *
  * @par Properties:
  * All properties of the triangulation are those of GetDelaunay(), and so are constraints. As those of
- * the other filters, they are brought up to date. MaximumElevationError, DrapeConstraints,
+ * the other filters, they are brought up to date. MaximumElevationError, MaximumNumberOfPoints, DrapeConstraints,
  * RemoveUnusedPoints and OutputPointsPrecision are for points in memory, and are errors. Where GetTrim() has a boundary, all pieces are trimmed along it, as
  * that filter would trim the whole surface; with TrimOutward on and no boundary, along the outline that
  * it would find. Where only the whole surface would show the outline, as of some surveys along lines,
@@ -196,7 +196,8 @@ public:
 
   /**
    * As of the three filters, but those of the last ErrorEvent or WarningEvent alone. Further codes are
-   * HoleTooLarge, Aborted, TooFewPieces, TooFewPiecesToFill, ErrorNotInPieces, ConstraintsNotInPieces,
+   * HoleTooLarge, Aborted, TooFewPieces, TooFewPiecesToFill, ErrorNotInPieces, NumberNotInPieces,
+   * ConstraintsNotInPieces, PointsWithoutZNotInPieces,
    * InwardNormalNotInPieces, UnusedPointsInPieces, PrecisionInPieces, BoundaryNotInPieces and OutlineNotInPieces.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }

@@ -284,10 +284,8 @@ def read_lines(path, singular, progress):
         if any(len(part) < 4 for part in parts):
             raise FileError(f"{path}: holds a ring of fewer than three points")
     names = [f"line {i} of the file" for i in range(1, len(parts) + 1)]
-    for name, part in zip(names, parts):
+    for part in parts:
         flat = numpy.isnan(part[:, 2])
-        if flat.any() and not flat.all() and singular != "a boundary":
-            raise FileError(f"{path}: {name} has z at some of its points only")
-        if flat.any():
+        if flat.any() and singular == "a boundary":
             part[:, 2] = numpy.nan
     return make_lines(parts, names)

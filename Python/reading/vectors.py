@@ -13,7 +13,7 @@ from .formats import HEAD, is_table_with_geometry
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError, Reason
 from ..names import option
-from ..progress import share, items_with_progress
+from ..progress import items_with_progress, no_progress, share
 from ..selecting import words_of
 
 OPEN_OPTIONS = {
@@ -227,6 +227,12 @@ def read_layer(path, wanted, columns, progress, as_lines=False):
     notes += layer.set_heights(columns)
     progress(0.9)
     return layer, notes, crs
+
+
+def read_flat_points(path, progress=no_progress):
+    """((n, 2) points, and vertices of lines and polygons; the reference system or None): no z is needed."""
+    layer, _, crs = read_layer(path, None, None, progress)
+    return numpy.concatenate([p[:-1, :2] if kind == "ring" else p[:, :2] for kind, p in layer.parts]), crs
 
 
 def read_points(path, options):

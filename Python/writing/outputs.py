@@ -46,8 +46,8 @@ def heights(result, path, given, progress):
     from ..query import Heights, check_over_xy
 
     check_over_xy(result, "elevation")
-    (places, _), name, method = given
-    elevations, errors = Heights(result.surface, method).at(places, progress)
+    (places, moved), name, method = given  # as in the file, and in the system of the surface
+    elevations, errors = Heights(result.surface, method).at(moved, progress)
     columns = [places[:, 0], places[:, 1], elevations] + ([] if errors is None else [errors])
     with open(path, "w", encoding="utf-8", newline="\n") as stream:
         stream.write("x,y,z" + (",error" if errors is not None else "") + "\n")

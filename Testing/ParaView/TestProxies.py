@@ -16,6 +16,7 @@ OTHER_VALUES = {
         "SearchStrategy": "Compactness",
         "MaximumEdgeLength": 2.5,
         "MaximumElevationError": 0.5,
+        "MaximumNumberOfPoints": 500,
         "DataDependentEdges": 1,
         "SimplifyConstraints": 1,
         "DrapeConstraints": 1,
@@ -73,7 +74,7 @@ def members(header):
     parameters |= set(re.findall(r"void Set(\w+)\([^)]+\)", header))
     # The second inputs, and the processes.
     others = {"BoundaryConnection", "BoundaryData", "SourceConnection", "SourceData", "AreasConnection",
-              "AreasData", "Controller"}
+              "AreasData", "LineConnection", "Controller"}
     parameters -= others | set(re.findall(r"Deprecated.*\*/\s*void Set(\w+)", header))
     results = set(re.findall(r"vtkGet\w*Macro\((\w+)|bool Get(\w+)\(\)", header))
     results = {one or other for one, other in results} - parameters - others
@@ -170,9 +171,28 @@ for proxy in (chain, FILTERS["TrimOutwardTriangles"]):
     check_equal([one for one, _ in below], [name[len("Effective"):] for _, name in below], "what is below what")
     check_equal(len(below), 3 if proxy.GetXMLName() == chain.SMProxy.GetXMLName() else 1, "how many were used")
 
+# The filters of the plugin's own, whose classes have no property described for others.
+OF_PLUGIN = {
+    "ElevationGrid": {"Dimensions": [30, 20]},
+    "ElevationProfile": {"Point1": [1.0, 2.0, 3.0], "Point2": [4.0, 5.0, 6.0], "Resolution": 7},
+}
+for name, values in OF_PLUGIN.items():
+    with open(os.path.join(os.path.dirname(data_folder), "Plugin", "Samples", "vtk%s.h" % name)) as header:
+        check_equal(set(values), members(header.read())[0], name + ": tested properties and parameters of the class")
+    proxy = getattr(simple, name)(Input=plane)
+    for each, value in values.items():
+        text = (proxy.SMProxy.GetProperty(each).GetDocumentation().GetDescription() or "").strip()
+        check(len(text) > 20, "%s: %s is not documented" % (name, each))
+        before = printed(proxy.SMProxy.GetClientSideObject(), each)
+        setattr(proxy, each, value)
+        proxy.SMProxy.UpdateVTKObjects()
+        after = printed(proxy.SMProxy.GetClientSideObject(), each)
+        check(None is not before != after, "%s: %s does not reach the filter" % (name, each))
+    check(len((proxy.SMProxy.GetDocumentation().GetDescription() or "").strip()) > 100, name + " is not documented")
+
 # The menu has all of them, in the order of the work.
 menu = xml.etree.ElementTree.parse(os.path.join(os.path.dirname(data_folder), "Plugin", "Menu.xml"))
 check_equal([entry.get("name") for entry in menu.iter("Proxy")],
-            ["ReconstructElevationSurface", *OTHER_VALUES], "entries of the menu")
+            ["ReconstructElevationSurface", *OTHER_VALUES, *OF_PLUGIN], "entries of the menu")
 
 finish()

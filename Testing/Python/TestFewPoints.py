@@ -8,7 +8,7 @@ import unittest
 
 import numpy
 from in_folder import Program
-from vtkelevationsurface import read, reconstruct
+from vtkelevationsurface import ElevationSurfaceError, ElevationSurfaceWarning, read, reconstruct
 from vtkelevationsurface.clouds import make_lines
 from vtkelevationsurface.outline import (
     ON_OUTLINE,
@@ -264,7 +264,94 @@ class Outline(unittest.TestCase):
         self.assertTrue(outside_of(lines, outside, 0.1).all())
 
 
+class SoManyPoints(unittest.TestCase):
+    def test_the_surface_has_at_most_so_many_points_within_the_error_that_the_report_has(self):
+        points = cloud()
+        errors = []
+        spacing = spacing_of(reconstruct(points, fill=False).boundary, None)
+        for most in (150, 600):
+            for boundary in (None, BOUNDARY):
+                result = reconstruct(points, boundary=boundary, fill=False, maximum_number_of_points=most)
+                few = result.report["simplified"]
+                self.assertLessEqual(result.surface.GetNumberOfPoints(), most)
+                self.assertEqual((few["maximum_number_of_points"], few["maximum_elevation_error"]), (most, 0.0))
+                left = points[result.reasons == WITHIN_ERROR]
+                reach = 2 * ON_OUTLINE * spacing
+                largest = few["largest_elevation_error"]
+                self.assertLessEqual(residuals(result, left, reach).max(), largest + reach)
+                errors.append(largest)
+        self.assertLess(max(errors[2:]), 0.4 * min(errors[:2]))
+
+    def test_it_serves_as_well_as_the_error_that_takes_as_many(self):
+        points = cloud()
+        by_error = reconstruct(points, trim=False, fill=False, maximum_elevation_error=ERROR)
+        most = by_error.report["simplified"]["points_kept"]
+        by_number = reconstruct(points, trim=False, fill=False, maximum_number_of_points=most)
+        self.assertLess(by_number.report["simplified"]["largest_elevation_error"], 1.1 * ERROR)
+
+    def test_the_outline_of_a_grid_keeps_its_corners_and_what_is_worth_it(self):
+        x, y = (axis.ravel().astype("f8") for axis in numpy.meshgrid(numpy.arange(60), numpy.arange(60)))
+        grid = numpy.column_stack((x, y, 3 * numpy.sin(x / 9) * numpy.cos(y / 7)))
+        # A notch makes an outline of the grid, of straight edges through hundreds of nodes.
+        result = reconstruct(grid[(x < 40) | (y < 30)], fill=False, maximum_number_of_points=60)
+        self.assertLessEqual(result.surface.GetNumberOfPoints(), 60)
+        self.assertLess(result.report["simplified"]["largest_elevation_error"], 2.0)
+        self.assertAlmostEqual(area(result), 59 * 59 - 20 * 30, delta=60)
+
+    def test_faults_count_and_stay_edges(self):
+        result = reconstruct(cloud(), faults=FAULT, fill=False, maximum_number_of_points=200)
+        self.assertLessEqual(result.surface.GetNumberOfPoints(), 200)
+        places = result.to_numpy()[0]
+        ids = [int(numpy.flatnonzero((places == row).all(axis=1))[0]) for row in FAULT]
+        self.assertEqual(set(zip(ids[:-1], ids[1:])) - edges(result), set())
+        with self.assertRaisesRegex(ElevationSurfaceError, r"MaximumNumberOfPoints is 30, but the surface needs \d+ points: "
+                                    r"\d+ at the corners of the convex hull, and \d+ more of lines"):
+            reconstruct(cloud(), faults=FAULT, fill=False, maximum_number_of_points=30)
+
+    def test_the_limit_that_is_reached_first_ends_it(self):
+        points, few = cloud(), {"trim": False, "fill": False}
+        by_error = reconstruct(points, **few, maximum_elevation_error=ERROR, maximum_number_of_points=10**6)
+        self.assertLessEqual(by_error.report["simplified"]["largest_elevation_error"], ERROR)
+        with self.assertWarnsRegex(ElevationSurfaceWarning, "60, is reached before .*, 0.2: points lie up to"):
+            by_number = reconstruct(
+                points, **few, maximum_elevation_error=ERROR, maximum_number_of_points=60)
+        self.assertGreater(by_number.report["simplified"]["largest_elevation_error"], ERROR)
+        with self.assertRaisesRegex(ElevationSurfaceError, "is reached before"):
+            reconstruct(points, **few, maximum_elevation_error=ERROR, maximum_number_of_points=60, strict=True)
+
+    def test_numbers_that_are_none_raise(self):
+        for value in (-1, 2.5, "many", float("nan"), float("inf")):
+            with self.assertRaisesRegex(ValueError, "^maximum_number_of_points takes a whole number of 0"):
+                reconstruct(cloud(), maximum_number_of_points=value)
+        with self.assertRaisesRegex(ValueError, "^maximum_edge_length and maximum_number_of_points"):
+            reconstruct(cloud(), maximum_number_of_points=100, maximum_edge_length=5)
+        with self.assertRaisesRegex(ValueError, "needs maximum_elevation_error or maximum_number_of_points"):
+            reconstruct(cloud(), data_dependent_edges=True)
+
+    def test_edges_that_follow_the_surface_serve_it_better(self):
+        points, few = cloud(), {"trim": False, "fill": False, "maximum_number_of_points": 300}
+        plain, follows = (
+            reconstruct(points, **few, data_dependent_edges=way).report["simplified"]["largest_elevation_error"]
+            for way in (False, True)
+        )
+        self.assertLess(follows, 1.1 * plain)
+
+
 class FewPointsInProgram(Program):
+    def test_a_number_of_points_is_reported(self):
+        self.file("a.xyz", "".join("%.17g %.17g %.17g\n" % tuple(row) for row in cloud()))
+        done = self.call("a.xyz", "--maximum-number-of-points", "500", "--no-picture", "--report", "a.json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        few = self.json("a.json")["simplified"]
+        self.assertEqual(few["maximum_number_of_points"], 500)
+        self.assertLessEqual(few["points_kept"], 500)
+        self.assertIn(f"points kept; others of the surface are at most {few['largest_elevation_error']:.4g} above",
+                      done.stdout)
+        done = self.call("a.xyz", "--maximum-number-of-points", "5", "--no-picture")
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1)
+        self.assertRegex(done.stderr, r"--maximum-number-of-points is 5, but the surface needs \d+ points")
+
     def test_the_report_lists_what_is_kept(self):
         self.file("a.xyz", "".join("%.17g %.17g %.17g\n" % tuple(row) for row in cloud()))
         done = self.call(

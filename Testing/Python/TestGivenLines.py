@@ -34,6 +34,9 @@ def flat(points):
     return numpy.column_stack((points[:, :2], numpy.zeros(len(points))))
 
 
+EDGE = [(50.0, 50.0), (3900.0, 80.0), (3850.0, 3900.0), (60.0, 3950.0)]
+
+
 def circle(x, y, radius, count):
     angles = numpy.arange(count + 1) % count * (2.0 * numpy.pi / count)
     across, up = radius * numpy.cos(angles), radius * numpy.sin(angles)
@@ -423,10 +426,65 @@ class Draping(Program):
         done = self.call("hills.xyz", "--faults-z", "drape")
         self.assertEqual(done.returncode, 2)
         self.assertIn("--faults-z is for the lines of --faults, which is missing", done.stderr)
-        self.file("mixed.gmt", ">\n310 420\n2715 3050 9\n")
-        words = "line 1 of the file has z at some of its points only"
-        with self.assertRaisesRegex(reading.FileError, words):
-            reading.read_faults(self.path("mixed.gmt"))
+
+    def test_points_without_z_of_lines_that_have_some_are_on_the_surface(self):
+        plain, _ = quietly(HILLS)
+        fault = numpy.array([(310.0, 420.0, 999.0), (1500.0, 1700.0, numpy.nan), (2715.0, 3050.0, numpy.nan)])
+        soft = plain.elevation_at(fault[1:, :2])
+        for given in ({}, {"maximum_elevation_error": 1.0}, {"maximum_number_of_points": 900}, {"boundary": EDGE}):
+            result, notes = quietly(HILLS, faults=fault, **given)
+            self.assertIn("the faults: 2 points without z, of lines that have some (first: the line): these take "
+                          "that of the surface of the points", notes)
+            self.assertEqual(result.report["faults"]["points_without_z"], 2)
+            at = result.elevation_at(fault[:, :2])
+            numpy.testing.assert_allclose(at, [999.0, *soft], rtol=1e-9)
+        ring = numpy.vstack((fault, fault[:1]))  # its first point is not counted twice
+        self.assertEqual(quietly(HILLS, faults=ring)[0].report["faults"]["points_without_z"], 2)
+        for given in ({"strict": True}, {"faults_z": "given"}):
+            words = "2 points without z, of lines that have some .*--faults-z drape takes"
+            with self.assertRaisesRegex(ElevationSurfaceError, words):
+                reconstruct(HILLS, faults=fault, **given)
+        draped_too, _ = quietly(HILLS, faults=fault, faults_z="drape")
+        numpy.testing.assert_allclose(
+            draped_too.elevation_at(fault[:, :2]), plain.elevation_at(fault[:, :2]), rtol=1e-9)
+        with self.assertRaisesRegex(ElevationSurfaceError, "plane best needs lines with z"):
+            reconstruct(HILLS, faults=fault, plane="best")
+
+    def test_a_point_without_z_outside_of_the_points_is_an_error_that_names_it(self):
+        fault = numpy.array([(310.0, 420.0, 999.0), (1500.0, 1700.0, numpy.nan), (9000.0, 1.0, numpy.nan)])
+        with self.assertRaisesRegex(ElevationSurfaceError, "cell 0, at 9000, 1, has no z") as caught:
+            reconstruct(HILLS, faults=fault)
+        self.assertEqual(caught.exception.about, "faults")
+        self.assertIn("(such points: 1)", str(caught.exception))
+
+    def test_a_line_of_vtk_with_no_z_at_all_is_draped(self):
+        line = make_lines([numpy.array([(310.0, 420.0, 0.0), (2715.0, 3050.0, 0.0)])])
+        for i in range(2):
+            line.GetPoints().SetPoint(i, *line.GetPoint(i)[:2], numpy.nan)
+        result, notes = quietly(HILLS, faults=line)
+        self.assertIn("1 of 1 line without z", notes[0])
+        self.assertGreater(result.report["faults"]["added_points"], 100)
+
+    def test_files_with_some_z_are_read(self):
+        numpy.savetxt(self.path("hills.xyz"), HILLS, "%.3f")
+        self.file("a.gmt", ">\n310 420\n2715 3050 399\n")
+        self.file("b.txt", "310 420 nan\n2715 3050 399\n")
+        self.file("c.csv", "x,y,z\n310,420,\n2715,3050,399\n")
+        self.file("d.geojson", '{"type": "LineString", "coordinates": [[310, 420], [2715, 3050, 399]]}')
+        written = set()
+        for name in ("a.gmt", "b.txt", "c.csv"):
+            with self.subTest(name=name):
+                done = self.call("hills.xyz", "--faults", name, "--no-picture", "-o", "s.vtp", "--report", "s.json")
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                self.assertIn(f"{name}: 1 point without z, of lines that have some", done.stdout)
+                self.assertRegex(done.stdout, r"\n +1 point without z, on the surface of the points\n")
+                self.assertEqual(self.json("s.json")["faults"]["points_without_z"], 1)
+                with open(self.path("s.vtp"), "rb") as stream:
+                    written.add(stream.read())
+        self.assertEqual(len(written), 1)
+        done = self.call("hills.xyz", "--faults", "b.txt", "--no-picture", "--pieces", "2", "--no-trim", "--no-fill")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, "b.txt: 1 point without z, .*takes the whole surface in memory")
 
     def test_polygons_and_empty_cells_keep_their_places(self):
         data, lines, polys = vtkPolyData(), vtkCellArray(), vtkCellArray()

@@ -47,6 +47,7 @@ class TestGridDelaunay2D(unittest.TestCase):
         self.assertEqual(delaunay.GetSearchStrategyAsString(), "VoxelTraversal")
         self.assertEqual(delaunay.GetMaximumEdgeLength(), 0.0)
         self.assertEqual(delaunay.GetMaximumElevationError(), 0.0)
+        self.assertEqual(delaunay.GetMaximumNumberOfPoints(), 0)
         self.assertFalse(delaunay.GetSimplifyConstraints())
         self.assertFalse(delaunay.GetDataDependentEdges())
         self.assertEqual(delaunay.GetDuplicatePolicy(), vtkGridDelaunay2D.KEEP_FIRST)
@@ -304,6 +305,65 @@ class TestGridDelaunay2D(unittest.TestCase):
         self.assertEqual(fields.GetArray("NumberOfConstraintCrossings").GetValue(0), 1)
         self.assertEqual(fields.GetArray("NumberOfAddedPoints").GetValue(0), 3)
         self.assertIsNone(fields.GetArray("Lattice"))
+
+    def test_a_constraint_without_z_has_that_of_the_surface(self):
+        j, i = numpy.mgrid[0:10, 0:10]
+        grid = numpy.column_stack([i.ravel(), j.ravel(), 0.3 * i.ravel() - 0.1 * j.ravel()]).astype(float)
+        none = numpy.nan
+        lines = cloud(numpy.array([[1.5, 1.25, none], [8, 4.5, 50], [4.5, 1.5, 9], [2.25, 8, none], [4.5, 1.5, none]]))
+        cells = vtkCellArray()
+        for ids in ([4, 0], [0, 1], [2, 3]):
+            cells.InsertNextCell(len(ids), ids)
+        lines.SetLines(cells)
+        delaunay = vtkGridDelaunay2D()
+        delaunay.SetInputData(cloud(grid))
+        delaunay.SetSourceData(lines)
+        with Messages(delaunay) as messages:
+            delaunay.Update()
+        self.assertEqual((messages.errors, messages.warnings), ([], []))
+        self.assertEqual(delaunay.GetNumberOfPointsWithoutZ(), 3)
+        fields = delaunay.GetOutput().GetFieldData()
+        self.assertEqual(fields.GetArray("NumberOfPointsWithoutZ").GetValue(0), 3)
+        points = {tuple(p[:2]): p[2] for p in vtk_to_numpy(delaunay.GetOutput().GetPoints().GetData())}
+        self.assertAlmostEqual(points[1.5, 1.25], 0.3 * 1.5 - 0.1 * 1.25, places=12)  # of a plane
+        self.assertAlmostEqual(points[2.25, 8], 0.3 * 2.25 - 0.1 * 8, places=12)
+        self.assertEqual((points[8, 4.5], points[4.5, 1.5]), (50, 9))  # a z that is given counts
+        # Where a line with z and one without cross, the former's z counts, whatever their order.
+        lines = cloud(numpy.array([[0.5, 5.5, none], [8.5, 5.5, none], [4.5, 0.5, 70], [4.5, 8.5, 70]]))
+        for order in ([0, 1], [2, 3]), ([2, 3], [0, 1]):
+            cells = vtkCellArray()
+            for ids in order:
+                cells.InsertNextCell(2, ids)
+            lines.SetLines(cells)
+            delaunay.SetSourceData(lines)
+            delaunay.Update()
+            xyz = vtk_to_numpy(delaunay.GetOutput().GetPoints().GetData())
+            self.assertEqual(xyz[(xyz[:, 0] == 4.5) & (xyz[:, 1] == 5.5), 2].tolist(), [70])
+        # A given point needs none, wherever it is; draped, no line needs any.
+        delaunay.DrapeConstraintsOn()
+        with Messages(delaunay) as messages:
+            delaunay.Update()
+        self.assertEqual((messages.errors, delaunay.GetNumberOfPointsWithoutZ()), ([], 0))
+
+    def test_a_constraint_without_z_needs_a_surface(self):
+        grid = numpy.random.RandomState(4).rand(200, 3)
+        for xyz, points, words in (
+            ([[0.5, 0.5, 1], [2, 2, numpy.nan], [0.1, 3, numpy.nan]], grid, "at 2, 2, has no z (NaN) and lies outside"),
+            ([[0.5, 0.5, numpy.nan], [0, 0, 1]], grid[:, :1] * [1, 1, 1], "lies outside of the surface"),
+            ([[0.5, 0.5, numpy.inf], [0.4, 0.2, numpy.nan]], grid, "has a coordinate that is not finite"),
+        ):
+            lines = cloud(numpy.array(xyz, dtype=float))
+            cells = vtkCellArray()
+            cells.InsertNextCell(len(xyz), list(range(len(xyz))))
+            lines.SetLines(cells)
+            delaunay = vtkGridDelaunay2D()
+            delaunay.SetInputData(cloud(points))
+            delaunay.SetSourceData(lines)
+            with Messages(delaunay, delaunay.GetExecutive()) as messages:
+                delaunay.Update()
+            self.assertEqual(len(messages.errors), 1)
+            self.assertIn(words, messages.errors[0])
+            self.assertEqual(delaunay.GetOutput().GetNumberOfPoints(), 0)
 
     def test_polygons_among_constraints_are_lines_and_a_warning(self):
         lines = cloud(numpy.array([[0.2, 0.2, 0.0], [0.8, 0.2, 0.0], [0.5, 0.8, 0.0]]))

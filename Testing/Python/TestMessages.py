@@ -115,12 +115,17 @@ class Data(unittest.TestCase):
         for message, code, values in (
             (triangulated(grid(3), MaximumEdgeLength=-1.0), "InvalidEdgeLength", {"value": "-1"}),
             (triangulated(grid(3), MaximumEdgeLength=1.0, MaximumElevationError=1.0), "TwoLimits", {}),
+            (triangulated(grid(3), MaximumEdgeLength=1.0, MaximumNumberOfPoints=5), "LengthAndNumber", {}),
+            (triangulated(grid(3), MaximumNumberOfPoints=3), "TooFewPointsAllowed",
+             {"value": "3", "least": "4", "hull": "4", "lines": "0"}),
             (triangulated(grid(3), make_points(numpy.zeros((1, 3)))), "NoLines",
              {"input": "constraints"}),
             (triangulated(grid(3), make_lines([numpy.array([[8.0, 8, 0], [9, 9, 0]])])),
              "LinesElsewhere", {"input": "constraints"}),
-            (triangulated(grid(3), make_lines([numpy.array([[0.0, 0, 0], [1, 1, numpy.nan]])])),
+            (triangulated(grid(3), make_lines([numpy.array([[0.0, 0, 0], [1, 1, numpy.inf]])])),
              "NonFinitePointOfLine", {"point": "1", "cell": "0"}),
+            (triangulated(grid(3), make_lines([numpy.array([[0.0, 0, 0], [1, 7.5, numpy.nan]])])),
+             "NoSurfaceForPointOfLine", {"point": "1", "cell": "0", "x": "1", "y": "7.5", "count": "1"}),
         ):
             errors, warnings = run(message)
             self.assertEqual((len(errors), warnings), (1, []), code)
@@ -132,6 +137,7 @@ class Data(unittest.TestCase):
         wrong = (-1.0, numpy.nan)
         for make, properties in (
             (vtkGridDelaunay2D, {"MaximumEdgeLength": wrong, "MaximumElevationError": (*wrong, numpy.inf),
+                                 "MaximumNumberOfPoints": (-1,),
                                  "LatticeTolerance": (*wrong, 0.3), "NumberOfThreads": (-1, 1025)}),
             (vtkTrimOutwardTriangles, {"GapTolerance": wrong, "NumberOfThreads": (-1, 1025)}),
             (vtkFillElevationHoles, {"OpenEdgeLength": wrong, "MaximumHoleSize": wrong, "MaximumHoleEdges": (-1,),
@@ -148,6 +154,13 @@ class Data(unittest.TestCase):
                         self.assertRegex(error, f"^{name} is {value:g}.*must be")
                         self.assertTrue(error.code.startswith("Invalid"))
                         self.assertEqual((warnings, algorithm.GetOutput().GetNumberOfPoints()), ([], 0))
+
+    def test_an_error_that_a_number_of_points_does_not_allow_is_a_warning(self):
+        points = make_points(numpy.random.RandomState(1).rand(200, 3))
+        errors, (warning,) = run(triangulated(points, MaximumNumberOfPoints=30, MaximumElevationError=1e-9))
+        self.check(warning, "ErrorNotReached", most="30", limit="1e-09")
+        self.assertEqual(errors, [])
+        self.assertGreater(float(warning.values["largest"]), 1e-9)
 
     def test_a_lattice_with_constraints_is_reported(self):
         lattice, lines = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0), make_lines([numpy.array([[0.5, 0.5, 0], [3.5, 2.5, 0]])])

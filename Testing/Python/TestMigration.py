@@ -251,6 +251,15 @@ def _(test, _there, here):
     test.assertLessEqual(lengths(here.surface).max(), 6)
 
 
+@checks("PyVista", "points.delaunay_2d().decimate(0.9)")
+def _(test, there, here):
+    test.assertLess(abs(area(here.surface) / HULL - 1), 1e-9)
+    test.assertLessEqual(here.surface.GetNumberOfPoints(), 150)
+    test.assertTrue(0 < here.report["simplified"]["largest_elevation_error"] < 1)
+    if there is not None:
+        test.assertLess(there.GetNumberOfPoints(), 300)
+
+
 @checks("PyVista", "points.delaunay_2d(tol=0.001)")
 @checks("PyVista", "points.delaunay_2d(offset=10, bound=False)")
 def _(test, _there, here):
@@ -372,6 +381,17 @@ def _(test, here, _printed):
     test.assertGreater(numpy.isfinite(here["grid"].z).sum(), 100)
 
 
+@checks("ParaView", "ResampleToImage(Input=surface, SamplingDimensions=[100, 100, 1])")
+def _(test, here, _printed):
+    test.assertEqual(here["grid"].z.shape, (100, 100))
+
+
+@checks("ParaView", "PlotOverLine(Input=surface)")
+def _(test, here, _printed):
+    test.assertTrue(numpy.isfinite(here["value"]).any())
+    test.assertEqual(here["value"].shape, here["xi"].shape[:1])
+
+
 def compare_with_dem(test, here, there, band=1):
     """Known pixels stay on both sides. Returns what is missing: (theirs, ours)."""
     known = pixels("dem.tif", band)[0]
@@ -490,6 +510,9 @@ class Migration(unittest.TestCase):
     def test_cloud_compare_and_metpy(self):
         write_files()
         self.run_rows("CloudCompare and MetPy", lambda _, here, check: self.run_here(here, check))
+
+    def test_paraview(self):
+        self.run_rows("ParaView", lambda _, here, check: self.run_here(here, check))
 
     def test_gdal(self):
         write_files()

@@ -259,9 +259,15 @@ class InPieces(WithFilter):
         errors = self.errors_of(source, lambda: source.AddPoints(other))
         self.assertIn("same point arrays", errors[0])
         self.assertIn("Reset()", self.errors_of(source, lambda: source.UpdatePiece(0, 2, 0))[0])
+        soft = make_lines([star((4e5, 4e5), 9.0)])
+        soft.GetPoints().SetPoint(2, *soft.GetPoint(2)[:2], numpy.nan)
+        source = self.source(points, SourceData=soft)
+        self.assertIn("Constraints with points without z (NaN)",
+                      self.errors_of(source, lambda: source.UpdatePiece(0, 2, 0))[0])
         for name, value, words in (
             ("MaximumEdgeLength", numpy.nan, "MaximumEdgeLength is nan"),
             ("MaximumElevationError", 1.0, "in memory, not for pieces"),
+            ("MaximumNumberOfPoints", 9, "MaximumNumberOfPoints is for points in memory, not for pieces"),
             ("DrapeConstraints", True, "Constraints with DrapeConstraints are for points in memory"),
         ):
             source = self.source(points, SourceData=make_lines([star((4e5, 4e5), 9.0)]), **{name: value})

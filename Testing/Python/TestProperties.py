@@ -173,10 +173,10 @@ class Program(unittest.TestCase):
                 if one.step == "pieces" or name == "remove_unused_points":  # given here to keep them, as pieces do
                     continue
                 with self.subTest(way=way, name=name):
-                    given = [word for other in one.words.get("needs", "").split(":")[:1] if other
-                             for word in arguments_of(DESCRIBED[other])]
+                    needs = one.words.get("needs", "").split(":")[0].split()[:1]
+                    given = [word for other in needs for word in arguments_of(DESCRIBED[other])]
                     said = refusal_of(*way, *arguments_of(one), *given, "--boundary", "b.xyz")
-                    needed = DESCRIBED[one.words.get("needs", name).split(":")[0]]
+                    needed = DESCRIBED[(needs or [name])[0]]
                     is_refused = bool(re.search("needs (the whole|all) .*in memory", said))
                     self.assertEqual(is_refused, not (one.in_pieces and needed.in_pieces), said)
 
@@ -185,12 +185,13 @@ class Program(unittest.TestCase):
 
     def test_properties_that_need_or_exclude_another_are_refused(self):
         for name, one in OPTIONS.items():
-            for needs, other, _ in one.rules():
-                with self.subTest(name=name):
+            for needs, other, others in [(n, o, others) for n, others, _ in one.rules() for o in others]:
+                with self.subTest(name=name, other=other):
                     with_other = refusal_of(*arguments_of(one), *arguments_of(DESCRIBED[other]))
                     alone = refusal_of(*arguments_of(one), "--no-trim", *["--no-fill"] * (one.step != "fill"))
                     said, not_said = (alone, with_other) if needs else (with_other, alone)
-                    self.assertIn(DESCRIBED[other].options[0], said)
+                    for name_of_one in others:
+                        self.assertIn(DESCRIBED[name_of_one].options[0], said)
                     self.assertEqual(not_said, "")
 
 

@@ -207,6 +207,50 @@ class Files(Program):
             rows = [line.split(",")[:2] for line in stream]
         self.assertEqual(rows[1:], [["2.0", "2.0"], ["8.0", "2.0"], ["8.0", "8.0"], ["2.0", "2.0"], ["3.0", "3.0"]])
 
+    def test_places_need_no_z_and_are_reprojected(self):
+        from osgeo import ogr, osr
+
+        random = numpy.random.RandomState(1)
+        degrees = numpy.array((11.0, 48.0)) + 0.02 * random.rand(900, 2)
+        rows = numpy.column_stack((degrees, 500 + 30 * numpy.sin(degrees[:, 0] * 600)))
+        numpy.savetxt(self.path("degrees.csv"), rows, "%.9f", ",", header="lon,lat,z", comments="")
+        inner = degrees[numpy.hypot(*(degrees - (11.01, 48.01)).T) < 0.008]
+        systems = []
+        for code in (4326, 32632):
+            systems.append(osr.SpatialReference())
+            systems[-1].ImportFromEPSG(code)
+            systems[-1].SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+        metres = numpy.array(osr.CoordinateTransformation(*systems).TransformPoints(inner.tolist()))[:, :2]
+        for name, system, places in (("deg.gpkg", systems[0], inner), ("utm.gpkg", systems[1], metres)):
+            layer_of = ogr.GetDriverByName("GPKG").CreateDataSource(self.path(name))
+            layer = layer_of.CreateLayer("p", system, ogr.wkbPoint)
+            for place in places.tolist():
+                feature, point = ogr.Feature(layer.GetLayerDefn()), ogr.Geometry(ogr.wkbPoint)
+                point.AddPoint_2D(*place)
+                feature.SetGeometry(point)
+                layer.CreateFeature(feature)
+            del layer, layer_of
+        numpy.savetxt(self.path("deg.csv"), inner, "%.9f", ",", header="x,y", comments="")
+        found = {}
+        for name, options, places, is_moved in (
+            ("deg.gpkg", ("--project",), inner, True), ("utm.gpkg", ("--project",), metres, False),
+            ("deg.csv", ("--project",), inner, True), ("utm.gpkg", ("--crs", "EPSG:4326"), metres, True),
+            ("deg.gpkg", ("--crs", "EPSG:4326"), inner, False), ("deg.csv", (), inner, False),
+        ):
+            with self.subTest(name=name, options=options):
+                done = self.call("degrees.csv", *options, "--at", name, "--no-picture")
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                self.assertIn(f"at {len(inner)} places of {name}, 0 outside", done.stdout)
+                self.assertEqual(f"{name} is in" in done.stdout, is_moved)
+                table = numpy.genfromtxt(self.path("degrees_at.csv"), delimiter=",", names=True)
+                numpy.testing.assert_allclose(numpy.column_stack((table["x"], table["y"])), places, atol=1e-7)
+                found[name, options] = table["z"]
+                os.remove(self.path("degrees_at.csv"))
+        self.assertEqual(len(found), 6)
+        for z in found.values():  # the triangles are others in degrees
+            numpy.testing.assert_allclose(z, found["deg.gpkg", ("--project",)], atol=3.0)
+        numpy.testing.assert_allclose(found["utm.gpkg", ("--project",)], found["deg.gpkg", ("--project",)], atol=1e-5)
+
     def test_volume_to_a_file_and_to_a_level(self):
         surface_of(square(500) - (0, 0, 1)).write(self.path("lower.vtp"))
         _, report = self.run_on_ground("--volume", "lower.vtp")

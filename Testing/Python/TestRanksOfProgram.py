@@ -182,6 +182,7 @@ class OnRanks(Program):
     def test_few_points_within_an_elevation_error(self):
         self.file("a.txt", grid())
         self.check_same(2, "a.txt", "--maximum-elevation-error", "0.5")
+        self.check_same(2, "a.txt", "--maximum-number-of-points", "100")
 
     def test_ids_of_64_bits(self):
         points = vtk_files.run_vtk_reader(os.path.join(DATA, "b9_ground.vtp"))

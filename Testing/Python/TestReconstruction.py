@@ -182,6 +182,7 @@ class Properties(unittest.TestCase):
         given = {
             "maximum_edge_length": (30.0, "delaunay", "GetMaximumEdgeLength", 30.0),
             "maximum_elevation_error": (0.1, "delaunay", "GetMaximumElevationError", 0.1),
+            "maximum_number_of_points": (9, "delaunay", "GetMaximumNumberOfPoints", 9),
             "data_dependent_edges": (True, "delaunay", "GetDataDependentEdges", 1),
             "duplicates": ("keep-lowest", "delaunay", "GetDuplicatePolicy", 2),
             "lattice_mode": ("off", "delaunay", "GetLatticeMode", 1),

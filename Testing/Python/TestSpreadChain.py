@@ -154,6 +154,7 @@ INPUTS = {
     "a thin image": (grids(vtkImageData, missing=False, thin=2), {}, None, None, [], []),
     "a grid": (grids(vtkRectilinearGrid), {}, None, None, [], []),
     "an elevation error": (spread(ORDER, cloud), {"MaximumElevationError": 2.0}, None, None, [], [""]),
+    "a number of points": (spread(ORDER, cloud), {"MaximumNumberOfPoints": 200}, None, None, [], [""]),
 }
 
 

@@ -37,10 +37,14 @@ elevation error                   | MaximumElevationError=0.03  | points        
 the same, data-dependent edges    | MaximumElevationError=0.03, DataDependentEdges=True | points                       | s  s  g  g  r  r  r
 the same, with constraints        | MaximumElevationError=0.03  | straight line                | s  s  g  g  r  r  r
 the same, constraints simplified  | MaximumElevationError=0.03, SimplifyConstraints=True | straight line                | s  s  g  g  r  r  r
+number of points                  | MaximumNumberOfPoints=60    | points                       | s  s  g  g  r  r  r
+the same, with constraints        | MaximumNumberOfPoints=60, SimplifyConstraints=True | straight line                | s  s  g  g  r  r  r
+number of points before an elevation error | MaximumNumberOfPoints=60, MaximumElevationError=0.001 | points                       | s  s  g  g  r  r  r
 constraints                       |                            | breaklines                   | s  s  s  s  s  s  s
 constraints on one rank only      |                            | breaklines + on one          | s  s  s  s  s  s  s
 constraints, values of points     |                            | breaklines + strings + integers | s  s  s  s  s  s  s
 constraints draped                | DrapeConstraints=True      | breaklines                   | s  s  g  g  r  r  r
+constraints, some points without z|                            | soft lines                   | s  s  g  g  r  r  r
 duplicates, keep the first        | DuplicatePolicy=0          | duplicates                   | s  s  s  s  s  s  s
 duplicates, keep the last         | DuplicatePolicy=1          | duplicates                   | s  s  s  s  s  s  s
 duplicates, keep the lowest       | DuplicatePolicy=2          | duplicates                   | s  s  s  s  s  s  s

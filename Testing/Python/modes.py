@@ -139,6 +139,16 @@ def breaklines(random, count):
     return case
 
 
+def soft_lines(random, count):
+    """Lines that cross, inside of the cloud, with some points without z."""
+    case = points(random, count)
+    middle, extent = middle_of(case.xyz)
+    reach = 0.3 * extent * numpy.array([[-1, -0.9], [0.9, 1], [-1, 0.8], [1, -0.7], [0, -1.0], [0.7, 0.9]])
+    places = numpy.column_stack((middle + reach, [numpy.nan, 1.0, numpy.nan, numpy.nan, 2.0, numpy.nan]))
+    case.lines = (places, [[0, 1], [2, 3], [4, 5]], [])
+    return case
+
+
 def straight_line(random, count):
     """A line of many points through a cloud, of even slope."""
     case = points(random, count)

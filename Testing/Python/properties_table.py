@@ -33,8 +33,9 @@ def row_of(one):
     takes = "on or off" if one.kind.value_type == "bool" else one.takes.replace("|", "/")
     takes += ", in %s" % one.kind.unit if one.kind.unit else ""
     remarks = [] if one.in_pieces else ["not in pieces"]
-    for needs, other, _ in one.rules():
-        remarks.append(("with" if needs else "without") + " `%s`" % DESCRIBED[other].options[0])
+    for needs, others, _ in one.rules():
+        listed = " or ".join("`%s`" % DESCRIBED[other].options[0] for other in others)
+        remarks.append(("with " if needs else "without ") + listed)
     default = one.default_in("program" if names else "filter" if setter else one.places[0])
     cells = (" ".join(names), "`%s`" % setter if setter else "", (panels + [""])[0], takes, default,
              "; ".join([one.line, *remarks]))

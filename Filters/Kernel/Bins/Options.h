@@ -20,7 +20,7 @@ enum class UnusedReason : unsigned char
 {
   Duplicate = 1,
   NotFinite = 2,
-  WithinError = 3, ///< within MaximumElevationError of the surface
+  WithinError = 3, ///< within LargestElevationError of the surface, which is simplified
   Hidden = 4       ///< marked as such by who has given it at no place
 };
 
@@ -31,7 +31,7 @@ enum class LatticeMode
   Off        ///< never: by their coordinates
 };
 
-/** Which edges a triangulation of few points has (MaximumElevationError). */
+/** Which edges a triangulation of few points has (DelaunayOptions::IsSimplified()). */
 enum class EdgeCriterion
 {
   Delaunay,     ///< those of the chosen points: unique
@@ -55,16 +55,23 @@ struct DelaunayOptions
 {
   SearchStrategy Strategy = SearchStrategy::VoxelTraversal;
   /** Triangles with a longer edge (in x,y) are left out; 0: no limit. */
-  // Not together with MaximumElevationError: Adapt refuses both, as few points have long edges.
+  // Not together with the limits below: Adapt refuses both, as few points have long edges.
   double MaximumEdgeLength = 0.0;
   /**
    * As few points become vertices as are needed for the others to be within this vertical distance
    * of the surface; 0: all points do.
    */
   double MaximumElevationError = 0.0;
-  /** With it: points of lines go, too, where the lines stay nearly the same (FewerPieces.h). */
+  /**
+   * The property MaximumNumberOfPoints: no more become vertices, chosen so that the largest distance
+   * of the others is small; 0: no limit. With both limits, the one that is reached first.
+   */
+  Index MostVertices = 0;
+  /** Whether either limit chooses points. */
+  bool IsSimplified() const { return this->MaximumElevationError > 0.0 || this->MostVertices > 0; }
+  /** With one of them: points of lines go, too, where the lines stay nearly the same (FewerPieces.h). */
   bool SimplifyConstraints = false;
-  EdgeCriterion Edges = EdgeCriterion::Delaunay; ///< with it
+  EdgeCriterion Edges = EdgeCriterion::Delaunay; ///< with one of them
   DuplicatePolicy Duplicates = DuplicatePolicy::KeepFirst;
   Progress Monitor;
   /** Off by default: other parts of the kernel need the triangulation by coordinates. */
@@ -96,8 +103,8 @@ struct Triangulation
   Index NumberOfDuplicates = 0;
   Index NumberOfNotFinite = 0;
   Index NumberOfHidden = 0;    ///< set by NameHidden(); not counted as not finite
-  Index NumberOfRedundant = 0; ///< points within MaximumElevationError
-  /** No vertical distance of such a point is larger; it is no larger than MaximumElevationError. */
+  Index NumberOfRedundant = 0; ///< points that are left out WithinError
+  /** No vertical distance of such a point is larger. Infinite where triangles are too thin for a bound. */
   double LargestElevationError = 0.0;
   // Others triangulate pieces of the same cloud by it, see SharedLattice.h.
   bool LatticeFound = false; ///< whether the triangles are those of a lattice (LatticeGrowth.h)

@@ -135,7 +135,7 @@ ConstrainedTriangulation TriangulateConstrained(
   // The points of lines are on no nodes.
   options.UseLattice = LatticeMode::Off;
   options.MaximumEdgeLength = 0.0; // recovery needs all triangles
-  if (options.MaximumElevationError > 0.0)
+  if (options.IsSimplified())
   {
     // Which makes the edges itself, as it chooses the points. A limit on edges is not set then.
     result = TriangulateFew(all, options, constrained.Pieces);

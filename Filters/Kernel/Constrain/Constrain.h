@@ -33,6 +33,8 @@ namespace elevation
 struct ConstrainedTriangulation : LinePieces
 {
   Triangulation Result; ///< ids of Added follow those of the input points
+  /** Set by who has given points of lines the elevations that they lacked. */
+  std::int64_t NumberOfPointsWithoutZ = 0;
 };
 
 /**

@@ -58,9 +58,14 @@ ELEVATION_SENTENCE(OnOneRank,
 /** @name Why: {reason} of OnOneRank @{ */
 ELEVATION_SENTENCE(ErrorNeedsAll,
   "{property:MaximumElevationError} chooses few points out of all; 0 leaves the surface spread.");
+ELEVATION_SENTENCE(NumberNeedsAll,
+  "{property:MaximumNumberOfPoints} chooses few points out of all; 0 leaves the surface spread.");
 ELEVATION_SENTENCE(DrapingNeedsAll,
   "{property:DrapeConstraints} lays constraints on the whole surface; constraints with elevations "
   "of their own leave it spread.");
+ELEVATION_SENTENCE(PointsWithoutZNeedAll,
+  "Points of constraints without z take it from the whole surface; constraints with elevations of "
+  "their own leave it spread.");
 ELEVATION_SENTENCE(NormalsNeedAll,
   "{property:OutwardTest} InwardNormal goes along the whole boundary; Exact leaves the surface "
   "spread.");
@@ -78,6 +83,10 @@ ELEVATION_SENTENCE(TooManyPointsInLines, "The lines of the {input} have more tha
 ELEVATION_SENTENCE(NoSuchPointOfLine, "Point {point} of the {owner} cell {cell} does not exist.");
 ELEVATION_SENTENCE(NonFinitePointOfLine,
   "Point {point} of the {owner} cell {cell} has a coordinate that is not finite.");
+ELEVATION_SENTENCE(NoSurfaceForPointOfLine,
+  "Point {point} of the {owner} cell {cell}, at {x}, {y}, has no z (NaN) and lies outside of the "
+  "surface of the points, from which it would take one (such points: {count}). Give it a z, or "
+  "drape the lines, which leaves out what lies outside.");
 ELEVATION_SENTENCE(PolygonsAreLines,
   "Polygons of the constraints ({count}) are taken as lines: their edges become edges of the "
   "surface, and nothing is cut away. To cut along polygons, give them to vtkTrimOutwardTriangles "
@@ -124,8 +133,21 @@ ELEVATION_SENTENCE(LatticeNotUsed,
   "triangulated as they are.");
 ELEVATION_SENTENCE(InvalidElevationError,
   "{property:MaximumElevationError} is {value}; it must be 0 (off) or a distance in z.");
+ELEVATION_SENTENCE(InvalidNumberOfPoints,
+  "{property:MaximumNumberOfPoints} is {value}; it must be 0 (off) or a number of points.");
+ELEVATION_SENTENCE(TooFewPointsAllowed,
+  "{property:MaximumNumberOfPoints} is {value}, but the surface needs {least} points: {hull} at "
+  "the "
+  "corners of the convex hull, and {lines} more of lines that have to be edges, constraints or the "
+  "outline.");
+ELEVATION_SENTENCE(ErrorNotReached,
+  "{property:MaximumNumberOfPoints}, {most}, is reached before {property:MaximumElevationError}, "
+  "{limit}: points lie up to {largest} above or below the surface.");
 ELEVATION_SENTENCE(TwoLimits,
   "{property:MaximumEdgeLength} and {property:MaximumElevationError} are both set, but fewer "
+  "points make longer edges: set one of them to 0, and trim the surface instead.");
+ELEVATION_SENTENCE(LengthAndNumber,
+  "{property:MaximumEdgeLength} and {property:MaximumNumberOfPoints} are both set, but fewer "
   "points make longer edges: set one of them to 0, and trim the surface instead.");
 /** @} */
 
@@ -250,8 +272,14 @@ ELEVATION_SENTENCE(TooFewPiecesToFill,
   "{property:MaximumHoleSize}.");
 ELEVATION_SENTENCE(
   ErrorNotInPieces, "{property:MaximumElevationError} is for points in memory, not for pieces.");
+ELEVATION_SENTENCE(
+  NumberNotInPieces, "{property:MaximumNumberOfPoints} is for points in memory, not for pieces.");
 ELEVATION_SENTENCE(ConstraintsNotInPieces,
   "Constraints with {property:DrapeConstraints} are for points in memory, not for pieces.");
+ELEVATION_SENTENCE(PointsWithoutZNotInPieces,
+  "Constraints with points without z (NaN), which would take it from the surface, are for points "
+  "in "
+  "memory, not for pieces.");
 ELEVATION_SENTENCE(UnusedPointsInPieces,
   "{property:RemoveUnusedPoints} is for a surface in memory; pieces keep all points.");
 ELEVATION_SENTENCE(PrecisionInPieces,

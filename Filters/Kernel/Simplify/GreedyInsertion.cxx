@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <queue>
 #include <utility>
 
 namespace elevation
@@ -12,10 +14,10 @@ namespace elevation
 
 namespace
 {
-// The passes of Run(), for each sample from the coarsest to all points:
+// The passes of Run() and RunWorstFirst(), for each sample from the coarsest to all points:
 // 1. AddSample(): each new point of the sample is put into the list of its face.
 // 2. Refine(), with strips, with shifted strips, and with one: points are inserted level by level,
-//    until errors are small or the sample has enough vertices.
+//    until errors are small or the sample has enough vertices; or InsertWorst(), one by one.
 // Insert() serves the caller, who has found points that rounding had hidden (Simplify.cxx).
 
 // The sizes of samples, and when one has served its purpose: with a vertex for each dozen of its
@@ -23,12 +25,27 @@ namespace
 constexpr std::uint32_t SampleFactor = 16;
 constexpr double LeastSample = 2000.0;
 constexpr double PointsPerVertex = 12.0; // of a sample, where it ends
+// Of the vertices there may be, those that samples choose; all points choose the others.
+constexpr double MostOfSamples = 0.5;
 // A strip with fewer rows of vertices would have most of its triangles on its borders.
 constexpr double VertexRowsPerStrip = 16.0;
 constexpr Index MostStrips = 64;
 // A strip takes faces in stretches of which the last is not full, in three runs for each of few
 // samples.
 constexpr std::size_t SpareFaces = 32 * InsertionStrip::FacesAtOnce * MostStrips;
+
+/** The worst point of a face, as it was when it entered the queue. */
+struct WorstPoint
+{
+  float Error;
+  Index Place, Face;
+
+  /** Of two that are equally far off, the lower place is worse: so it is in lists. */
+  bool operator<(const WorstPoint& other) const
+  {
+    return this->Error < other.Error || (this->Error == other.Error && this->Place > other.Place);
+  }
+};
 
 /** Spread evenly over the places of any neighbourhood. */
 bool IsInSample(Index place, std::uint32_t mask)
@@ -47,6 +64,7 @@ GreedyInsertion::GreedyInsertion(const Buffer<ElevatedPlace>& places, const Buff
   , Edges(edges)
   , Inserted(places, metric, first, fixed, SpareFaces)
   , Ordered(static_cast<std::size_t>(first.NumberOfTriangles()))
+  , Vertices(static_cast<Index>(first.Points.size()))
 {
   std::iota(this->Ordered.begin(), this->Ordered.end(), 0);
 }
@@ -173,7 +191,9 @@ void GreedyInsertion::Refine(double error, double density, std::vector<Insertion
   }
 }
 
-void GreedyInsertion::Run(double error, int threads, const Progress& progress)
+/** Goes from the coarsest sample to all points. @param[in] refine  called with the points for each of a sample */
+template <typename Refining>
+void GreedyInsertion::ForEachSample(int threads, const Progress& progress, const Refining& refine)
 {
   const double count = static_cast<double>(this->Inserted.Places.size());
   // Of ten million points, samples have 2,441, then 39,062, then 625,000 points, then all.
@@ -188,13 +208,21 @@ void GreedyInsertion::Run(double error, int threads, const Progress& progress)
     const double end = every == 1 ? 1.0 : begin + 0.1;
     Stages stages(progress.Between(begin, end), { 30, 70 });
     this->AddSample(every, threads, stages.Next());
+    refine(every, stages.Next());
+    begin = end;
+  }
+}
+
+void GreedyInsertion::Run(double error, int threads, const Progress& progress)
+{
+  const double count = static_cast<double>(this->Inserted.Places.size());
+  this->ForEachSample(threads, progress, [&](std::uint32_t every, const Progress& refining) {
     // The last run has all points, and no limit to its vertices.
     const double density = every == 1 ? count : 1.0 / (PointsPerVertex * every);
     // Vertices are about half as many as triangles, and as many along a side as the root of that.
     const double rows = std::sqrt(0.5 * static_cast<double>(this->Ordered.size()));
     const Index strips =
       static_cast<Index>(std::min(rows / VertexRowsPerStrip, static_cast<double>(MostStrips)));
-    const Progress refining = stages.Next();
     Stages passes = strips > 1 ? Stages(refining, { 60, 20, 20 }) : Stages(refining, { 100 });
     if (strips > 1)
     {
@@ -202,8 +230,81 @@ void GreedyInsertion::Run(double error, int threads, const Progress& progress)
       this->Refine(error, density, this->MakeStrips(strips, true), threads, passes.Next());
     }
     this->Refine(error, density, this->MakeStrips(1, false), threads, passes.Next());
-    begin = end;
+  });
+}
+
+/**
+ * From a queue of the worst point of each face. An entry counts as long as its point is the worst
+ * of its face; others are dropped when they come up.
+ * @return after how many vertices the largest error was the smallest
+ */
+Index GreedyInsertion::InsertWorst(double error, Index last, const Progress& progress)
+{
+  InsertionStrip all(
+    this->Inserted, this->Edges, 0, static_cast<Index>(this->Inserted.Places.size()));
+  std::priority_queue<WorstPoint> queue;
+  const auto enter = [&](Index face) {
+    const Face& made = this->Inserted.Faces[face];
+    if (made.Error > 0.0f) // not 0, and a number
+    {
+      queue.push({ made.Error, made.Worst, face });
+    }
+  };
+  const auto isOld = [this](const WorstPoint& one) {
+    return this->Inserted.Faces[one.Face].Worst != one.Place ||
+      this->Inserted.Faces[one.Face].Error != one.Error;
+  };
+  for (const Index face : this->Ordered)
+  {
+    enter(face);
   }
+  const Index begin = this->Vertices;
+  Index best = begin;
+  float least = std::numeric_limits<float>::infinity();
+  for (;;)
+  {
+    while (!queue.empty() && isOld(queue.top()))
+    {
+      queue.pop();
+    }
+    const float largest = queue.empty() ? 0.0f : queue.top().Error;
+    // Of two numbers with the same error the larger one, which is nearer to the other points.
+    if (largest <= least)
+    {
+      least = largest;
+      best = this->Vertices;
+    }
+    if (static_cast<double>(largest) <= error || this->Vertices >= last)
+    {
+      break;
+    }
+    const WorstPoint next = queue.top();
+    queue.pop();
+    // The first insertions move most points, so each reports.
+    ReportStep(progress, static_cast<std::size_t>(this->Vertices - begin),
+      static_cast<std::size_t>(last - begin), 1);
+    if (all.Insert(next.Place, next.Face))
+    {
+      ++this->Vertices;
+      enter(next.Face); // which loses the point alone where rounding had put it there
+      std::for_each(all.Made().begin(), all.Made().end(), enter);
+    }
+  }
+  this->Ordered.insert(this->Ordered.end(), all.Faces.begin(), all.Faces.end());
+  return best;
+}
+
+Index GreedyInsertion::RunWorstFirst(
+  double error, Index most, Index last, int threads, const Progress& progress)
+{
+  const double count = static_cast<double>(this->Inserted.Places.size());
+  Index best = this->Vertices;
+  this->ForEachSample(threads, progress, [&](std::uint32_t every, const Progress& inserting) {
+    const double ofSample = std::min(count / (PointsPerVertex * every), MostOfSamples * most);
+    best = this->InsertWorst(
+      error, every == 1 ? last : std::min(last, static_cast<Index>(ofSample)), inserting);
+  });
+  return best;
 }
 
 /** The face that has a place in its list: that in which it lies, or one nearby. */
@@ -236,6 +337,7 @@ void GreedyInsertion::Insert(const std::vector<Index>& chosen)
     all.Insert(place, face);
     this->Ordered.insert(this->Ordered.end(),
       all.Faces.begin() + static_cast<std::ptrdiff_t>(before), all.Faces.end());
+    ++this->Vertices;
   }
 }
 

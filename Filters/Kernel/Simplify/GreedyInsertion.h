@@ -19,6 +19,9 @@
  * that has all its corners, and others wait. The strips depend on the points alone, so the result
  * is the same for any number of threads.
  *
+ * With a limit on the vertices, each must be worth more than those that come after it. Then the
+ * worst point of all is next, from a queue, in one strip.
+ *
  * While triangles are large, a few of their points are enough to find nearly the worst one. So
  * samples are inserted first, each of 16 times as many points as the one before.
  *
@@ -56,7 +59,7 @@
 namespace elevation
 {
 
-/** Holds the mesh and the lists of its points. Run(), then perhaps Insert() and Run() in turn. */
+/** Holds the mesh and the lists of its points. One of the runs, then perhaps Insert() and a run in turn. */
 class GreedyInsertion
 {
 public:
@@ -76,7 +79,16 @@ public:
   /** Inserts points until no error is above this one. @throws Aborted; std::bad_alloc */
   void Run(double error, int threads, const Progress& progress);
 
-  /** Inserts some places that are in lists; then Run() once more. */
+  /**
+   * Inserts the worst point of all, again and again, until no error is above this one, or there are
+   * so many vertices.
+   * @param[in] most  the vertices that samples are chosen for
+   * @param[in] last  where to stop; at most as many
+   * @return after how many vertices the largest error was the smallest
+   */
+  Index RunWorstFirst(double error, Index most, Index last, int threads, const Progress& progress);
+
+  /** Inserts some places that are in lists; then a run once more. */
   void Insert(const std::vector<Index>& chosen);
 
   /** The triangles, in an order that does not depend on the number of threads. */
@@ -84,19 +96,24 @@ public:
   const Face& At(Index face) const { return this->Inserted.Faces[face]; }
   /** The point after another in the list of a face, or None. */
   Index Next(Index place) const { return this->Inserted.Links[place]; }
+  Index NumberOfVertices() const { return this->Vertices; }
   bool IsVertex(Index place) const { return this->Inserted.Links[place] == InsertionMesh::Vertex; }
 
 private:
+  template <typename Refining>
+  void ForEachSample(int threads, const Progress& progress, const Refining& refine);
   void AddSample(std::uint32_t every, int threads, const Progress& progress);
   std::vector<InsertionStrip> MakeStrips(Index count, bool areShifted);
   void Refine(double error, double density, std::vector<InsertionStrip>&& strips, int threads,
     const Progress& progress);
+  Index InsertWorst(double error, Index last, const Progress& progress);
   Index FaceWith(Index place, Index start) const;
 
   const Buffer<Index>& Rows;
   const EdgeCriterion Edges;
   InsertionMesh Inserted;
   std::vector<Index> Ordered;
+  Index Vertices; ///< but for Run(), which does not need their number
 };
 
 } // namespace elevation

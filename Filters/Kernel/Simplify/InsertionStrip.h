@@ -57,6 +57,8 @@ public:
   bool Work(const Round& round);
   /** @return false if that would change a face that is not of this strip */
   bool Insert(Index place, Index face);
+  /** The faces that the last insertion has made. */
+  const std::vector<Index>& Made() const { return this->Fan; }
 
 private:
   InsertionMesh& Surface;

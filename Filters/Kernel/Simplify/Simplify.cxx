@@ -6,12 +6,14 @@
 #include "FewerPieces.h"
 #include "GreedyInsertion.h"
 #include "Kernel/Grow/Grow.h"
+#include "Kernel/Messages/Messages.h"
 #include "PlacedPoints.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -22,7 +24,7 @@ namespace
 {
 // Simplified(), below, goes through the passes of Simplify.h:
 // 1. FewerPieces() and FirstMesh(): what must be there, the hull's corners and lines;
-// 2. GreedyInsertion: points, until no error is too large;
+// 2. GreedyInsertion: points, until no error is too large, or there are enough (Choose());
 // 3. Measurement: the same errors with a bound on rounding, and again from 2. if one is too large;
 // 4. TrianglesOf() and ListUnused(): the result, in the order of Triangulate.h.
 
@@ -62,17 +64,20 @@ Mesh FirstMesh(const PlacedPoints& placed, const std::vector<Segment>& pieces,
 class Measurement
 {
 public:
-  Measurement(const PointView& points, const PlacedPoints& placed, const GreedyInsertion& mesh)
+  /** @param[in] hasToMeasure  all points, also those that could be inserted instead */
+  Measurement(const PointView& points, const PlacedPoints& placed, const GreedyInsertion& mesh,
+    bool hasToMeasure)
     : Points(points)
     , Placed(placed)
     , Chosen(mesh)
+    , HasToMeasure(hasToMeasure)
   {
   }
 
   /**
    * Measures all.
-   * @param[out] beyond  places that may be too far, increasing
-   * @return the largest distance of the others
+   * @param[out] beyond  places that may be farther than @a most, increasing
+   * @return the largest distance
    * @throws NotOnLattice if a triangle is flat or inverted
    */
   double Run(double most, int threads, const Progress& progress, std::vector<Index>& beyond) const
@@ -138,11 +143,9 @@ private:
         Orientation(c, a, p) != Negative;
       const double distance =
         isInside ? plane.BoundAt(p, this->ElevationOf(place)) : this->DistanceFrom(number, place);
-      if (distance <= most)
-      {
-        largest = std::max(largest, distance);
-      }
-      else
+      const bool isKnown = distance >= 0.0; // not where a triangle is too thin
+      largest = std::max(largest, isKnown ? distance : std::numeric_limits<double>::infinity());
+      if (!(distance <= most))
       {
         beyond.push_back(place);
       }
@@ -157,26 +160,73 @@ private:
     for (int step = 0; step < 16; ++step)
     {
       const Face& at = this->Chosen.At(face);
-      int k = 0;
-      while (k < 3 &&
-        (at.Neighbors[k] == None ||
-          Orientation(this->At(at.Corners[k]), this->At(at.Corners[(k + 1) % 3]), p) != Negative))
-      {
-        ++k;
-      }
+      const int k = this->EdgeBefore(at, p);
       if (k == 3)
       {
         return this->PlaneOf(at).BoundAt(p, this->ElevationOf(place));
       }
       face = at.Neighbors[k];
     }
-    return std::numeric_limits<double>::infinity();
+    const auto found = this->HasToMeasure
+      ? std::find_if(this->Chosen.Order().begin(), this->Chosen.Order().end(),
+          [&](Index other) { return this->EdgeBefore(this->Chosen.At(other), p) == 3; })
+      : this->Chosen.Order().end();
+    return found != this->Chosen.Order().end()
+      ? this->PlaneOf(this->Chosen.At(*found)).BoundAt(p, this->ElevationOf(place))
+      : std::numeric_limits<double>::infinity();
+  }
+
+  /** The first edge of a face between it and a place, or 3. The border is not between. */
+  int EdgeBefore(const Face& face, const Point2& p) const
+  {
+    int k = 0;
+    while (k < 3 &&
+      (face.Neighbors[k] == None ||
+        Orientation(this->At(face.Corners[k]), this->At(face.Corners[(k + 1) % 3]), p) != Negative))
+    {
+      ++k;
+    }
+    return k;
   }
 
   const PointView& Points;
   const PlacedPoints& Placed;
   const GreedyInsertion& Chosen;
+  const bool HasToMeasure;
 };
+
+/** Refuses a number of vertices that is too small for those that have to be. */
+void CheckNumber(const DelaunayOptions& options, std::size_t ofHull, std::size_t all)
+{
+  if (options.MostVertices > 0 && all > static_cast<std::size_t>(options.MostVertices))
+  {
+    throw MakeError<sentences::TooFewPointsAllowed>(
+      options.MostVertices, all, ofHull, all - ofHull);
+  }
+}
+
+/**
+ * Inserts points until there are as many vertices as there may be, or fewer where an error is
+ * reached, or where fewer had a smaller largest error: then once more, up to there.
+ * @param[in] restart  takes the mesh back to the first triangles
+ * @return whether the error is reached with fewer vertices than there may be
+ */
+template <typename Restart>
+bool ChooseByNumber(const DelaunayOptions& options, int threads, const Progress& progress,
+  const Restart& restart, std::optional<GreedyInsertion>& mesh)
+{
+  Stages stages(progress, { 50, 50 });
+  const double error = options.MaximumElevationError;
+  const Index most = options.MostVertices;
+  const Index best = mesh->RunWorstFirst(error, most, most, threads, stages.Next());
+  if (best < mesh->NumberOfVertices())
+  {
+    restart();
+    mesh->RunWorstFirst(error, most, best, threads, stages.Next());
+    return false;
+  }
+  return error > 0.0 && mesh->NumberOfVertices() < most;
+}
 
 /** The rank of each vertex, from the lowest up, by places; what others have is not set. */
 Buffer<Index> RanksOf(
@@ -324,10 +374,14 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   result.Steps = placed.Steps;
   std::vector<Segment> lines = PiecesByPlaces(pieces, placed, stages.Next());
   const Progress straightening = stages.Next();
+  const bool isCounted = options.MostVertices > 0;
+  const double unlimited = std::numeric_limits<double>::infinity();
   if (options.SimplifyConstraints && !lines.empty())
   {
-    lines = FewerPieces(placed, lines, options.MaximumElevationError, straightening);
+    lines = FewerPieces(
+      placed, lines, isCounted ? unlimited : options.MaximumElevationError, straightening);
   }
+  const std::size_t ofHull = placed.Corners.size();
   // The first mesh has these corners alone; its triangles then get the numbers of places.
   const std::vector<Segment> byCorners = AddEnds(lines, placed, stages.Next());
   std::vector<char> fixed;
@@ -340,9 +394,14 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
     ListUnused(points.Count, placed, nullptr, stages.Next(), result);
     return result;
   }
-  GreedyInsertion mesh(placed.Places, placed.Rows, placed.Metric ? &*placed.Metric : nullptr, first,
-    fixed, options.Edges);
-  const Measurement measurement(points, placed, mesh);
+  CheckNumber(options, ofHull, placed.Corners.size());
+  std::optional<GreedyInsertion> mesh;
+  const auto restart = [&]() {
+    mesh.emplace(placed.Places, placed.Rows, placed.Metric ? &*placed.Metric : nullptr, first,
+      fixed, options.Edges);
+  };
+  restart();
+  const Measurement measurement(points, placed, *mesh, isCounted);
   std::vector<Index> beyond;
   Progress ofRound = stages.Next();
   const Progress ofFurther = stages.Next(), measuring = stages.Next();
@@ -351,16 +410,29 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   {
     if (!beyond.empty())
     {
-      mesh.Insert(beyond);
+      mesh->Insert(beyond);
       beyond.clear();
       ofRound = ofFurther;
     }
-    mesh.Run(options.MaximumElevationError, threads, ofRound);
-    result.LargestElevationError =
-      measurement.Run(options.MaximumElevationError, threads, measuring, beyond);
+    bool mayInsert = true; // what is too far all the same
+    if (isCounted)
+    {
+      mayInsert = ChooseByNumber(options, threads, ofRound, restart, mesh);
+    }
+    else
+    {
+      mesh->Run(options.MaximumElevationError, threads, ofRound);
+    }
+    result.LargestElevationError = measurement.Run(
+      mayInsert ? options.MaximumElevationError : unlimited, threads, measuring, beyond);
+    const std::size_t all = beyond.size() + static_cast<std::size_t>(mesh->NumberOfVertices());
+    if (isCounted && (!mayInsert || all > static_cast<std::size_t>(options.MostVertices)))
+    {
+      beyond.clear();
+    }
   } while (!beyond.empty());
-  result.Triangles = TrianglesOf(placed, mesh, stages.Next());
-  ListUnused(points.Count, placed, &mesh, stages.Next(), result);
+  result.Triangles = TrianglesOf(placed, *mesh, stages.Next());
+  ListUnused(points.Count, placed, &*mesh, stages.Next(), result);
   // Euler's formula, with the vertices that are left.
   result.NumberOfHullPoints = 2 * (placed.Count() - result.NumberOfRedundant) - 2 -
     static_cast<Index>(result.Triangles.size() / 3);

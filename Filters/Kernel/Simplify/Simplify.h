@@ -3,7 +3,7 @@
 /**
  * @file
  * The Delaunay triangulation of as few points as are needed to be within an elevation error of all
- * others.
+ * others, or of so many as there may be to be as near to the others as they can.
  *
  * In: points. Out: as Triangulate.h, of chosen points; the others are unused. The passes:
  *   1. Put the points in the order of the nodes of a lattice, if there is one, else of a grid; set
@@ -15,8 +15,12 @@
  *      in, and bound what rounding may have taken from it. Points that may be too far are inserted,
  *      too, until there are none.
  *
- * Guarantees: no finite point that is not a duplicate is farther from the surface;
- * LargestElevationError is the largest distance. Topology is exact. With Delaunay edges it is
+ * With a number of vertices, the largest error does not fall with each one. Of the surfaces on the
+ * way there, the one with the smallest is taken: so pass 2 is done once more, up to it. Lines then
+ * keep only their corners in x,y in advance, as all other vertices have to be worth their number.
+ *
+ * Guarantees: no finite point that is not a duplicate is farther from the surface, or the number of
+ * vertices is reached; LargestElevationError is the largest distance. Topology is exact. With Delaunay edges it is
  * unique as in Triangulate.h: the triangles are those of Triangulate() for the chosen points. The
  * choice depends on the positions of the points alone, not on their order, nor on the number of
  * threads.
@@ -39,13 +43,13 @@ namespace elevation
 
 /**
  * Triangulates.
- * @param[in] options  with MaximumElevationError
+ * @param[in] options  with MaximumElevationError, MostVertices, or both
  * @param[in] pieces   between points, by ids: they become edges, and their ends are chosen, except
  *                     for those that SimplifyConstraints leaves out. They neither cross nor run
  *                     through a point, as those of CutLines(). With pieces, points are
  *                     triangulated by coordinates, and the triangles are those of
  *                     TriangulateConstrained() for the chosen points.
- * @throws as Triangulate()
+ * @throws as Triangulate(); Error if the hull and the pieces need more vertices than there may be
  */
 Triangulation TriangulateFew(const PointView& points, const DelaunayOptions& options,
   const std::vector<Segment>& pieces = std::vector<Segment>());

@@ -31,7 +31,7 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
     };
   }
   // Few points have passes of their own, with or without a lattice.
-  if (options.MaximumElevationError > 0.0)
+  if (options.IsSimplified())
   {
     return TriangulateFew(points, options);
   }

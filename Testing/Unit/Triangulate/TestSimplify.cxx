@@ -19,26 +19,6 @@ using namespace testing_points;
 
 namespace
 {
-/** The triangles of the chosen points alone, by their ids in the cloud. */
-std::vector<Index> TrianglesOfChosen(
-  const Cloud& cloud, const std::vector<Index>& chosen, DelaunayOptions options)
-{
-  Cloud few;
-  for (const Index id : chosen)
-  {
-    const double* const p = cloud.Coordinates.data() + 3 * static_cast<std::size_t>(id);
-    few.Add(p[0], p[1], p[2]);
-  }
-  options.MaximumElevationError = 0.0;
-  const Triangulation made = Triangulate(few.View(), options);
-  std::vector<Index> triangles;
-  for (const Index corner : made.Triangles)
-  {
-    triangles.push_back(chosen[corner]);
-  }
-  return triangles;
-}
-
 /** Checks all that is promised. */
 void Check(const Cloud& cloud, const DelaunayOptions& options, const Triangulation& made)
 {
@@ -56,18 +36,6 @@ void Check(const Cloud& cloud, const DelaunayOptions& options, const Triangulati
   EXPECT_EQ(static_cast<std::size_t>(made.NumberOfRedundant) + made.NumberOfDuplicates +
       made.NumberOfNotFinite + chosen.size(),
     static_cast<std::size_t>(cloud.Count()));
-}
-
-/** The points of a triangulation, as places. */
-std::set<std::pair<double, double>> PlacesOf(const Cloud& cloud, const Buffer<Index>& corners)
-{
-  std::set<std::pair<double, double>> places;
-  for (const Index id : corners)
-  {
-    const Point2 p = cloud.View().At(id);
-    places.emplace(p.X, p.Y);
-  }
-  return places;
 }
 } // namespace
 
@@ -129,44 +97,7 @@ TEST(Simplify, TakesAtMostATenthMorePointsThanOneAtATime)
     std::vector<Index> chosen = ChosenOf(cloud, corners);
     for (;;)
     {
-      const std::vector<Index> triangles = TrianglesOfChosen(cloud, chosen, plain);
-      Mesh mesh = MeshOf(cloud, Triangulation());
-      mesh.Triangles = triangles;
-      double largest = 0.0;
-      Index worst = None;
-      for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-      {
-        const Index* const c = triangles.data() + 3 * static_cast<std::size_t>(t);
-        const Point2 p = mesh.PointOf(c[0]), q = mesh.PointOf(c[1]), r = mesh.PointOf(c[2]);
-        const double whole = (q.X - p.X) * (r.Y - p.Y) - (q.Y - p.Y) * (r.X - p.X);
-        const Box box = [&]() {
-          Box around;
-          around.Add(p);
-          around.Add(q);
-          around.Add(r);
-          return around;
-        }();
-        for (Index i = 0; i < cloud.Count(); ++i)
-        {
-          const Point2 at = mesh.PointOf(i);
-          if (!box.Contains(at) || Orientation(p, q, at) == Negative ||
-            Orientation(q, r, at) == Negative || Orientation(r, p, at) == Negative)
-          {
-            continue;
-          }
-          const double u = ((q.X - at.X) * (r.Y - at.Y) - (q.Y - at.Y) * (r.X - at.X)) / whole;
-          const double v = ((r.X - at.X) * (p.Y - at.Y) - (r.Y - at.Y) * (p.X - at.X)) / whole;
-          const PointView view = cloud.View();
-          const double z = u * view.Elevation(c[0]) + v * view.Elevation(c[1]) +
-            (1.0 - u - v) * view.Elevation(c[2]);
-          const double distance = std::fabs(z - view.Elevation(i));
-          if (distance > largest)
-          {
-            largest = distance;
-            worst = i;
-          }
-        }
-      }
+      const auto [worst, largest] = FarthestFrom(cloud, TrianglesOfChosen(cloud, chosen, plain));
       if (largest <= options.MaximumElevationError)
       {
         break;
