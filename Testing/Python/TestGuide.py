@@ -65,6 +65,13 @@ class Gaps(unittest.TestCase):
 
 
 @draws
+def headings_of(path):
+    """The headings of a page, as links name them."""
+    with open(path, encoding="utf-8") as page:
+        titles = re.findall(r"(?m)^##+ (.+)$", page.read())
+    return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
 class Guide(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -84,7 +91,7 @@ class Guide(unittest.TestCase):
 
     def test_each_picture_is_made_by_an_example_and_is_small(self):
         names = PICTURE.findall(GUIDE)
-        self.assertEqual(len(names), 8)
+        self.assertEqual(len(names), 9)
         for name in names:
             self.assertTrue(os.path.exists(os.path.join(self.folder, name + ".png")), name)
             kept = os.path.join(ROOT, "Documentation", "figures", f"guide-{name}.png")
@@ -92,15 +99,14 @@ class Guide(unittest.TestCase):
 
     def test_links_lead_to_files_and_headings(self):
         for name in ("Guide.md", "Migration.md"):
-            text = text_of(name)
-            headings = {re.sub(r"[^\w -]", "", line[3:].lower()).replace(" ", "-")
-                        for line in text.splitlines() if line.startswith("## ")}
-            for target in re.findall(r"\]\(([^)]+)\)", text):
-                if target.startswith("#"):
-                    self.assertIn(target[1:], headings)
-                elif not target.startswith("https:"):
-                    path = os.path.join(ROOT, "Documentation", target)
-                    self.assertTrue(os.path.exists(path), target)
+            for target in re.findall(r"\]\(([^)]+)\)", text_of(name)):
+                if target.startswith("https:"):
+                    continue
+                page, _, heading = target.partition("#")
+                path = os.path.join(ROOT, "Documentation", page or name)
+                self.assertTrue(os.path.exists(path), target)
+                if heading:
+                    self.assertIn(heading, headings_of(path), target)
 
     def test_contour_lines_that_are_opened_make_few_flat_triangles(self):
         figures = re.search(r"(\d+) % of this map are flat triangles; with it, (\d+) %.*?"

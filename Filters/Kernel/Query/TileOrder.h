@@ -12,7 +12,7 @@
 #ifndef elevation_Query_TileOrder_h
 #define elevation_Query_TileOrder_h
 
-#include "Kernel/Base/Extent.h"
+#include "Kernel/Base/Base.h"
 
 #include <algorithm>
 #include <cmath>
