@@ -75,6 +75,7 @@ macro (es_build_plugin)
     LIBRARY_SUBDIRECTORY "${PARAVIEW_PLUGIN_SUBDIR}"
     PLUGINS_COMPONENT    "${es_library_component}"
     TARGET_COMPONENT     "${es_library_component}"
+    INSTALL_HEADERS      OFF
     ADD_INSTALL_RPATHS   OFF)
 endmacro ()
 

@@ -273,7 +273,8 @@ class Report(Program):
         lines = self.file("faults.txt", "x y z\n2 2.5 9\n8 2.5 9\n\n4.5 1 7\n4.5 6 7\n")
         report = self.report(name, "--faults", lines, "--no-trim", "--no-fill", "-o", "s.vtp")
         self.assertEqual(
-            report["faults"], {"file": lines, "added_points": 5, "crossings": 1}
+            report["faults"],
+            {"file": lines, "added_points": 5, "points_without_z": 0, "crossings": 1},
         )
         self.assertIsNone(report["lattice"])
         surface = vtk_files.run_vtk_reader(self.path("s.vtp"))
@@ -286,12 +287,16 @@ class Report(Program):
         self.assert_refused("no.vtp: no such file", name, "--faults", "no.vtp")
         bad = self.file("bad.txt", "1 1 0\n2 inf 0\n")
         self.assert_refused("bad.txt, line 2: a point of a fault", name, "--faults", bad)
+
+    def test_points_of_faults_without_z_take_that_of_the_surface(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
         data = make_points([(2, 2, 0), (8, 2, float("nan"))])
         lines = vtkCellArray()
         lines.InsertNextCell(2, [0, 1])
         data.SetLines(lines)
         writing.write_surface(data, self.path("nan.vtp"))
-        self.assert_refused(["nan.vtp: ", "Point 1"], name, "--faults", "nan.vtp")
+        report = self.report(name, "--faults", "nan.vtp", "-o", "s.vtp")
+        self.assertEqual(report["faults"]["points_without_z"], 1)
 
     def test_a_boundary_file_cuts_the_surface(self):
         name = self.file("sheet.xyz", text_of(SHEET))
