@@ -12,22 +12,22 @@
  *      lines by them, all alike. So all know the points that the lines add, and each part gets
  *      those of its cell.
  *   2. Each part lists the pieces of the lines that are edges of its triangles.
- *   3. The triangles that meet a piece that is not an edge yet go to the first part, which recovers
- *      these pieces together. What has changed comes back to the parts that had it; it counts
- *      whenever a part is read. The corners of all these triangles may be asked for.
+ *   3. The triangles that meet a piece that is not an edge yet go to part 0, which recovers
+ *      these pieces together. Parts get the changed triangles back, and whenever they are read use
+ *      them in place of the old ones. Other parts can ask for the corners that they now have.
  *
  *     step 1          lines cut at points near them, on each rank alike
  *     passes 2 to 5   triangles of all points, without the lines
  *     steps 2, 3      pieces that are no edges become edges
  *
- * Why the points near lines are enough for step 1: other points are on no piece, and crossings are
- * bent to no vertex further away (CutLines.h, NearLines.h). Why the triangles that meet missing
- * pieces are enough for step 3: recovery replaces crossed triangles alone, and its result is unique
- * (RecoverSegments.h), so it is that of the whole mesh.
+ * Why the points near lines are enough for step 1: other points are on no piece, and where lines
+ * cross, they are joined only at vertices so near, or at a new one (CutLines.h, NearLines.h). Why
+ * the triangles that meet missing pieces are enough for step 3: recovery replaces crossed triangles
+ * alone, and its result is unique (RecoverSegments.h), so it is that of the whole mesh.
  *
- * Cost: a part in files is read once in step 1, once in step 2, and once more in step 3 if it has a
- * triangle there. In memory are the lines and their pieces, the points near them, and in step 3 the
- * triangles that missing pieces meet.
+ * Cost: a part in files is read once in step 1, once in step 2, and once more in step 3 if its box
+ * meets that of a missing piece. In memory are the lines and their pieces, the points near them,
+ * and in step 3 the triangles that missing pieces meet.
  */
 #ifndef ConstrainParts_h
 #define ConstrainParts_h
@@ -55,7 +55,9 @@ struct SharedLines
 /**
  * Step 1, on all ranks.
  * @param[in] source  the same on all ranks
- * @param[in,out] store  its parts get more points, with ids after the largest, and more numbers
+ * @param[in,out] store  its parts get more points, with ids after the largest. They follow those of
+ *                       their part, so all numbers of later parts move up
+ * @param[in] plane  says which part owns a place
  * @param[out] warnings  as of CheckLines()
  * @throws Error on all ranks, as on one; Aborted
  */

@@ -15,8 +15,8 @@
  *   +-----+-----+-----+-----+
  *
  * Begins says where the items of each cell begin in Items, as in a sparse matrix stored by rows.
- * Cost: linear in the items and the cells that they touch: on average at most about 30 a segment,
- * and twice as many a triangle if triangles do not overlap.
+ * Cost: linear in the items and the cells that they touch. These are on average at most about 30
+ * for a segment, and 60 for a triangle where triangles do not overlap.
  */
 #ifndef elevation_Base_CellGrid_h
 #define elevation_Base_CellGrid_h

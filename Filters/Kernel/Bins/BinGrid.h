@@ -3,7 +3,7 @@
 /**
  * @file
  * Points sorted into the bins of a uniform grid over their bounding box: the index for points near
- * a place. A bin is found in one step, and no other index stores neighbouring bins contiguously.
+ * a place. A bin is found in one step, and points of neighbouring bins in a row lie side by side.
  *
  * In: points. Out: the same points in *slots*, row of bins after row of bins, so that the points of
  * neighbouring bins of a row are contiguous; duplicates set aside. Where density is even, a bin
@@ -13,18 +13,19 @@
  *   row 2 | 7  | 8 9|    | 10 |    Slots go through the bins row by row, so the points of any
  *   row 1 | 3 4|    | 5  | 6  |    stretch of a row are contiguous: here slots 5 and 6 for the
  *   row 0 |    | 0 1| 2  |    |    last two bins of row 1. Starts has the first slot of each bin;
- *                                  Order has the slots of a row by (y, x), as growth takes them.
+ *                                  Order has the slots of a row by (y, x), as Growth.h visits them.
  *
  * The passes: find the bounds and lay out the bins; sort the points into blocks of rows that fit
  * into a core's cache; in each block sort the points into bins, build a part of the tree, sort the
- * rows by (y, x), and set duplicates aside, which are then adjacent; join the blocks. The blocks
- * depend on the points alone, so the result is the same for any number of threads.
+ * rows by (y, x), and set duplicates aside, which are neighbours by then; join the blocks. The
+ * blocks depend on the points alone, so the result is the same for any number of threads.
  *
  * The bin of a coordinate is a monotone function of it, also in floating point: all points with x
  * in [low, high] are in the columns Column(low) to Column(high). Rounding hides no point.
  *
- * Cost: linear, n log n where density is uneven. Memory: 16 + 8 bytes per point, about 4 for the
- * bins and 3 for the tree (5 in full bins); during construction 24 more, and a few for full bins.
+ * Cost: linear, n log n where density is uneven. Memory: 16 bytes a point for coordinates, 8 for
+ * Ids and Order, about 4 for the bins and 3 for the tree (5 in full bins). Construction takes 24
+ * more, which stay in Scratch until growth takes them, and a few for full bins.
  */
 #ifndef elevation_Bins_BinGrid_h
 #define elevation_Bins_BinGrid_h

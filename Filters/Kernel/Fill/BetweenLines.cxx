@@ -584,7 +584,7 @@ private:
     return true;
   }
 
-  /** By least squares over gaps that are wider. */
+  /** By least squares over the errors of all trials. */
   double BestShare(const std::vector<Trial>& trials) const
   {
     double products = 0.0, squares = 0.0;

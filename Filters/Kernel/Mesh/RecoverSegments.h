@@ -14,15 +14,17 @@
  *   3. Flip the edges inside each polygon until they are locally Delaunay [Lawson 1977].
  *   4. Write the triangles back into the slots of those taken out.
  * Only crossed triangles change. When the mesh was (constrained) Delaunay before, it is constrained
- * Delaunay afterwards [Lee & Lin 1986]: only edges that are not constrained are locally Delaunay.
+ * Delaunay afterwards [Lee & Lin 1986]: all edges but constrained ones are certainly locally
+ * Delaunay.
  *
- * Guarantees: exact (Orientation and InCircle decide), and unique: the tie of co-circular points is
- * broken by the rule of Triangulate.h, so that the result depends on the positions alone, not on
- * the order of points, triangles or segments.
+ * Guarantees: exact (Orientation and InCircle decide). If the mesh was constrained Delaunay before,
+ * the set of its triangles is unique: the tie of co-circular points is broken by the rule of
+ * Triangulate.h, so that it depends on the positions alone, not on the order of points, triangles
+ * or segments. Which slots triangles have depends on the order before.
  *
- * Cost: one linear pass over the mesh for each call; then proportional to the triangles around the
- * ends of the segments and the edges crossed, as long as flips stay local, as for points spread
- * over the plane; at worst the square of the edges that a segment crosses.
+ * Cost: one linear pass to make the stars, unless they are given; then proportional to the
+ * triangles around the ends of the segments and the edges crossed, as long as flips stay local, as
+ * for points spread over the plane; at worst the square of the edges that a segment crosses.
  *
  * [Lawson 1977] Software for C1 surface interpolation.
  * [Lee & Lin 1986] Generalized Delaunay triangulation for planar graphs.
