@@ -82,7 +82,8 @@ class Kind:
         if self.value_type == "bool":
             return bool([False, True].index(value))
         number = int(value) if self.value_type == "int" else float(value)
-        is_within = self.least <= number <= self.most and number < math.inf
+        most = min(self.most, 2**63 - 1) if self.value_type == "int" else self.most
+        is_within = self.least <= number <= most and number < math.inf
         if number != float(value) or not is_within or (self.is_above and number == self.least):
             raise ValueError
         return number

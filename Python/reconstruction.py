@@ -414,6 +414,7 @@ def run_chain(
         if not keep_steps:
             free_triangles(result.trim or result.delaunay)
         result.hole_counts = hole_counts(ranks, result)
+    run.kept.forget_steps(run.count + 1)
     result.surface = result.complete = last.GetOutput()
     result.points, result.reasons = follow_points(
         ranks, result.points, result.reasons, result.complete, cloud.points

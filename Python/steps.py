@@ -6,7 +6,7 @@ import time
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkRectilinearGrid, vtkTable
 
 from .clouds import bare_lines, cell_names, coordinates_of, joined, marked_points
 from .lattice import lattice_of
@@ -52,10 +52,25 @@ class Kept:
     def forget(self, name):
         self._results.pop(name, None)
 
+    def forget_steps(self, first):
+        """Frees those of the filters from the first of these on: they will run anew."""
+        for name in [name for name in self._results if isinstance(name, int) and name >= first]:
+            self.forget(name)
+
 
 def state_of(data):
     """Data sets as part of a key: which they are, and when they were changed last."""
-    return [(one, one.GetMTime()) for one in data]
+    return [(one, changed_at(one)) for one in data]
+
+
+def changed_at(data):
+    """VTK leaves out the columns of tables and the axes of rectilinear grids."""
+    parts = [data]
+    if isinstance(data, vtkTable):
+        parts.append(data.GetRowData())
+    if isinstance(data, vtkRectilinearGrid):
+        parts += [data.GetXCoordinates(), data.GetYCoordinates(), data.GetZCoordinates()]
+    return max(part.GetMTime() for part in parts)
 
 
 def settings_of(algorithm):
@@ -98,9 +113,9 @@ class Step:
                 runs again. The messages before do not count then.
         """
         self.count += 1
-        place = f"{name} {self.count}"
         algorithm, messages, notes, error = self.kept.result(
-            place, settings_of(algorithm), lambda: self.run(name, algorithm, change), self.ranks
+            self.count, (name, settings_of(algorithm)),
+            lambda: self.run(name, algorithm, change), self.ranks,
         )
         self.result.notes += notes
 
@@ -112,7 +127,7 @@ class Step:
         try:
             lines = together(self.ranks, end)
         except BaseException:
-            self.kept.forget(place)
+            self.kept.forget(self.count)
             raise
         for is_on_one_rank, note in lines:
             notes = self.result.gathered if is_on_one_rank else self.result.notes
@@ -122,6 +137,9 @@ class Step:
     def run(self, name, algorithm, change):
         """Returns the filter, its Messages, the notes of change(), and what was raised or None."""
         raised, before = [], len(self.result.notes)
+        self.kept.forget_steps(self.count)
+        if name != "fill":
+            self.kept.forget("open edge length")
 
         def show(caller, _event):
             # What is raised in an observer does not get through VTK: the filter is aborted first.

@@ -61,9 +61,9 @@ BoundaryLines ToBoundaryLines(
     for (vtkIdType i = 0; i < line.Size; ++i)
     {
       const Index id = static_cast<Index>(line.Ids[i]);
-      // Only points that lines use: others of the data set may be what they like. The kernel checks
-      // x,y.
-      if (!std::isfinite(points.View.Elevation(id)))
+      // Only points that lines use: others of the data set may be what they like.
+      const Point2 p = points.View.At(id);
+      if (!std::isfinite(p.X) || !std::isfinite(p.Y) || !std::isfinite(points.View.Elevation(id)))
       {
         throw Error("Point " + std::to_string(id) + " of the " + Possessive(name) + " cell " +
           std::to_string(line.Cell) + " is not finite.");

@@ -54,6 +54,12 @@ void AddCorners(vtkPolyData* lines, vtkDoubleArray* corners)
       }
       for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k)
       {
+        if (ids->GetId(k) < 0 || ids->GetId(k) >= lines->GetNumberOfPoints())
+        {
+          throw Error("Point " + std::to_string(ids->GetId(k)) +
+            " of the line does not exist; there are " + std::to_string(lines->GetNumberOfPoints()) +
+            " points.");
+        }
         double p[3];
         lines->GetPoint(ids->GetId(k), p);
         if (!std::isfinite(p[0]) || !std::isfinite(p[1]))

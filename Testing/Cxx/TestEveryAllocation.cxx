@@ -367,11 +367,11 @@ int TestEveryAllocation(int, char*[])
         filter->SetMaximumEdgeLength(1.2);
         filter->SetInterpolation(Fill::MEMBRANE);
       }))
-    .RefuseEach();
+    .RefuseEach(99);
 
   std::filesystem::remove_all(Folder); // of a run that was stopped
   std::filesystem::create_directories(Folder);
-  Trial("pieces", OfPieces([](vtkReconstructPieces*) {}), cloud).RefuseEach();
+  Trial("pieces", OfPieces([](vtkReconstructPieces*) {}), cloud).RefuseEach(99);
   std::filesystem::remove_all(Folder);
   return failures > 0;
 }

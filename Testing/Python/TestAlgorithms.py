@@ -24,6 +24,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkPartitionedDataSet,
     vtkPartitionedDataSetCollection,
     vtkPolyData,
+    vtkRectilinearGrid,
     vtkTable,
 )
 from vtkmodules.vtkFiltersSources import vtkRegularPolygonSource
@@ -144,6 +145,26 @@ class Algorithms(unittest.TestCase):
             # Few points within an error are chosen along an outline that is made anew.
             earlier = [] if values.get("SetMaximumElevationError") else order[: order.index(first)]
             self.assertEqual([words for words in ran if words in earlier], [], (name, values))
+
+    def test_columns_of_tables_and_axes_of_grids_that_change_count(self):
+        x, y = GRID
+        table = table_of(x=x, y=y, z=x)
+        axes = vtkRectilinearGrid()
+        axes.SetDimensions(6, 5, 1)
+        for setter, count in ((axes.SetXCoordinates, 6), (axes.SetYCoordinates, 5), (axes.SetZCoordinates, 1)):
+            setter(numpy_to_vtk(numpy.arange(float(count)), deep=True))
+        heights = numpy_to_vtk(numpy.arange(30.0), deep=True)
+        heights.SetName("Height")
+        axes.GetPointData().SetScalars(heights)
+        for data, array, axis in ((table, table.GetColumnByName("z"), 2), (axes, axes.GetXCoordinates(), 0)):
+            chain = ReconstructElevationSurface()
+            chain.SetInputDataObject(0, data)
+            chain.Update()
+            array.SetValue(array.GetNumberOfValues() - 1, 5.5)
+            array.Modified()
+            chain.SetInterpolation("membrane")
+            chain.Update()
+            self.assertEqual(points(chain.GetOutputDataObject(0))[:, axis].max(), 5.5)
 
     def contents(self, data):
         """All that a surface holds, in words."""

@@ -345,6 +345,29 @@ class TestGridDelaunay2D(unittest.TestCase):
             delaunay.Update()
         self.assertEqual((messages.errors, delaunay.GetNumberOfPointsWithoutZ()), ([], 0))
 
+    def test_draped_lines_that_are_no_lines_change_nothing_or_are_an_error(self):
+        grid = numpy.random.RandomState(4).rand(200, 3)
+        lines = cloud(numpy.array([[0.5, 0.5, 0], [0.5, 0.5, 0], [0.7, 0.6, 0], [numpy.nan, 0.2, 0]]))
+        words_of = {(0,): None, (0, 1): None, (): None, (0, 2, 3): "Point 3 of the constraints' cell 0 is not finite"}
+        for ids, words in words_of.items():
+            for set_cells in (lines.SetLines, lines.SetPolys):
+                lines.SetLines(vtkCellArray())
+                lines.SetPolys(vtkCellArray())
+                cells = vtkCellArray()
+                cells.InsertNextCell(len(ids), ids)
+                if words is None:
+                    cells.InsertNextCell(2, [0, 2])  # a line or an edge of a polygon that counts
+                set_cells(cells)
+                delaunay = vtkGridDelaunay2D()
+                delaunay.SetInputData(cloud(grid))
+                delaunay.SetSourceData(lines)
+                delaunay.DrapeConstraintsOn()
+                with Messages(delaunay, delaunay.GetExecutive()) as messages:
+                    delaunay.Update()
+                found = " ".join(map(str, messages.errors))
+                self.assertEqual(found == "", words is None, found)
+                self.assertIn(words or "", found)
+
     def test_a_constraint_without_z_needs_a_surface(self):
         grid = numpy.random.RandomState(4).rand(200, 3)
         for xyz, points, words in (

@@ -64,7 +64,6 @@ class Gaps(unittest.TestCase):
         self.assertGreater(many, 5 * few)  # as dense as around, and coarser
 
 
-@draws
 def headings_of(path):
     """The headings of a page, as links name them."""
     with open(path, encoding="utf-8") as page:
@@ -72,6 +71,7 @@ def headings_of(path):
     return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
 
 
+@draws
 class Guide(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

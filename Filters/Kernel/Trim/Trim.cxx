@@ -255,7 +255,7 @@ Rings ThereAndBack(const BoundaryLines& lines)
   for (Index line = 0; line < lines.Lines.Count(); ++line)
   {
     std::vector<Index> vertices(lines.Lines.Begin(line), lines.Lines.End(line));
-    if (lines.IsPolygon[line])
+    if (lines.IsPolygon[line] && !vertices.empty())
     {
       vertices.push_back(vertices.front());
     }
@@ -638,7 +638,8 @@ Trimmed SplitAlong(
 {
   return TrimBy(
     triangles, options, [&](const Progress& finding, Changes& changes, Trimmed& result) {
-      if (triangles.Count > 0)
+      // Lines without length meet no triangle, and bound nothing to search along.
+      if (triangles.Count > 0 && !ThereAndBack(lines).Vertices.empty())
       {
         TrimAlong(triangles, lines, nullptr, options, Following::Lines, finding, changes, result);
       }
