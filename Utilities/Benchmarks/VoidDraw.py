@@ -48,7 +48,7 @@ class Void(NamedTuple):
         return numpy.where(self.lost, numpy.nan, self.heights)
 
     def relief(self):
-        """The standard deviation of the heights around the void: errors are told in parts of it."""
+        """The standard deviation of the heights around the void: errors are given in parts of it."""
         return float(numpy.nanstd(self.damaged()))
 
 
@@ -316,7 +316,7 @@ def attempt(places, shapes, size, random):
     lost[tuple(slice(a, b) for a, b in zip(low - first, high - first))] = shape
     damaged = numpy.where(lost, numpy.nan, heights)
     if not numpy.nanstd(damaged) > 0.0:
-        return None  # a lake: nothing to be told from it
+        return None  # a lake: it shows nothing
     return Void(raster.name, kind_of(damaged, raster.steps), size, heights, lost, raster.steps,
                 tuple(first.tolist()), has_island)
 
