@@ -13,6 +13,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
+#include "vtkPVRepresentedArrayListSettings.h"
 #include "vtkPVXMLElement.h"
 #include "vtkSMChartSeriesSelectionDomain.h"
 #include "vtkSMPVRepresentationProxy.h"
@@ -318,12 +319,30 @@ public:
   }
 };
 vtkStandardNewMacro(vtkSMElevationLook);
+
+/** Hides arrays in charts, unless they are asked for. Newer ParaViews have a list of settings for that. */
+template <typename Domain, typename Settings>
+auto HideInCharts(const char* pattern, int)
+  -> decltype(Domain::AddSeriesVisibilityDefault(pattern, false))
+{
+  return Domain::AddSeriesVisibilityDefault(pattern, false);
+}
+
+template <typename Domain, typename Settings>
+void HideInCharts(const char* pattern, long)
+{
+  Settings* const settings = Settings::GetInstance();
+  const int count = settings->GetNumberOfChartsHiddenAttributes();
+  settings->SetNumberOfChartsHiddenAttributes(count + 1);
+  settings->SetChartsHiddenAttributes(count, pattern);
+}
 } // namespace
 
 void ElevationLook()
 {
   // On the axis of elevations, an error near 0 would leave the profile of a mountain a straight line.
-  vtkSMChartSeriesSelectionDomain::AddSeriesVisibilityDefault("^FilledError$", false);
+  HideInCharts<vtkSMChartSeriesSelectionDomain, vtkPVRepresentedArrayListSettings>(
+    "^FilledError$", 0);
   vtkClientServerInterpreterInitializer::GetGlobalInterpreter()->AddNewInstanceFunction(
     "vtkSMElevationLook", [](void*) -> vtkObjectBase* { return vtkSMElevationLook::New(); });
 }
