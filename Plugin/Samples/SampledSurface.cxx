@@ -82,6 +82,11 @@ SampledSurface::SampledSurface(vtkPolyData* surface, vtkMultiProcessController* 
   this->TakeLargest(ends, 4);
   this->Extent.Low = { -ends[0], -ends[1] };
   this->Extent.High = { ends[2], ends[3] };
+  if (!(this->Extent.Low.X < this->Extent.High.X && this->Extent.Low.Y < this->Extent.High.Y))
+  {
+    throw Error("The input has no triangles, so there is no surface. Points alone are triangulated "
+                "first, by Reconstruct Elevation Surface.");
+  }
 }
 
 bool SampledSurface::IsAlone() const

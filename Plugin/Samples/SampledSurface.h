@@ -34,10 +34,11 @@ public:
   /**
    * @param[in] surface     this rank's part; triangles
    * @param[in] controller  of all ranks, or nullptr
+   * @throws Error on all ranks if there is no triangle on any
    */
   SampledSurface(vtkPolyData* surface, vtkMultiProcessController* controller);
 
-  /** The bounds in x and y of the points that triangles use, of all ranks; empty without any. */
+  /** The bounds in x and y of the points that triangles use, of all ranks. */
   const Box& Bounds() const { return this->Extent; }
 
   /**

@@ -98,12 +98,6 @@ int vtkElevationGrid::RequestData(
     const elevation::SampledSurface surface(
       vtkPolyData::GetData(inputVector[0]), vtkMultiProcessController::GetGlobalController());
     const elevation::Box& bounds = surface.Bounds();
-    if (!(bounds.Low.X < bounds.High.X && bounds.Low.Y < bounds.High.Y))
-    {
-      vtkErrorMacro(<< "The input has no triangles, so there is no surface. Points alone are "
-                       "triangulated first, by Reconstruct Elevation Surface.");
-      return 1;
-    }
     const double dx = (bounds.High.X - bounds.Low.X) / (columns - 1);
     const double dy = (bounds.High.Y - bounds.Low.Y) / (rows - 1);
     vtkNew<vtkDoubleArray> places;

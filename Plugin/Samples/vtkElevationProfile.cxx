@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /*
  * RequestData():
- * 1. CornersOf(): the corners of the lines, or both ends; on all ranks the same.
+ * 1. AddCorners(): the corners of the lines, or both ends; on all ranks the same.
  * 2. SampleLines(): places along them, with their distances.
  * 3. SampledSurface: the values there. 4. Pass points, and lines where the surface is.
  */
@@ -214,12 +214,6 @@ int vtkElevationProfile::RequestData(
     vtkMultiProcessController* const controller = vtkMultiProcessController::GetGlobalController();
     const elevation::SampledSurface surface(vtkPolyData::GetData(inputVector[0]), controller);
     const elevation::Box& bounds = surface.Bounds();
-    if (!(bounds.Low.X < bounds.High.X && bounds.Low.Y < bounds.High.Y))
-    {
-      throw Error(
-        "The input has no triangles, so there is no surface. Points alone are triangulated "
-        "first, by Reconstruct Elevation Surface.");
-    }
     vtkNew<vtkDoubleArray> corners;
     corners->SetNumberOfComponents(3);
     LineSamples samples;

@@ -186,8 +186,9 @@ def read_lines(path, singular, what, read_text_lines, progress):
 def text_lines(path, table, what):
     """The lines of a text file as vtkPolyData: table is what read_table() gives of it."""
     rows, numbers, starts, _ = table
-    # A z that is not a number is missing, which is known what to do with.
-    bad = numpy.flatnonzero(~(numpy.isfinite(rows) | (numpy.isnan(rows) & (numpy.arange(rows.shape[1]) == 2))).all(axis=1))
+    is_usable = numpy.isfinite(rows)
+    is_usable[:, 2:3] |= numpy.isnan(rows[:, 2:3])  # such a z is missing: it comes from the surface
+    bad = numpy.flatnonzero(~is_usable.all(axis=1))
     if len(bad):
         raise FileError(f"{path}, line {numbers[bad[0]]}: {what} is not finite")
     if rows.shape[1] == 2:

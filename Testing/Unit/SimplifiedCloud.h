@@ -11,6 +11,8 @@
 #include "Kernel/Triangulate/Triangulate.h"
 #include "PointSets.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -212,6 +214,25 @@ inline std::set<std::pair<double, double>> PlacesOf(
     places.emplace(p.X, p.Y);
   }
   return places;
+}
+
+/** @param[in] isUnique  whether the chosen places are the same for the points in any order */
+inline void ExpectSameForThreadsAndOrder(
+  const Cloud& cloud, DelaunayOptions options, bool isUnique, std::mt19937_64& random)
+{
+  const Triangulation one = Triangulate(cloud.View(), options);
+  options.NumberOfThreads = 3;
+  const Triangulation three = Triangulate(cloud.View(), options);
+  EXPECT_TRUE(std::equal(
+    one.Triangles.begin(), one.Triangles.end(), three.Triangles.begin(), three.Triangles.end()));
+  EXPECT_EQ(one.UnusedPoints, three.UnusedPoints);
+  EXPECT_EQ(one.LargestElevationError, three.LargestElevationError);
+  const Cloud shuffled = cloud.Shuffled(random);
+  const Triangulation other = Triangulate(shuffled.View(), options);
+  if (isUnique)
+  {
+    EXPECT_EQ(PlacesOf(cloud, one.Triangles), PlacesOf(shuffled, other.Triangles));
+  }
 }
 
 } // namespace testing_points

@@ -119,17 +119,8 @@ TEST(MostVertices, DoNotDependOnOrderAndThreads)
   for (const int kind : { 0, 1, 2, 3, 4, 7 }) // others have thousands of corners, or duplicates
   {
     const Cloud cloud = CloudOf(kind, 60000, random);
-    DelaunayOptions options = WithNumber(2500);
-    const Triangulation one = Triangulate(cloud.View(), options);
-    options.NumberOfThreads = 3;
-    const Triangulation three = Triangulate(cloud.View(), options);
-    EXPECT_TRUE(std::equal(
-      one.Triangles.begin(), one.Triangles.end(), three.Triangles.begin(), three.Triangles.end()));
-    EXPECT_EQ(one.UnusedPoints, three.UnusedPoints);
-    EXPECT_EQ(one.LargestElevationError, three.LargestElevationError);
-    const Cloud shuffled = cloud.Shuffled(random);
-    const Triangulation other = Triangulate(shuffled.View(), options);
-    EXPECT_EQ(PlacesOf(cloud, one.Triangles), PlacesOf(shuffled, other.Triangles)) << kind;
+    SCOPED_TRACE(kind);
+    ExpectSameForThreadsAndOrder(cloud, WithNumber(2500), true, random);
   }
 }
 
