@@ -157,12 +157,12 @@ public:
 
   ///@{
   /**
-   * With a MaximumElevationError or MaximumNumberOfPoints: whether edges are chosen by how near they
-   * are to the points that are left out [Dyn, Levin & Rippa 1990], as far as triangles do not become
-   * much narrower. They then follow ridges and valleys, and a tenth to a fifth fewer points are
-   * needed on terrain; where elevations are noise, more may be. It takes up to a fifth longer. The
-   * triangles are not Delaunay then, so that they cannot be had from the chosen points alone. Off
-   * (default): Delaunay. Without one of these limits it does nothing.
+   * With a MaximumElevationError or MaximumNumberOfPoints: whether edges are chosen by how near
+   * they are to the points that are left out [Dyn, Levin & Rippa 1990], as far as triangles do not
+   * become much narrower. They then follow ridges and valleys, and a tenth to a fifth fewer points
+   * are needed on terrain; where elevations are noise, more may be. It takes up to a fifth longer.
+   * The triangles are not Delaunay then, so that they cannot be had from the chosen points alone.
+   * Off (default): Delaunay. Without one of these limits it does nothing.
    */
   vtkSetMacro(DataDependentEdges, bool);
   vtkGetMacro(DataDependentEdges, bool);
@@ -175,9 +175,10 @@ public:
    * left out, too. A point goes where exactly two pieces of lines meet, the line without it passes
    * it within the error above or below (at any height with a number of points, of which then those
    * come back that are worth it), and within a thousandth of the shorter of the two pieces beside,
-   * and no other point changes its side of the line. Ends, corners and crossings stay. On, a straight line through the
-   * nodes of a grid has as few points as its elevations need. Off (default), lines keep all their
-   * points, also those of the cloud that lie on them. Without one of these limits it does nothing.
+   * and no other point changes its side of the line. Ends, corners and crossings stay. On, a
+   * straight line through the nodes of a grid has as few points as its elevations need. Off
+   * (default), lines keep all their points, also those of the cloud that lie on them. Without one
+   * of these limits it does nothing.
    */
   vtkSetMacro(SimplifyConstraints, bool);
   vtkGetMacro(SimplifyConstraints, bool);
@@ -354,10 +355,9 @@ public:
    * ErrorNotReached, InvalidLatticeTolerance, InvalidThreads, InvalidPrecision,
    * OriginalIdsReplaced, FoldsInSingle, TwoLimits, LengthAndNumber, LatticeNotUsed, NoLines,
    * StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, NonFinitePointOfLine,
-   * NoSurfaceForPointOfLine, LinesElsewhere,
-   * LinesFarOutside, PolygonsAreLines, LinesNotDraped, LinesNotSettled, ArraysLeftOut, OnOneRank
-   * (with a reason: ErrorNeedsAll, NumberNeedsAll, DrapingNeedsAll, PointsWithoutZNeedAll), RankWaits, NotEnoughMemory,
-   * Stopped.
+   * NoSurfaceForPointOfLine, LinesElsewhere, LinesFarOutside, PolygonsAreLines, LinesNotDraped,
+   * LinesNotSettled, ArraysLeftOut, OnOneRank (with a reason: ErrorNeedsAll, NumberNeedsAll,
+   * DrapingNeedsAll, PointsWithoutZNeedAll), RankWaits, NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 

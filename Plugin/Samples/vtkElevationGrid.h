@@ -6,11 +6,11 @@
  *
  * Input: vtkPolyData with triangles, one elevation for each x,y. Output: a flat vtkImageData whose
  * nodes cover the bounds of the triangles, with the point array Elevation, linear in each triangle;
- * and FilledError, FilledLow and FilledHigh where the surface has them. Nodes outside of the surface
- * have NaN, and are hidden, as are the cells at them.
+ * and FilledError, FilledLow and FilledHigh where the surface has them. Nodes outside of the
+ * surface have NaN, and are hidden, as are the cells at them.
  *
- * Private to the ParaView plugin. vtkResampleToImage samples in space, so it finds the surface at no
- * node.
+ * Private to the ParaView plugin. vtkResampleToImage samples in space, so it finds the surface at
+ * no node.
  */
 #ifndef vtkElevationGrid_h
 #define vtkElevationGrid_h
@@ -30,8 +30,8 @@ public:
 
   ///@{
   /**
-   * How many columns and rows of nodes: 2 or more each, at most 250 million nodes. The outer ones lie
-   * on the bounds of the surface. Default: 500, 500.
+   * How many columns and rows of nodes: 2 or more each, at most 250 million nodes. The outer ones
+   * lie on the bounds of the surface. Default: 500, 500.
    */
   vtkSetVector2Macro(Dimensions, int);
   vtkGetVector2Macro(Dimensions, int);

@@ -8,11 +8,12 @@
  * the lines or polygons of the section, whose z does not count; without it, it goes from Point1 to
  * Point2. Output: vtkPolyData with points along the lines, on the surface, and lines between those
  * that it has. Point arrays: arc_length, the distance from the begin of the line in x,y; Elevation,
- * linear in each triangle, and FilledError, FilledLow and FilledHigh where the surface has them, NaN
- * outside of the surface; vtkValidPointMask, 0 there. (These names are those of VTK's probes.) Points
- * outside have the lowest elevation of the others as their z.
+ * linear in each triangle, and FilledError, FilledLow and FilledHigh where the surface has them,
+ * NaN outside of the surface; vtkValidPointMask, 0 there. (These names are those of VTK's probes.)
+ * Points outside have the lowest elevation of the others as their z.
  *
- * Private to the ParaView plugin. vtkProbeLineFilter samples in space, so it finds the surface nowhere.
+ * Private to the ParaView plugin. vtkProbeLineFilter samples in space, so it finds the surface
+ * nowhere.
  */
 #ifndef vtkElevationProfile_h
 #define vtkElevationProfile_h

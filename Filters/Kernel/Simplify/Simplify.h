@@ -20,10 +20,10 @@
  * keep only their corners in x,y in advance, as all other vertices have to be worth their number.
  *
  * Guarantees: no finite point that is not a duplicate is farther from the surface, or the number of
- * vertices is reached; LargestElevationError is the largest distance. Topology is exact. With Delaunay edges it is
- * unique as in Triangulate.h: the triangles are those of Triangulate() for the chosen points. The
- * choice depends on the positions of the points alone, not on their order, nor on the number of
- * threads.
+ * vertices is reached; LargestElevationError is the largest distance. Topology is exact. With
+ * Delaunay edges it is unique as in Triangulate.h: the triangles are those of Triangulate() for the
+ * chosen points. The choice depends on the positions of the points alone, not on their order, nor
+ * on the number of threads.
  *
  * Pass 3 takes the points by their coordinates. On a lattice they may lie beside their nodes. A
  * triangle that is flat or inverted by coordinates sends everything back to the start, without a
