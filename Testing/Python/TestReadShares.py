@@ -170,7 +170,7 @@ class Shares(InFolder):
 
     def test_random_files_of_each_kind(self):
         read_well = 0
-        for seed in range(40):
+        for seed in range(20):
             chance = random.Random(seed)
             kind, paths = chance.choice(("txt", "txt", "las", "npy")), []
             for number in range(chance.randint(1, 3)):
@@ -184,7 +184,7 @@ class Shares(InFolder):
                     mock.patch.object(text_blocks, "BLOCK", chance.choice((40, 300, 2000))), \
                     mock.patch("vtkelevationsurface.clouds.AT_ONCE", chance.choice((7, 50, 1000))):
                 read_well += not isinstance(self.assert_alike(paths, **options), str)
-        self.assertGreater(read_well, 15)
+        self.assertGreater(read_well, 7)
 
     def test_more_shares_than_points(self):
         numpy.save(self.path("a.npy"), numpy.arange(15.0).reshape(5, 3))

@@ -265,7 +265,7 @@ class Properties(unittest.TestCase):
 
     def test_more_effort_than_is_expected_is_refused_with_a_way_out(self):
         sheet = SHEET[numpy.hypot(SHEET[:, 0] - 5.5, SHEET[:, 1] - 5.5) > 3.0]
-        for given, limit in ({"spacing": 1e-4}, 1e6), ({"maximum_expected_points": 9}, 9):
+        for given, limit in ({"spacing": 1e-3, "maximum_expected_points": 30_000}, 30_000), ({"maximum_expected_points": 9}, 9):
             with self.subTest(given=given):
                 with self.assertRaisesRegex(ElevationSurfaceError, "would do, or a larger") as raised:
                     reconstruct(sheet, maximum_edge_length=3.0, trim=False, **given)

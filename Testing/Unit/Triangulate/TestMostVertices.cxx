@@ -60,7 +60,7 @@ TEST(MostVertices, AreNotExceededAndTheOthersAreWithinTheLargestError)
   std::mt19937_64 random(1);
   for (int kind = 0; kind < Kinds; ++kind)
   {
-    for (const Index count : { 60, 900, 40000 })
+    for (const Index count : { 60, 900, 15000 })
     {
       const Cloud cloud = CloudOf(kind, count, random);
       const Triangulation corners = Triangulate(cloud.View(), WithError(1e9));
