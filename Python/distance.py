@@ -12,7 +12,6 @@ from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
 
 from .clouds import cells_of, coordinates_of, corner_flags, make_points, slices
 from .ranks import all_values, collected, extremes, total
-from .spreading import used_points
 
 MOST_MEASURED = 1_000_000
 AT_ONCE = 20_000  # points between two reports of progress
@@ -20,9 +19,10 @@ FEW = 0.01  # so many points for each triangle: then only triangles near them ar
 BINS = 1024  # side by side, where triangles near points are looked for
 
 
-def distance_to(surface, coordinates, chosen, progress=None, ranks=None, ids=None):
+def distance_to(surface, used, coordinates, chosen, progress=None, ranks=None, ids=None):
     """Distance of input points from a surface: max, mean and root mean square, as Metro gives them.
 
+    used         (m,) of bool: which points of the surface are corners of triangles, on any rank
     coordinates  (n, 3), the input points; those that are points of the surface come first there too
     chosen       (n,) of bool: which of them are measured
     progress     None, or a function that is called with the fraction done
@@ -37,7 +37,7 @@ def distance_to(surface, coordinates, chosen, progress=None, ranks=None, ids=Non
     corners = coordinates_of(surface).astype("f8", copy=False)
     triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     away = chosen.copy()
-    first, flags = corners[: len(coordinates)], used_points(ranks, surface)[: len(coordinates)]
+    first, flags = corners[: len(coordinates)], used[: len(coordinates)]
     for rows in slices(len(coordinates)):
         away[rows] &= ~(flags[rows] & (first[rows] == coordinates[rows]).all(axis=1))
     away = numpy.flatnonzero(away)

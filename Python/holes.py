@@ -126,11 +126,14 @@ class BridgedVoids:
 
     def see(self, surface):
         """Takes the triangles of this rank, or some of them."""
-        places = complex_places(surface)
+        xy, starts = coordinates_of(surface)[:, :2], self.edges[:, 0]
+        are_starts = are_among(xy[:, 0], starts.real)  # few of them, unless on a lattice
+        are_starts[are_starts] = are_among(complex_places(xy[are_starts]), starts)
         corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-        corners = corners[are_among(places, self.edges[:, 0])[corners].any(axis=1)]
-        ends = places[numpy.roll(corners, -1, axis=1)]
-        edges = set(zip(places[corners].ravel().tolist(), ends.ravel().tolist()))
+        corners = corners[are_starts[corners].any(axis=1)]
+        places = complex_places(xy[corners.ravel()])
+        ends = numpy.roll(places.reshape(-1, 3), -1, axis=1)
+        edges = set(zip(places.tolist(), ends.ravel().tolist()))
         self.are_there += [edge in edges for edge in map(tuple, self.edges.tolist())]
 
     def find(self):
@@ -141,9 +144,9 @@ class BridgedVoids:
         return bridged
 
 
-def complex_places(data):
-    """x + iy of the points of a data set."""
-    x, y = coordinates_of(data)[:, :2].astype("f8").T
+def complex_places(xy):
+    """x + iy of (n, 2) places."""
+    x, y = xy.astype("f8").T
     with numpy.errstate(invalid="ignore"):
         return x + 1j * y
 

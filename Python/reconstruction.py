@@ -34,7 +34,7 @@ from .properties import COLOURS, PROPERTIES, check_together, checked, is_simplif
 from .ranks import extremes, total
 from .reading.arrays import column_cloud, grid_cloud, named_columns
 from .reading.facing import find_faces, notes_on_faces
-from .spreading import ORIGINAL_IDS, follow_points, last_id, original_ids, without_unused
+from .spreading import ORIGINAL_IDS, follow_points, last_id, original_ids, used_points, without_unused
 from .steps import Kept, Step, state_of, triangulate, trim_along, trim_few
 from .vtkElevationSurface import vtkFillElevationHoles
 
@@ -191,6 +191,11 @@ class Reconstruction:
     def coordinates(self) -> numpy.ndarray:
         """(n, 3), the points that reasons are of."""
         return coordinates_of(self.points)[: len(self.reasons)]
+
+    @functools.cached_property
+    def used(self) -> numpy.ndarray:
+        """(m,) of bool: which points of complete are corners of triangles, on any rank."""
+        return used_points(self.ranks, self.complete)
 
     @property
     def crs(self) -> Optional[str]:
@@ -425,7 +430,7 @@ def run_chain(
         if strict and replaced:
             raise ElevationSurfaceError(replaced[0])
         result.notes += replaced
-        result.surface = without_unused(ranks, result.complete, last_id(ranks, cloud.points))
+        result.surface = without_unused(ranks, result.complete, result.used, last_id(ranks, cloud.points))
     if cloud.plane:
         turn_back(result)
     return result

@@ -22,7 +22,6 @@ from .spreading import (
     WITHIN_ERROR,
     ids_of,
     places_of,
-    used_points,
 )
 
 OUTSIDE = "outside the boundary"
@@ -46,7 +45,7 @@ def make_report(result):
     ids = ids_of(ranks, result.points)[: len(result.reasons)]
     reasons = reasons_unused(result)
     unused = list_unused(ranks, reasons, ids)
-    notes, limits = result.decided + result.notes, limits_of(ranks, result.surface)
+    notes, limits = result.decided + result.notes, limits_of(ranks, result.complete, result.used)
     report = facts_of(result, result.number_of_points, notes, limits, unused)
     if delaunay.GetMaximumElevationError() or delaunay.GetMaximumNumberOfPoints():
         report["simplified"] = {
@@ -146,7 +145,7 @@ def distance_of(result, reasons, ids):
         measured &= reasons != OUTSIDE_OUTLINE
     began = time.perf_counter()
     distance = distance_to(
-        result.complete, coordinates, measured, result.measuring, result.ranks, ids
+        result.complete, result.used, coordinates, measured, result.measuring, result.ranks, ids
     )
     result.times["measure"] = time.perf_counter() - began
     return distance
@@ -154,7 +153,7 @@ def distance_of(result, reasons, ids):
 
 def reasons_unused(result):
     """(n,) numbers of REASONS, or 0, for the points that Reconstruction.reasons are of."""
-    used = used_points(result.ranks, result.complete)[: len(result.reasons)]
+    used = result.used[: len(result.reasons)]
     return numpy.where((result.reasons == 0) & ~used, OUTSIDE_OUTLINE, result.reasons)
 
 
@@ -174,9 +173,9 @@ def list_unused(ranks, reasons, ids):
     return found
 
 
-def limits_of(ranks, surface):
-    """The lowest x, y and z of the points in triangles, and the highest."""
-    points = coordinates_of(surface)[used_points(ranks, surface)]
+def limits_of(ranks, surface, used):
+    """The lowest x, y and z of the points in triangles, and the highest. used: which these are."""
+    points = coordinates_of(surface)[used]
     return tuple(zip(*(extremes(ranks, points[:, i]) for i in range(3))))
 
 

@@ -115,12 +115,13 @@ def original_ids(data):
     return values if values.dtype.kind == "i" else None
 
 
-def without_unused(ranks, surface, last):
+def without_unused(ranks, surface, used, last):
     """A surface without the points that no triangle has, as the filters' RemoveUnusedPoints makes it.
 
+    used  used_points() of it
     last  last_id() of the input
     """
-    used, data, ids = used_points(ranks, surface), surface.GetPointData(), ids_of(ranks, surface)
+    data, ids = surface.GetPointData(), ids_of(ranks, surface)
     numbers = original_ids(surface)
     if numbers is None:
         given = data.GetGlobalIds()

@@ -249,12 +249,12 @@ class LargeSurfaces(unittest.TestCase):
     def test_a_sample_of_many_points_is_measured_and_reported(self):
         xyz = numpy.array([(x, y, 0.0) for x in range(40) for y in range(40)])
         twice = numpy.concatenate((xyz, xyz + (0, 0, 3)))
-        surface = reconstruct(twice, duplicates="keep-first").complete
+        result = reconstruct(twice, duplicates="keep-first")
         chosen = numpy.ones(len(twice), dtype=bool)
         most = distance.MOST_MEASURED
         self.addCleanup(setattr, distance, "MOST_MEASURED", most)
         for distance.MOST_MEASURED, measured in ((most, 1600), (1000, 800)):
-            measured_values = distance.distance_to(surface, twice, chosen)
+            measured_values = distance.distance_to(result.complete, result.used, twice, chosen)
             self.assertEqual((measured_values["points"], measured_values["points_not_corners"]), (3200, 1600))
             self.assertEqual((measured_values["measured"], measured_values["maximum"]), (measured, 3.0))
             self.assertAlmostEqual(measured_values["mean"], 1.5)

@@ -77,7 +77,7 @@ class Surface:
         report = result.report
         # Points outside the outline that was found are not points of the surface.
         inside = reasons_unused(result) != OUTSIDE_OUTLINE
-        distance = distance_to(result.complete, self.points, inside)
+        distance = distance_to(result.complete, result.used, self.points, inside)
         return {
             "asked": asked,
             "error": error,
