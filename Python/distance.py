@@ -135,13 +135,9 @@ def near(corners, is_corner, triangles, away, progress=None):
     for rows in slices(len(triangles)):
         if progress:
             progress(0.5 * rows.start / len(triangles))
-        a, b, c = triangles[rows].T
         (x0, x1), (y0, y1) = (
-            (
-                numpy.minimum(numpy.minimum(at[a], at[b]), at[c]),
-                numpy.maximum(numpy.maximum(at[a], at[b]), at[c]) + 1,
-            )
-            for at in places
+            (numpy.minimum(numpy.minimum(a, b), c), numpy.maximum(numpy.maximum(a, b), c) + 1)
+            for a, b, c in ((at[corners] for corners in triangles[rows].T) for at in places)
         )
         result[rows] = before[x1, y1] - before[x0, y1] - before[x1, y0] + before[x0, y0] > 0
     return result
