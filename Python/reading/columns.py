@@ -15,8 +15,8 @@ import numpy
 
 from .column_names import Meaning, alike_but_for_axis, in_brackets, meaning, plain
 from .table_words import (
-    CLEAR, CLEAR_OF_POOR, COLOURS, FINNISH, GOOD, HIGHEST, LINES_AS_AXES, MOST_FEET, MOST_STEP_OF_LINES, PARTS_OF_TIME,
-    SEISMIC, TIMES, WEIGHTS
+    CLEAR, CLEAR_OF_POOR, COLOURS, FINNISH, GEOCENTRIC, GOOD, HIGHEST, LINES_AS_AXES, MOST_FEET, MOST_STEP_OF_LINES,
+    PARTS_OF_TIME, SEISMIC, TIMES, WEIGHTS, X_IS_NORTH
 )
 from .nulls import FAR, usual_nulls
 from ..messages import FileError
@@ -26,10 +26,11 @@ SHOWN_ROWS, SHOWN_COLUMNS = 3, 12  # below a question
 MOST_JUDGED = 30  # columns, from the left: each is compared with each
 MOST_COLUMNS = 12  # of rows of points without names; with more, they are a grid
 ROWS_OF_GRID = 20  # times its columns, and no more
+FEW_ROWS = 10  # show too little for some reasons why a column is no coordinate
 NOT_DECIMALS = re.compile(r"^[^.,]*[.,]?|[eEdD].*$")
 # Why a column is no coordinate, where that counts for others.
 COUNTS_UP, EACH_ONCE = "an id: it counts up by one", "an id: whole numbers, each once"
-PART_OF_TIME = "a part of a date or time"
+PART_OF_TIME, THE_SAME, NO_NEIGHBOUR = "a part of a date or time", "the same in all rows", "no coordinate next to the next"
 
 
 def advice_on_columns():
@@ -75,17 +76,19 @@ class Choice:
     """
 
     @numpy.errstate(all="ignore")
-    def __init__(self, path, rows, consecutive, layout, names, width, columns, needed, advice):
+    def __init__(self, path, rows, consecutive, layout, head, names, width, columns, needed, advice):
         """Raises FileError.
 
         rows         some rows as words; the first so many (consecutive) follow each other in the file
         layout       the Layout of lines
+        head         the lines before the data
         names, width  of the columns; names may be None
         columns      None, or what the user said: names or numbers
         needed       3 or 2
         advice       what a user can do where no choice is sure; None: choose columns
         """
         self.path, self.layout, self.names, self.width, self.needed = path, layout, names, width, needed
+        self.head = "\n".join(head).lower()
         self.rows = [row[:width] + [""] * (width - len(row)) for row in rows]
         self.consecutive, self.axes = consecutive, "xyz"[:needed]
         self.can_be_chosen, self.advice = advice is None, advice or advice_on_columns()
@@ -181,9 +184,31 @@ class Choice:
         shown = [one for one in readings if one in (best, *others[:1])]
         if others and readings[best] - readings[others[0]] < clear:
             self.ask(shown, why)
+        others = [i for i in self.numeric if self.spans[i] > 0 and i not in (*best, *self.reasons)]
+        same = [i for i in best if self.spans[i] == 0 and not self.meanings[i].axis and others]
+        if set(same) - set(best[2:]) or same and any(map(self.counts_along, others)):
+            self.ask(shown, f"{self.listed(same)} is the same in all rows, where others are not")
         if self.needed == 3 and not self.meanings[best[2]].axis and self.is_too_high(best[2]):
             self.ask(shown, f"column {self.called(best[2])} is higher than any place, so z may lack or stand elsewhere")
         self.indices = list(best)
+        self.turn_where_x_is_north()
+
+    def turn_where_x_is_north(self):
+        """Swaps x and y where the lines before the data are in a language in which X is often north and the sizes
+        prove it; asks where these prove nothing."""
+        x, y, *z = self.indices
+        language = next((name for name, letters in X_IS_NORTH.items() if re.search(letters, self.head)), "")
+        if not language or self.meanings[x].rank or self.meanings[y].rank or self.is_utm(x, y) or self.are_degrees(x, y):
+            return
+        if not self.is_utm(y, x):
+            why = f"X is often north in tables in {language}, and nothing shows here whether it is"
+            self.ask([(y, x, *z), (x, y, *z)], why)
+        self.has_swapped, self.indices = True, [y, x, *z]
+        self.notes.append(f"X is north, as often in tables in {language}, by the sizes of columns {self.taken()}")
+
+    def are_degrees(self, x, y):
+        """Whether columns may be longitude and latitude by their sizes and decimals."""
+        return self.largest[x] <= 360 and self.largest[y] <= 90 and min(self.decimals[x], self.decimals[y]) >= 4
 
     def is_too_high(self, i):
         return len(self.finite[i]) > 0 and abs(self.finite[i]).min() > HIGHEST
@@ -206,7 +231,7 @@ class Choice:
 
     def by_names(self):
         """Whether the names give the columns; sets the indices then."""
-        named = {axis: self.best_named(axis) for axis in self.axes}
+        named = self.best_named()
         if not any(named.values()):
             return False
         missing = [axis for axis in self.axes if not named[axis]]
@@ -232,12 +257,21 @@ class Choice:
         self.look_at_names(missing)
         return True
 
-    def best_named(self, axis):
-        """The columns whose names are the best for an axis; those of numbers before others."""
-        found = [i for i, m in enumerate(self.meanings) if m.axis == axis]
-        found = [i for i in found if i in self.numeric] or found
-        best = min((self.meanings[i].rank for i in found), default=0)
-        return [i for i in found if self.meanings[i].rank == best]
+    def best_named(self):
+        """{axis: columns whose names are the best for it}: of numbers before others, x and y alike before those that
+        are not, as longitude next to latitude is before "E1", and "z" before "z10"."""
+        named, ranks = {}, {}
+        for axis in self.axes:
+            found = [i for i, m in enumerate(self.meanings) if m.axis == axis]
+            named[axis] = [i for i in found if i in self.numeric] or found
+            ranks[axis] = {self.meanings[i].rank for i in named[axis]}
+        alike = ranks["x"] & ranks["y"]
+        for axis, found in named.items():
+            best = min(alike if alike and axis != "z" else ranks[axis], default=0)
+            found = [i for i in found if self.meanings[i].rank == best]
+            bare = [i for i in found if best == 0 and not re.search(r"\d", self.names[i])]
+            named[axis] = bare or found
+        return named
 
     def is_pair(self, x, y):
         """Whether names of x and y have the same further words, as X_utm and Y_utm do."""
@@ -268,7 +302,7 @@ class Choice:
         ]
         if self.needed == 3 and others and self.meanings[self.indices[2]].axis:
             self.note(f"z is {self.called(self.indices[2])}; {self.listed(others)} could be too")
-        if self.indices[-1] > x > y and self.meanings[x].rank == self.meanings[y].rank == 0:
+        if not self.has_swapped and self.indices[-1] > x > y and self.meanings[x].rank == self.meanings[y].rank == 0:
             self.notes.append(
                 "Y stands before X, as where X is north; x and y are taken as named "
                 f"({option('columns')} {self.numbered([y, x] + self.indices[2:])} swaps them)"
@@ -292,9 +326,11 @@ class Choice:
             self.ask_for_grid()
         left = self.without_others(usable[:MOST_JUDGED])
         self.decide(self.scored(left))
-        for i in left[: left.index(self.indices[0])]:
+        for i in left[: left.index(min(self.indices[:2]))]:
             each = self.whole[i] and len(numpy.unique(self.finite[i])) == len(self.finite[i])
-            self.reasons[i] = EACH_ONCE if each else "no coordinate next to the next"
+            self.reasons[i] = EACH_ONCE if each else NO_NEIGHBOUR
+        if len(self.rows) < FEW_ROWS and {NO_NEIGHBOUR, THE_SAME} & set(self.reasons.values()):
+            self.ask([usable[:count], self.indices], "so few rows do not show which columns are x, y and z")
         if count == 3:
             self.east_and_north()
         if self.indices == list(range(count)):
@@ -322,7 +358,11 @@ class Choice:
         order = tuple(self.indices)
         readings = {order: GOOD}
         if self.names:
-            self.note(f"no column is named as {'x, y or z' if self.needed == 3 else 'x or y'}: {self.taken()}")
+            why = f"no column is named as {'x, y or z' if self.needed == 3 else 'x or y'}"
+            others = [i for i, m in enumerate(self.meanings) if m.role]
+            if others and all(self.names):
+                self.ask([order], f"{why}, and {self.listed(others)} means something else")
+            self.note(f"{why}: {self.taken()}")
         if self.needed == 3 and not any(m.axis or m.role for m in self.meanings):
             for other in ((1, 2, 0), (2, 1, 0)):  # as z, x, y
                 readings[other] = GOOD if self.is_utm(*other[:2]) else 0
@@ -344,7 +384,7 @@ class Choice:
             first, second = left[:2]
             reason = (
                 COUNTS_UP if self.is_id(first)
-                else "the same in all rows" if self.spans[first] == 0
+                else THE_SAME if self.spans[first] == 0
                 else "a class or line: few whole numbers" if self.is_class(first, second)
                 else ""
             )
@@ -388,7 +428,8 @@ class Choice:
     def score(self, reading):
         """How much columns look like x, y and z."""
         x, y, *z = reading
-        spans = [self.spans[i] for i in reading]
+        metres = 1e5 if self.are_degrees(x, y) or self.are_degrees(y, x) else 1.0  # in a degree
+        spans = [metres * self.spans[x], metres * self.spans[y], *(self.spans[i] for i in z)]
         alike = abs(self.decimals[x] - self.decimals[y]) <= 1
         alike &= (self.decimals[x] == 0) == (self.decimals[y] == 0)
         found = {
@@ -544,14 +585,29 @@ class Choice:
         return PART_OF_TIME in self.reasons.values() or dated or wide < 0.1 * self.spans[z]
 
     def is_utm(self, x, y):
-        """Whether columns are easting and northing of UTM by their sizes, in metres."""
+        """Whether columns are easting and northing of UTM by their sizes, in metres; the easting may begin with the
+        number of its zone."""
         low, high = self.low, self.high
-        return bool(160e3 < low[x] <= high[x] < 840e3 and 1.1e6 < low[y] <= high[y] < 10e6)
+        zone = low[x] // 1e6 * 1e6 if 1e7 < low[x] < 61e6 else 0.0
+        return bool(160e3 < low[x] - zone <= high[x] - zone < 840e3 and 1.1e6 < low[y] <= high[y] < 10e6)
+
+    def are_geocentric(self, i):
+        """Whether column i and the next two are x, y and z from the centre of the earth."""
+        x, y, z = self.values[:, i : i + 3].T
+        equator, pole, most, least = GEOCENTRIC
+        away = (x * x + y * y) / equator**2 + z * z / pole**2 - 1
+        return bool((abs(away) < most).all() and (abs(z) > least).all())
 
     # -- what the values say about the choice
 
     def look_at_values(self):
         x, y = self.indices[:2]
+        for i in range(self.width - 2):
+            if not {i, i + 1, i + 2}.isdisjoint(self.indices) and self.are_geocentric(i):
+                raise FileError(
+                    f"{self.path}: {self.listed([i, i + 1, i + 2])} are x, y and z from the centre of the earth (ECEF); "
+                    "export longitude, latitude and height, or a map projection"
+                )
         for i in (x + 1, y + 1):  # behind a latitude or longitude without its sign
             letters = {row[i].strip().upper() for row in self.rows if i < self.width} - {""}
             if letters and letters <= set("NSEW") and letters & set("SW"):

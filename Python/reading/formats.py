@@ -7,10 +7,12 @@ import importlib
 import os
 import re
 
+from .table_words import COMMENT_MARKS
 from ..messages import FileError
 from ..paths import is_geodatabase, suffix_of
 
 HEAD, LONG_HEAD = 4096, 1 << 16
+MARKS = tuple(mark.encode() for mark in COMMENT_MARKS)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -85,7 +87,7 @@ def count_numbers(line):
 def first_lines(head):
     """The first lines of a text that are neither blank nor comments; the last may be cut."""
     lines = [line for line in re.split(rb"[\r\n]+", head) if line.strip()]
-    return [line for line in lines if not line.lstrip().startswith((b"#", b"%", b"//", b"!", b"*"))]
+    return [line for line in lines if not line.lstrip().startswith(MARKS)]
 
 
 def is_text(head):
@@ -194,6 +196,7 @@ EARTHVISION = rb"(#[^\n]*\n)*#\s*(Type:\s*scattered data|Field:\s*\d)"
 IESX = rb"(\s*[#!][^\n]*\n)*PROFILE [^\n]*TYPE +\d"
 LANDXML = rb"(\xef\xbb\xbf)?\s*(<\?xml.*?\?>\s*)?(<!--.*?-->\s*)*<LandXML\b"
 PCD = rb"(#[^\n]*\n)*VERSION [.\d]+\s*\nFIELDS"
+DHI = rb"(\d+ +\d+ +)?\d+ +[A-Za-z][^\n]*\n *1\s+([-+.\deE]+\s+){3}\d+\s*\n *2\s"
 ZMAP = rb"(\s*![^\n]*\n)*\s*@[^\n]*,\s*"
 PETREL = rb"(#[^\n]*\n)*\s*VERSION \d+\s+BEGIN HEADER\s"
 # Lines begin with > or ->, or end with 999 999 999.
@@ -219,6 +222,7 @@ FORMATS = (
     Format("a LandXML file", ".landxml", begins(LANDXML), "landxml", "landxml"),
     Format("a PCD file", ".pcd", begins(PCD), "pcd"),
     Format("an ADCIRC mesh", ".14", is_adcirc, "adcirc"),
+    Format("a DHI mesh", ".mesh", begins(DHI), "adcirc.read_dhi"),
     Format("a CPS-3 grid", ".cps .cps3", begins(rb"\s*FSASCI\b"), "horizons.read_cps3_grid"),
     Format("a GXF grid", ".gxf", is_gxf, "gxf.read_grid"),
     Format("a ZMAP+ grid", ".zmap .dat", begins(ZMAP + rb"GRID\s*,"), "horizons.read_zmap"),
@@ -276,7 +280,14 @@ FOREIGN = tuple(
         (rb"[^,\n]*,\s*\d{1,2}-[a-z]{3}-\d{2}[^\n]*\n\s*0,\s*-?\d+\.\d+,",
          "is a Surpac string file, with y before x: awk -F, '$1 + 0 > 0 {print $3, $2, $4}' {path} > points.txt takes x, "
          "y and z out of it"),
-        (rb"\s*\*?11\d{4}[+-]", "is a Leica GSI file: export x, y and z as text from the instrument or its program"),
+        (rb"\s*\*?11\d{4}[+-]|CO,Nikon RAW|\s*\x02?00[NT]MS|(--[^\n]*\s+)*JB,NM[^\n]*\s+MO,|\x02_'|S[DS] {6}\d|"
+         rb"\s*0001 [^\n]*\n\s*0002 |(\d\d?=[^\n]*\n){4}|\{\d+ [^\n{}]*\}",
+         "is a raw file of a total station (Leica GSI, Nikon, Sokkia, Topcon, Trimble, Zeiss): export x, y and z as text "
+         "from the instrument or its program"),
+        (rb"(\xef\xbb\xbf)?\s*(<\?xml[^>]*>\s*)?<TrainingCenterDatabase",
+         "is a track of Garmin: gpsbabel -i gtrnctr -f {path} -o gpx -F track.gpx makes one of it that is read"),
+        (rb"A[A-Z]{3}[^\n]*\n(H[FOP]|I\d\d)[^\n]*\n",
+         "is a track of a flight recorder: gpsbabel -i igc -f {path} -o gpx -F track.gpx makes one of it that is read"),
         (rb"\s*\d+\s*\n\s*\d+\s*\n(\s*\S+ +\S+ +\S+ *\r?\n){4}(\s*\S+ +\S+ +\S+ +\S+ *\r?\n){4}",
          "is a Leica PTX scan: convert it to .las or .ply, by CloudCompare -O {path} -C_EXPORT_FMT PLY -SAVE_CLOUDS"),
         (rb"FTP NEW \d|((VER|INF|FTP|TND|PRJ) [^\n]*\n)+(DEV|POS|EC1|ECH|MSG) ",
