@@ -171,6 +171,7 @@ class Choice:
                     f"{self.called(found[0])}; each needs a column of its own"
                 )
             self.indices.append(found[0])
+        self.refuse_geocentric(self.indices)
 
     # -- readings
 
@@ -181,13 +182,14 @@ class Choice:
         """
         best, *others = sorted(readings, key=readings.get, reverse=True)
         clear = CLEAR if readings[best] >= GOOD else CLEAR_OF_POOR
+        self.refuse_geocentric(best)
         shown = [one for one in readings if one in (best, *others[:1])]
         if others and readings[best] - readings[others[0]] < clear:
             self.ask(shown, why)
         others = [i for i in self.numeric if self.spans[i] > 0 and i not in (*best, *self.reasons)]
         same = [i for i in best if self.spans[i] == 0 and not self.meanings[i].axis and others]
         if set(same) - set(best[2:]) or same and any(map(self.counts_along, others)):
-            self.ask(shown, f"{self.listed(same)} is the same in all rows, where others are not")
+            self.ask(shown, f"column {self.called(same[0])} is the same in all rows, where others are not")
         if self.needed == 3 and not self.meanings[best[2]].axis and self.is_too_high(best[2]):
             self.ask(shown, f"column {self.called(best[2])} is higher than any place, so z may lack or stand elsewhere")
         self.indices = list(best)
@@ -204,7 +206,7 @@ class Choice:
             why = f"X is often north in tables in {language}, and nothing shows here whether it is"
             self.ask([(y, x, *z), (x, y, *z)], why)
         self.has_swapped, self.indices = True, [y, x, *z]
-        self.notes.append(f"X is north, as often in tables in {language}, by the sizes of columns {self.taken()}")
+        self.note(f"X is north, as often in tables in {language}, and by the sizes: {self.taken()}")
 
     def are_degrees(self, x, y):
         """Whether columns may be longitude and latitude by their sizes and decimals."""
@@ -293,7 +295,7 @@ class Choice:
         x, y = self.indices[:2]
         if self.is_in_lines:
             self.note(f"no column is named as x or y: {self.taken()}; lengths count lines and traces, not metres")
-        elif missing or self.indices != list(range(self.width)):
+        elif not self.has_swapped and (missing or self.indices != list(range(self.width))):
             left = f"; {missing[0]} is the only column left" if missing else ""
             self.note(f"columns by their names: {self.taken()}{left}")
         others = [
@@ -591,23 +593,22 @@ class Choice:
         zone = low[x] // 1e6 * 1e6 if 1e7 < low[x] < 61e6 else 0.0
         return bool(160e3 < low[x] - zone <= high[x] - zone < 840e3 and 1.1e6 < low[y] <= high[y] < 10e6)
 
-    def are_geocentric(self, i):
-        """Whether column i and the next two are x, y and z from the centre of the earth."""
-        x, y, z = self.values[:, i : i + 3].T
+    def refuse_geocentric(self, chosen):
+        """Raises the error for columns of which some are x, y and z from the centre of the earth."""
         equator, pole, most, least = GEOCENTRIC
-        away = (x * x + y * y) / equator**2 + z * z / pole**2 - 1
-        return bool((abs(away) < most).all() and (abs(z) > least).all())
+        for i in range(self.width - 2):
+            x, y, z = self.values[:, i : i + 3].T
+            away = (x * x + y * y) / equator**2 + z * z / pole**2 - 1
+            if not {i, i + 1, i + 2}.isdisjoint(chosen) and (abs(away) < most).all() and (abs(z) > least).all():
+                raise FileError(
+                    f"{self.path}: {self.listed([i, i + 1, i + 2])} are x, y and z from the centre of the earth (ECEF); "
+                    "export longitude, latitude and height, or a map projection"
+                )
 
     # -- what the values say about the choice
 
     def look_at_values(self):
         x, y = self.indices[:2]
-        for i in range(self.width - 2):
-            if not {i, i + 1, i + 2}.isdisjoint(self.indices) and self.are_geocentric(i):
-                raise FileError(
-                    f"{self.path}: {self.listed([i, i + 1, i + 2])} are x, y and z from the centre of the earth (ECEF); "
-                    "export longitude, latitude and height, or a map projection"
-                )
         for i in (x + 1, y + 1):  # behind a latitude or longitude without its sign
             letters = {row[i].strip().upper() for row in self.rows if i < self.width} - {""}
             if letters and letters <= set("NSEW") and letters & set("SW"):

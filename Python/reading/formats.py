@@ -144,9 +144,15 @@ def is_gxf(head, path):
         return re.search(rb"(?m)^#GRID[ \t]*\r?$", stream.read(LONG_HEAD)) is not None
 
 
+def is_tekal(head, path):
+    """Text of Delft3D: of each line a name, the counts of rows and columns, rows."""
+    found = re.match(rb"(?:\*[^\n]*\n)*(?!DSAA|\s*[-+.\d])[^\n]{1,99}\n\s*[1-9]\d*\s+([23])\s*\n([^\n]*)\n", head)
+    return found is not None and len(found[2].split()) == count_numbers(found[2]) == int(found[1])
+
+
 def is_segments(head, path):
     """Text of lines that are marked where they begin, or by the mark at the end of the last one."""
-    if re.match(SEGMENTS, head, re.DOTALL):
+    if re.match(SEGMENTS, head, re.DOTALL) or is_tekal(head, path):
         return True
     if not count_numbers(head.partition(b"\n")[0]):
         return False
@@ -229,7 +235,7 @@ FORMATS = (
     Format("ZMAP+ points", ".zmap .dat", begins(ZMAP + rb"DATA\s*,"), "horizons.read_zmap_points"),
     Format("EarthVision data", ".ev", begins(EARTHVISION), "horizons.read_earthvision"),
     Format("Petrel points", "", begins(PETREL), "horizons.read_petrel_points"),
-    Format("lines in segments", ".gmt", is_segments, "horizons.read_segments", "horizons"),
+    Format("lines in segments", ".gmt .pli .pliz .pol .ldb", is_segments, "horizons.read_segments", "horizons"),
     Format("a raster", ".sgrd .sdat", is_saga_header, "rasters"),
     Format("a vector file", ".csv", is_table_with_geometry, "vectors", "vectors"),
     Format("a vector file", ".gmt", begins(rb"# ?@VGMT"), "vectors", "vectors"),

@@ -254,8 +254,7 @@ class Parser:
         longer = [i for i in odd if len(words[i]) > table.words]
         self.facts["ragged"] = self.facts["ragged"] or [[self.number(i), len(words[i])] for i in longer[:1]]
         if table.skips:
-            most = len(table.choice.of_numbers)
-            self.facts["uneven"] += sum(table.layout.numbers(lines[i]) > most for i in longer)
+            self.facts["uneven"] += sum(table.layout.numbers(lines[i]) == len(words[i]) for i in longer)
         short = {i for i in odd if self.is_short(words[i])}
         self.add_rows(lines, self.rows_among(block, lines, skip), short, b'"' in block)
         self.line += len(lines)
@@ -479,7 +478,7 @@ def read_table(path, needed=3, progress=no_progress):
     Returns (rows, line numbers, starts, notes): rows is an array of n * needed doubles, a start is
     the index of a row that follows a blank line or one that begins with ">".
     """
-    advice = f"a header line with {', '.join('xyz'[:needed])} names the columns"
+    advice = f"a header line with {', '.join(('easting', 'northing', 'elevation')[:needed])} names the columns"
     parser, rows, numbers, notes = parse(path, ReadOptions(progress=progress), needed, advice)
     return rows[:, :needed].copy(), numbers, parser.starts, notes
 

@@ -158,7 +158,7 @@ class Doubts(Tables):
             self.assertEqual(tuple(rows[0]), expected)
         with self.assertRaises(FileError) as caught:
             read_table(self.file("a.txt", "X,X,Y\n1,2,3\n"), needed=2)
-        self.assertIn("a header line with x, y names the columns", str(caught.exception))
+        self.assertIn("a header line with easting, northing names the columns", str(caught.exception))
         self.assertNotIn("--columns", str(caught.exception))
 
     def test_northing_before_easting_without_a_header_is_noted(self):
