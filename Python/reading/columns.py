@@ -265,7 +265,8 @@ class Choice:
         named, ranks = {}, {}
         for axis in self.axes:
             found = [i for i, m in enumerate(self.meanings) if m.axis == axis]
-            named[axis] = [i for i in found if i in self.numeric] or found
+            # Words of a height are an error, those of a time, which a traveltime may be called, are no height.
+            named[axis] = [i for i in found if i in self.numeric] or [i for i in found if self.meanings[i].rank != 4]
             ranks[axis] = {self.meanings[i].rank for i in named[axis]}
         alike = ranks["x"] & ranks["y"]
         for axis, found in named.items():
@@ -287,7 +288,7 @@ class Choice:
             others = [i for i in free if self.meanings[i].role in roles]
             if others:
                 is_other = self.times(others)
-                likely = [i for i in others if i not in is_other and not self.is_id(i)]
+                likely = [i for i in others if i not in is_other and not self.is_id(i) and self.high[i] < HIGHEST]
                 return (likely, roles == ("",)) if len(likely) >= count else (others, False)
         return [], False
 

@@ -270,6 +270,7 @@ FOREIGN = tuple(
         (rb"MATLAB 5\.0|.{512}\x89HDF[^\n]*MATLAB", "is a MATLAB file: save x, y and z by writematrix() as .csv"),
         (rb"PAR1", "is a Parquet table: save it as .csv, in pandas by to_csv()"),
         (rb"\x80[\x02-\x05]", "is a pickle of Python: save the array by numpy.save()"),
+        (rb"\$MeshFormat", "is a mesh of Gmsh: gmsh {path} -save -format vtk -o mesh.vtk makes one of it that is read"),
         (rb"MESH2D\b", "is a mesh of SMS (.2dm): save it as .vtu or .ply, in QGIS as points"),
         (rb"%PDF", "is a PDF document"),
         (rb"\s*<(!doctype )?html", "is a web page"),
@@ -286,7 +287,7 @@ FOREIGN = tuple(
         (rb"[^,\n]*,\s*\d{1,2}-[a-z]{3}-\d{2}[^\n]*\n\s*0,\s*-?\d+\.\d+,",
          "is a Surpac string file, with y before x: awk -F, '$1 + 0 > 0 {print $3, $2, $4}' {path} > points.txt takes x, "
          "y and z out of it"),
-        (rb"\s*\*?11\d{4}[+-]|CO,Nikon RAW|\s*\x02?00[NT]MS|(--[^\n]*\s+)*JB,NM[^\n]*\s+MO,|\x02_'|S[DS] {6}\d|"
+        (rb"\s*\*?11\d{4}[+-]|CO,Nikon RAW|\s*\x02?00[NT]MS|(--[^\n]*\s+)*(JB,NM[^\n]*\s+MO|SP,PN|OC,OP|LS,HI)|\x02_'|S[DS] {6}\d|"
          rb"\s*0001 [^\n]*\n\s*0002 |(\d\d?=[^\n]*\n){4}|\{\d+ [^\n{}]*\}",
          "is a raw file of a total station (Leica GSI, Nikon, Sokkia, Topcon, Trimble, Zeiss): export x, y and z as text "
          "from the instrument or its program"),
@@ -322,7 +323,7 @@ def recognise(path):
             return kind, []
     # The reader of text says best what is wrong with a text.
     is_plain = is_plain_text(head) and (not suffix or re.search(rb"\d", head))
-    if suffix in TEXT.split() or is_plain and not named:
+    if suffix in TEXT.split() or is_plain and (not named or head.lstrip()[:1] in (b"[", b"{")):
         return FORMATS[-1], []
     if named:
         return named[0], []

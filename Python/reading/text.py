@@ -40,7 +40,7 @@ COMMENTS = re.compile(rb"\n[ \t]*[" + "".join(COMMENT_MARKS).encode() + b"]")
 TAIL = 50  # lines at the end of a block among which summaries are looked for
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED, MOST_SUMMARIES = 3, 5  # that many lines of other kinds, and of summaries, are named
-MOST_UNEVEN = 0.08  # lines of numbers that are left out or longer than others, as a share of rows
+MOST_UNEVEN = 0.5, 0.08  # lines of numbers that are longer than others or left out, as a share of rows
 WITHOUT_DATA = "all rows are without data"
 NO_ROWS = {2: "no line is a row of x and y", 3: "no line is a row of x, y and z"}
 
@@ -253,8 +253,7 @@ class Parser:
         words = {i: table.layout.words(lines[i]) for i in odd}
         longer = [i for i in odd if len(words[i]) > table.words]
         self.facts["ragged"] = self.facts["ragged"] or [[self.number(i), len(words[i])] for i in longer[:1]]
-        if table.skips:
-            self.facts["uneven"] += sum(table.layout.numbers(lines[i]) == len(words[i]) for i in longer)
+        self.facts["uneven"] += sum(table.layout.numbers(lines[i]) == len(words[i]) for i in longer)
         short = {i for i in odd if self.is_short(words[i])}
         self.add_rows(lines, self.rows_among(block, lines, skip), short, b'"' in block)
         self.line += len(lines)
@@ -410,7 +409,7 @@ class Parser:
     def final_notes(self):
         """Notes, once all lines are read. Raises FileError where many rows have other numbers of columns."""
         table, facts = self.table, self.facts
-        if facts["uneven"] > MOST_UNEVEN * facts["count"]:
+        if facts["uneven"] > MOST_UNEVEN[table.skips] * facts["count"]:
             raise FileError(
                 f"{table.path}: {facts['uneven']:,} lines of numbers have other columns than {facts['count']:,} rows: "
                 "blanks do not part the columns of this table; export it as .csv"
