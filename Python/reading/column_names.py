@@ -12,7 +12,8 @@ from .table_words import (
 
 
 def plain(text):
-    """Without accents, apart at capitals, signs and scripts: "Höhe_NN (m)" -> ["hohe", "nn", "m"], "X座標" -> ["x", "座標"]."""
+    """Without accents, apart at capitals, signs and scripts: "Höhe_NN (m)" -> ["hohe", "nn", "m"],
+    "X座標" -> ["x", "座標"]."""
     text = re.sub("Ø(?=[A-Z])", "OE", text)
     text = unicodedata.normalize("NFKD", text.translate(LETTERS))
     text = "".join(letter for letter in text if not unicodedata.combining(letter))

@@ -30,7 +30,8 @@ FEW_ROWS = 10  # show too little for some reasons why a column is no coordinate
 NOT_DECIMALS = re.compile(r"^[^.,]*[.,]?|[eEdD].*$")
 # Why a column is no coordinate, where that counts for others.
 COUNTS_UP, EACH_ONCE = "an id: it counts up by one", "an id: whole numbers, each once"
-PART_OF_TIME, THE_SAME, NO_NEIGHBOUR = "a part of a date or time", "the same in all rows", "no coordinate next to the next"
+PART_OF_TIME, THE_SAME = "a part of a date or time", "the same in all rows"
+NO_NEIGHBOUR = "no coordinate next to the next"
 
 
 def advice_on_columns():
@@ -198,15 +199,21 @@ class Choice:
     def turn_where_x_is_north(self):
         """Swaps x and y where the lines before the data are in a language in which X is often north and the sizes
         prove it; asks where these prove nothing."""
-        x, y, *z = self.indices
+        x, y = self.indices[:2]
         language = next((name for name, letters in X_IS_NORTH.items() if re.search(letters, self.head)), "")
-        if not language or self.meanings[x].rank or self.meanings[y].rank or self.is_utm(x, y) or self.are_degrees(x, y):
+        is_plain = self.meanings[x].rank == self.meanings[y].rank == 0
+        if not language or not is_plain or self.is_utm(x, y) or self.are_degrees(x, y):
             return
         if not self.is_utm(y, x):
             why = f"X is often north in tables in {language}, and nothing shows here whether it is"
-            self.ask([(y, x, *z), (x, y, *z)], why)
-        self.has_swapped, self.indices = True, [y, x, *z]
+            self.ask([self.swapped(), self.indices], why)
+        self.has_swapped, self.indices = True, self.swapped()
         self.note(f"X is north, as often in tables in {language}, and by the sizes: {self.taken()}")
+
+    def swapped(self):
+        """The indices with x and y in each other's place."""
+        x, y, *z = self.indices
+        return [y, x, *z]
 
     def are_degrees(self, x, y):
         """Whether columns may be longitude and latitude by their sizes and decimals."""
@@ -308,7 +315,7 @@ class Choice:
         if not self.has_swapped and self.indices[-1] > x > y and self.meanings[x].rank == self.meanings[y].rank == 0:
             self.notes.append(
                 "Y stands before X, as where X is north; x and y are taken as named "
-                f"({option('columns')} {self.numbered([y, x] + self.indices[2:])} swaps them)"
+                f"({option('columns')} {self.numbered(self.swapped())} swaps them)"
             )
 
     # -- values
@@ -316,15 +323,18 @@ class Choice:
     def by_values(self):
         """Sets the indices from the values of the columns."""
         count = self.needed
+        numbers = [i for i in self.numeric if len(self.finite[i])]
+        usable = [i for i in numbers if not self.meanings[i].role and not self.meanings[i].axis]
+        if len(numbers) < count < self.width:
+            are = "is" if len(numbers) == 1 else "are"
+            self.ask([], f"{count} columns of numbers are needed, and there {are} {len(numbers)}")
+        if len(usable) < count and self.names and all(self.names):
+            others = self.listed([i for i in numbers if i not in usable])
+            self.ask([numbers[:count]], f"{self.none_is_named()}, and {others} may be something else by the names")
         if self.width == count:
             self.in_their_order()
             return
-        numbers = [i for i in self.numeric if len(self.finite[i])]
-        usable = [i for i in numbers if not self.meanings[i].role and not self.meanings[i].axis]
         usable = usable if len(usable) >= count else numbers
-        if len(usable) < count:
-            are = "is" if len(usable) == 1 else "are"
-            self.ask([], f"{count} columns of numbers are needed, and there {are} {len(usable)}")
         if not self.names and len(usable) == self.width and count == 3:
             self.ask_for_grid()
         left = self.without_others(usable[:MOST_JUDGED])
@@ -361,11 +371,7 @@ class Choice:
         order = tuple(self.indices)
         readings = {order: GOOD}
         if self.names:
-            why = f"no column is named as {'x, y or z' if self.needed == 3 else 'x or y'}"
-            others = [i for i, m in enumerate(self.meanings) if m.role]
-            if others and all(self.names):
-                self.ask([order], f"{why}, and {self.listed(others)} means something else")
-            self.note(f"{why}: {self.taken()}")
+            self.note(f"{self.none_is_named()}: {self.taken()}")
         if self.needed == 3 and not any(m.axis or m.role for m in self.meanings):
             for other in ((1, 2, 0), (2, 1, 0)):  # as z, x, y
                 readings[other] = GOOD if self.is_utm(*other[:2]) else 0
@@ -568,13 +574,13 @@ class Choice:
         northing_first, northing_second = self.is_utm(y, x), self.is_utm(x, y)
         is_sure = max(self.low[x], self.low[y]) > MOST_FEET
         if has_ids and northing_first and is_sure:
-            self.has_swapped, self.indices = True, [y, x, z]
+            self.has_swapped, self.indices = True, self.swapped()
             self.notes.append(
                 f"column {self.called(x)} is taken as northing and {self.called(y)} as "
                 "easting, by their sizes"
             )
         elif has_ids and (coded and not (northing_second and is_sure) or northing_first) or self.may_be_latitude(x, y, z):
-            self.ask([(y, x, z), (x, y, z)], "the columns can be read in two ways")
+            self.ask([self.swapped(), self.indices], "the columns can be read in two ways")
 
     def may_be_latitude(self, x, y, z):
         """Whether columns may be latitude and longitude in this order, and not the other way."""
@@ -602,8 +608,8 @@ class Choice:
             away = (x * x + y * y) / equator**2 + z * z / pole**2 - 1
             if not {i, i + 1, i + 2}.isdisjoint(chosen) and (abs(away) < most).all() and (abs(z) > least).all():
                 raise FileError(
-                    f"{self.path}: {self.listed([i, i + 1, i + 2])} are x, y and z from the centre of the earth (ECEF); "
-                    "export longitude, latitude and height, or a map projection"
+                    f"{self.path}: {self.listed([i, i + 1, i + 2])} are x, y and z from the centre of the "
+                    "earth (ECEF); export longitude, latitude and height, or a map projection"
                 )
 
     # -- what the values say about the choice
@@ -632,10 +638,13 @@ class Choice:
         if self.is_utm(y, x) and not self.has_swapped:
             self.notes.append(
                 "x is as large as a northing and y as an easting of UTM; if so, "
-                f"{option('columns')} {self.numbered([y, x] + self.indices[2:])} gives the map its true side"
+                f"{option('columns')} {self.numbered(self.swapped())} gives the map its true side"
             )
 
     # -- words
+
+    def none_is_named(self):
+        return f"no column is named as {'x, y or z' if self.needed == 3 else 'x or y'}"
 
     def note(self, words):
         self.notes.append(f"{words} (see {option('columns')})")

@@ -106,7 +106,8 @@ ROLES = (
         "intensity amplitude quality std stddev sigma sd rms error err uncertainty accuracy "
         "precision velocity speed heading pitch roll nx ny nz normal confidence hdop pdop vdop "
         "tide draft angle slope aspect undulation geoid dev deviation residual delta dx dy dz "
-        "thickness offset snr weight fold scan beam ping mean stdev count density tpu tvu thu fom "
+        "thickness offset snr weight fold scan beam ping mean stdev count density tpu tvu thu fom course bearing satellites "
+        "sats nsat count cnt population pop age "
         "antenna ant target instrument prism rod pole vel vx vy vz dist distance distanz distancia distanza afstand "
         "avstand abstand"
     )),
