@@ -4,9 +4,11 @@
 
 import dataclasses
 import importlib
+import itertools
 import os
 import re
 
+from .column_names import known_names
 from .table_words import COMMENT_MARKS
 from ..messages import FileError
 from ..paths import is_geodatabase, suffix_of
@@ -145,9 +147,15 @@ def is_gxf(head, path):
 
 
 def is_tekal(head, path):
-    """Text of Delft3D: of each line a name, the counts of rows and columns, rows."""
-    found = re.match(rb"(?:\*[^\n]*\n)*(?!DSAA|\s*[-+.\d])[^\n]{1,99}\n\s*[1-9]\d*\s+([23])\s*\n([^\n]*)\n", head)
-    return found is not None and len(found[2].split()) == count_numbers(found[2]) == int(found[1])
+    """Text of Delft3D: of each line a name, which names no columns, the counts of rows and columns, rows."""
+    found = re.match(rb"(?:\*[^\n]*\n)*(?!DSAA|\s*[-+.\d])([^\n]{1,99})\n\s*([1-9]\d*)\s+([23])\s*\n", head)
+    if not found or known_names(found[1].decode("latin-1").split()):
+        return False
+    with open(path, "rb") as stream:
+        stream.seek(found.end())
+        rows, after = list(itertools.islice(stream, int(found[2]))), next(stream, b"")
+    is_block = len(rows) > 0 and count_numbers(rows[-1]) == int(found[3])
+    return is_block and (not after.strip() or count_numbers(after) < len(after.split()))
 
 
 def is_segments(head, path):
@@ -288,7 +296,7 @@ FOREIGN = tuple(
          "is a Surpac string file, with y before x: awk -F, '$1 + 0 > 0 {print $3, $2, $4}' {path} > points.txt takes x, "
          "y and z out of it"),
         (rb"\s*\*?11\d{4}[+-]|CO,Nikon RAW|\s*\x02?00[NT]MS|(--[^\n]*\s+)*(JB,NM[^\n]*\s+MO|SP,PN|OC,OP|LS,HI)|"
-         rb"\x02_'|S[DS] {6}\d|\s*0001 [^\n]*\n\s*0002 |(\d\d?=[^\n]*\n){4}|\{\d+ [^\n{}]*\}",
+         rb"\x02_'|S[DS] {6}\d|\s*0001 +[A-Z.]+\s*\n\s*0002 |(\d\d?=[^\n]*\n){4}|\{\d+ [^\n{}]*\}",
          "is a raw file of a total station (Leica GSI, Nikon, Sokkia, Topcon, Trimble, Zeiss): export x, y and z as text "
          "from the instrument or its program"),
         (rb"(\xef\xbb\xbf)?\s*(<\?xml[^>]*>\s*)?<TrainingCenterDatabase",

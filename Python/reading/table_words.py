@@ -181,7 +181,8 @@ NO_NUMBERS = (
         1.0, THOUSANDS,
     ),
     (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", 1.0, SEXAGESIMALS),
-    (r"\b[NS]\d{1,2}\b.*\b[EW]\d{1,3}\b|\d[\u00b0\u00ba]?[NS]\b.*\d[\u00b0\u00ba]?[EW]\b", 0.5, _LETTER),
+    (r"\b[NS]\d{1,2} \d{1,2}\.\d.*\b[EW]\d{1,3} \d{1,2}\.\d|\.\d+[\u00b0\u00ba]?[NS]\b.*\.\d+[\u00b0\u00ba]?[EW]\b",
+     0.5, _LETTER),
     (r"\d\s?[NSEW]\b", 1.0, _LETTER),
     (r"\"\s*[-+]?\d+,\d+\s*\"\s*,", 1.0, COMMAS_TWICE),  # "1,5","2,5"
 )

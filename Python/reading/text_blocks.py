@@ -83,7 +83,7 @@ def plain(data):
 
 def encoding_of(block):
     """The encoding in which most words of a header mean something, of text that is not UTF-8."""
-    head = b" ".join(block.split(b"\n", 20)[:20])
+    head = b" ".join(line for line in block.split(b"\n", 20)[:20] if not re.search(rb"\d[.,]\d", line))
     texts = {encoding: head.decode(encoding, "replace") for encoding in ENCODINGS}
     return max(texts, key=lambda encoding: known_names(re.split(r"[\s,;|]+", texts[encoding])))
 

@@ -139,6 +139,11 @@ class Formats(InFolder):
         ring = reading.read_boundary(self.file("a.pol", "ring\n3 2\n0 0\n9 0\n9 9\n"))
         self.assertEqual(ring.GetCell(0).GetNumberOfPoints(), 4)
         self.assert_refused("is damaged: 'two 3' does not count", text.replace(" 2 3", " two 3"), "a.pliz")
+        for head in ("x y", "a ring"):  # a table whose first row may be such counts
+            ring = reading.read_boundary(self.file("a.txt", f"{head}\n2 2\n8 2\n8 8\n2 8\n2 2\n"))
+            self.assertEqual(ring.GetCell(0).GetNumberOfPoints(), 5)
+        ring = reading.read_boundary(self.file("a.txt", "x y\n4 2\n8 2\n8 8\n4 8\n4 2\n"))
+        self.assertEqual(ring.GetCell(0).GetNumberOfPoints(), 5)
 
     def test_an_obj_without_vertices_is_refused_and_numpy_does_not_warn(self):
         with warnings.catch_warnings():
