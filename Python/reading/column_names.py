@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the name of a column means: an axis, or something else, in nine languages and some more."""
+"""What the name of a column means: an axis, or something else, in nine languages and words of others."""
 
 import dataclasses
 import re
@@ -12,18 +12,21 @@ from .table_words import (
 
 
 def plain(text):
-    """Without accents, apart at capitals and signs: "Höhe_NN (m)" -> ["hohe", "nn", "m"]."""
+    """Without accents, apart at capitals, signs and scripts: "Höhe_NN (m)" -> ["hohe", "nn", "m"],
+    "X座標" -> ["x", "座標"]."""
     text = re.sub("Ø(?=[A-Z])", "OE", text)
     text = unicodedata.normalize("NFKD", text.translate(LETTERS))
     text = "".join(letter for letter in text if not unicodedata.combining(letter))
+    text = unicodedata.normalize("NFC", text)
     text = re.sub(r"([a-z])([A-Z])|([A-Z])([A-Z][a-z])", r"\1\3 \2\4", text)
     beside = r"(utm|p|pos|coord\w*|koord\w*)?"
     text = re.sub(rf"\b{beside}([xyz]){beside}\b", r"\1 \2 \3", text.lower())
-    return [word for word in re.split(r"[^a-z]+", text) if word]
+    return re.findall(r"[a-z]+|[^\W\d_a-z]+", text)
 
 
 def in_brackets(name):
     """("X (Nord)") -> ("X ", " Nord")."""
+    name = unicodedata.normalize("NFKC", name)
     return re.sub(r"[(\[{<].*", "", name), " ".join(re.findall(r"[(\[{<]([^)\]}>]*)", name))
 
 
@@ -66,7 +69,7 @@ def _axis_meaning(words, joined, inside):
     axis, rank, _ = min(found)
     beside = [w for w in words if w not in AXIS_NAMES and joined not in AXIS_NAMES]
     heights = [w for w in named if AXIS_NAMES[w][0] == axis == "z"]
-    is_old = "alt" in heights and len(set(heights)) > 1  # "Höhe_alt"
+    is_old = words[-1] == "alt" and len(set(heights)) > 1  # "Höhe_alt"
     if is_old or not NEXT_TO_AXES.issuperset(beside):
         if max(map(len, named), default=0) < 2 or rank == 4:
             return None  # a single letter among words that mean something else

@@ -15,8 +15,8 @@ import numpy
 
 from .column_names import Meaning, alike_but_for_axis, in_brackets, meaning, plain
 from .table_words import (
-    CLEAR, CLEAR_OF_POOR, COLOURS, FINNISH, GOOD, HIGHEST, LINES_AS_AXES, MOST_FEET, MOST_STEP_OF_LINES, PARTS_OF_TIME,
-    SEISMIC, TIMES, WEIGHTS
+    CLEAR, CLEAR_OF_POOR, COLOURS, FINNISH, GEOCENTRIC, GOOD, HIGHEST, LINES_AS_AXES, MOST_FEET, MOST_STEP_OF_LINES,
+    PARTS_OF_TIME, SEISMIC, TIMES, WEIGHTS, X_IS_NORTH
 )
 from .nulls import FAR, usual_nulls
 from ..messages import FileError
@@ -26,10 +26,12 @@ SHOWN_ROWS, SHOWN_COLUMNS = 3, 12  # below a question
 MOST_JUDGED = 30  # columns, from the left: each is compared with each
 MOST_COLUMNS = 12  # of rows of points without names; with more, they are a grid
 ROWS_OF_GRID = 20  # times its columns, and no more
+FEW_ROWS = 10  # show too little for some reasons why a column is no coordinate
 NOT_DECIMALS = re.compile(r"^[^.,]*[.,]?|[eEdD].*$")
 # Why a column is no coordinate, where that counts for others.
 COUNTS_UP, EACH_ONCE = "an id: it counts up by one", "an id: whole numbers, each once"
-PART_OF_TIME = "a part of a date or time"
+PART_OF_TIME, THE_SAME = "a part of a date or time", "the same in all rows"
+NO_NEIGHBOUR = "no coordinate next to the next"
 
 
 def advice_on_columns():
@@ -75,17 +77,19 @@ class Choice:
     """
 
     @numpy.errstate(all="ignore")
-    def __init__(self, path, rows, consecutive, layout, names, width, columns, needed, advice):
+    def __init__(self, path, rows, consecutive, layout, head, names, width, columns, needed, advice):
         """Raises FileError.
 
         rows         some rows as words; the first so many (consecutive) follow each other in the file
         layout       the Layout of lines
+        head         the lines before the data
         names, width  of the columns; names may be None
         columns      None, or what the user said: names or numbers
         needed       3 or 2
         advice       what a user can do where no choice is sure; None: choose columns
         """
         self.path, self.layout, self.names, self.width, self.needed = path, layout, names, width, needed
+        self.head = "\n".join(head).lower()
         self.rows = [row[:width] + [""] * (width - len(row)) for row in rows]
         self.consecutive, self.axes = consecutive, "xyz"[:needed]
         self.can_be_chosen, self.advice = advice is None, advice or advice_on_columns()
@@ -168,6 +172,7 @@ class Choice:
                     f"{self.called(found[0])}; each needs a column of its own"
                 )
             self.indices.append(found[0])
+        self.refuse_geocentric(self.indices)
 
     # -- readings
 
@@ -178,12 +183,41 @@ class Choice:
         """
         best, *others = sorted(readings, key=readings.get, reverse=True)
         clear = CLEAR if readings[best] >= GOOD else CLEAR_OF_POOR
+        self.refuse_geocentric(best)
         shown = [one for one in readings if one in (best, *others[:1])]
         if others and readings[best] - readings[others[0]] < clear:
             self.ask(shown, why)
+        others = [i for i in self.numeric if self.spans[i] > 0 and i not in (*best, *self.reasons)]
+        same = [i for i in best if self.spans[i] == 0 and not self.meanings[i].axis and others]
+        if set(same) - set(best[2:]) or same and any(map(self.counts_along, others)):
+            self.ask(shown, f"column {self.called(same[0])} is the same in all rows, where others are not")
         if self.needed == 3 and not self.meanings[best[2]].axis and self.is_too_high(best[2]):
             self.ask(shown, f"column {self.called(best[2])} is higher than any place, so z may lack or stand elsewhere")
         self.indices = list(best)
+        self.turn_where_x_is_north()
+
+    def turn_where_x_is_north(self):
+        """Swaps x and y where the lines before the data are in a language in which X is often north and the sizes
+        prove it; asks where these prove nothing."""
+        x, y = self.indices[:2]
+        language = next((name for name, letters in X_IS_NORTH.items() if re.search(letters, self.head)), "")
+        is_plain = self.meanings[x].rank == self.meanings[y].rank == 0
+        if not language or not is_plain or self.is_utm(x, y) or self.are_degrees(x, y):
+            return
+        if not self.is_utm(y, x):
+            why = f"X is often north in tables in {language}, and nothing shows here whether it is"
+            self.ask([self.swapped(), self.indices], why)
+        self.has_swapped, self.indices = True, self.swapped()
+        self.note(f"X is north, as often in tables in {language}, and by the sizes: {self.taken()}")
+
+    def swapped(self):
+        """The indices with x and y in each other's place."""
+        x, y, *z = self.indices
+        return [y, x, *z]
+
+    def are_degrees(self, x, y):
+        """Whether columns may be longitude and latitude by their sizes and decimals."""
+        return self.largest[x] <= 360 and self.largest[y] <= 90 and min(self.decimals[x], self.decimals[y]) >= 4
 
     def is_too_high(self, i):
         return len(self.finite[i]) > 0 and abs(self.finite[i]).min() > HIGHEST
@@ -206,7 +240,7 @@ class Choice:
 
     def by_names(self):
         """Whether the names give the columns; sets the indices then."""
-        named = {axis: self.best_named(axis) for axis in self.axes}
+        named = self.best_named()
         if not any(named.values()):
             return False
         missing = [axis for axis in self.axes if not named[axis]]
@@ -232,12 +266,22 @@ class Choice:
         self.look_at_names(missing)
         return True
 
-    def best_named(self, axis):
-        """The columns whose names are the best for an axis; those of numbers before others."""
-        found = [i for i, m in enumerate(self.meanings) if m.axis == axis]
-        found = [i for i in found if i in self.numeric] or found
-        best = min((self.meanings[i].rank for i in found), default=0)
-        return [i for i in found if self.meanings[i].rank == best]
+    def best_named(self):
+        """{axis: columns whose names are the best for it}: of numbers before others, x and y alike before those that
+        are not, as longitude next to latitude is before "E1", and "z" before "z10"."""
+        named, ranks = {}, {}
+        for axis in self.axes:
+            found = [i for i, m in enumerate(self.meanings) if m.axis == axis]
+            # Words of a height are an error, those of a time, which a traveltime may be called, are no height.
+            named[axis] = [i for i in found if i in self.numeric] or [i for i in found if self.meanings[i].rank != 4]
+            ranks[axis] = {self.meanings[i].rank for i in named[axis]}
+        alike = ranks["x"] & ranks["y"]
+        for axis, found in named.items():
+            best = min(alike if alike and axis != "z" else ranks[axis], default=0)
+            found = [i for i in found if self.meanings[i].rank == best]
+            bare = [i for i in found if best == 0 and not re.search(r"\d", self.names[i])]
+            named[axis] = bare or found
+        return named
 
     def is_pair(self, x, y):
         """Whether names of x and y have the same further words, as X_utm and Y_utm do."""
@@ -251,7 +295,7 @@ class Choice:
             others = [i for i in free if self.meanings[i].role in roles]
             if others:
                 is_other = self.times(others)
-                likely = [i for i in others if i not in is_other and not self.is_id(i)]
+                likely = [i for i in others if i not in is_other and not self.is_id(i) and self.high[i] < HIGHEST]
                 return (likely, roles == ("",)) if len(likely) >= count else (others, False)
         return [], False
 
@@ -259,7 +303,7 @@ class Choice:
         x, y = self.indices[:2]
         if self.is_in_lines:
             self.note(f"no column is named as x or y: {self.taken()}; lengths count lines and traces, not metres")
-        elif missing or self.indices != list(range(self.width)):
+        elif not self.has_swapped and (missing or self.indices != list(range(self.width))):
             left = f"; {missing[0]} is the only column left" if missing else ""
             self.note(f"columns by their names: {self.taken()}{left}")
         others = [
@@ -268,10 +312,10 @@ class Choice:
         ]
         if self.needed == 3 and others and self.meanings[self.indices[2]].axis:
             self.note(f"z is {self.called(self.indices[2])}; {self.listed(others)} could be too")
-        if self.indices[-1] > x > y and self.meanings[x].rank == self.meanings[y].rank == 0:
+        if not self.has_swapped and self.indices[-1] > x > y and self.meanings[x].rank == self.meanings[y].rank == 0:
             self.notes.append(
                 "Y stands before X, as where X is north; x and y are taken as named "
-                f"({option('columns')} {self.numbered([y, x] + self.indices[2:])} swaps them)"
+                f"({option('columns')} {self.numbered(self.swapped())} swaps them)"
             )
 
     # -- values
@@ -279,22 +323,27 @@ class Choice:
     def by_values(self):
         """Sets the indices from the values of the columns."""
         count = self.needed
+        numbers = [i for i in self.numeric if len(self.finite[i])]
+        usable = [i for i in numbers if not self.meanings[i].role and not self.meanings[i].axis]
+        if len(numbers) < count < self.width:
+            are = "is" if len(numbers) == 1 else "are"
+            self.ask([], f"{count} columns of numbers are needed, and there {are} {len(numbers)}")
+        if len(usable) < count and self.names and all(self.names):
+            others = self.listed([i for i in numbers if i not in usable])
+            self.ask([numbers[:count]], f"{self.none_is_named()}, and {others} may be something else by the names")
         if self.width == count:
             self.in_their_order()
             return
-        numbers = [i for i in self.numeric if len(self.finite[i])]
-        usable = [i for i in numbers if not self.meanings[i].role and not self.meanings[i].axis]
         usable = usable if len(usable) >= count else numbers
-        if len(usable) < count:
-            are = "is" if len(usable) == 1 else "are"
-            self.ask([], f"{count} columns of numbers are needed, and there {are} {len(usable)}")
         if not self.names and len(usable) == self.width and count == 3:
             self.ask_for_grid()
         left = self.without_others(usable[:MOST_JUDGED])
         self.decide(self.scored(left))
-        for i in left[: left.index(self.indices[0])]:
+        for i in left[: left.index(min(self.indices[:2]))]:
             each = self.whole[i] and len(numpy.unique(self.finite[i])) == len(self.finite[i])
-            self.reasons[i] = EACH_ONCE if each else "no coordinate next to the next"
+            self.reasons[i] = EACH_ONCE if each else NO_NEIGHBOUR
+        if len(self.rows) < FEW_ROWS and {NO_NEIGHBOUR, THE_SAME} & set(self.reasons.values()):
+            self.ask([usable[:count], self.indices], "so few rows do not show which columns are x, y and z")
         if count == 3:
             self.east_and_north()
         if self.indices == list(range(count)):
@@ -322,7 +371,7 @@ class Choice:
         order = tuple(self.indices)
         readings = {order: GOOD}
         if self.names:
-            self.note(f"no column is named as {'x, y or z' if self.needed == 3 else 'x or y'}: {self.taken()}")
+            self.note(f"{self.none_is_named()}: {self.taken()}")
         if self.needed == 3 and not any(m.axis or m.role for m in self.meanings):
             for other in ((1, 2, 0), (2, 1, 0)):  # as z, x, y
                 readings[other] = GOOD if self.is_utm(*other[:2]) else 0
@@ -344,7 +393,7 @@ class Choice:
             first, second = left[:2]
             reason = (
                 COUNTS_UP if self.is_id(first)
-                else "the same in all rows" if self.spans[first] == 0
+                else THE_SAME if self.spans[first] == 0
                 else "a class or line: few whole numbers" if self.is_class(first, second)
                 else ""
             )
@@ -388,7 +437,8 @@ class Choice:
     def score(self, reading):
         """How much columns look like x, y and z."""
         x, y, *z = reading
-        spans = [self.spans[i] for i in reading]
+        metres = 1e5 if self.are_degrees(x, y) or self.are_degrees(y, x) else 1.0  # in a degree
+        spans = [metres * self.spans[x], metres * self.spans[y], *(self.spans[i] for i in z)]
         alike = abs(self.decimals[x] - self.decimals[y]) <= 1
         alike &= (self.decimals[x] == 0) == (self.decimals[y] == 0)
         found = {
@@ -524,13 +574,13 @@ class Choice:
         northing_first, northing_second = self.is_utm(y, x), self.is_utm(x, y)
         is_sure = max(self.low[x], self.low[y]) > MOST_FEET
         if has_ids and northing_first and is_sure:
-            self.has_swapped, self.indices = True, [y, x, z]
+            self.has_swapped, self.indices = True, self.swapped()
             self.notes.append(
                 f"column {self.called(x)} is taken as northing and {self.called(y)} as "
                 "easting, by their sizes"
             )
         elif has_ids and (coded and not (northing_second and is_sure) or northing_first) or self.may_be_latitude(x, y, z):
-            self.ask([(y, x, z), (x, y, z)], "the columns can be read in two ways")
+            self.ask([self.swapped(), self.indices], "the columns can be read in two ways")
 
     def may_be_latitude(self, x, y, z):
         """Whether columns may be latitude and longitude in this order, and not the other way."""
@@ -544,9 +594,23 @@ class Choice:
         return PART_OF_TIME in self.reasons.values() or dated or wide < 0.1 * self.spans[z]
 
     def is_utm(self, x, y):
-        """Whether columns are easting and northing of UTM by their sizes, in metres."""
+        """Whether columns are easting and northing of UTM by their sizes, in metres; the easting may begin with the
+        number of its zone."""
         low, high = self.low, self.high
-        return bool(160e3 < low[x] <= high[x] < 840e3 and 1.1e6 < low[y] <= high[y] < 10e6)
+        zone = low[x] // 1e6 * 1e6 if 1e7 < low[x] < 61e6 else 0.0
+        return bool(160e3 < low[x] - zone <= high[x] - zone < 840e3 and 1.1e6 < low[y] <= high[y] < 10e6)
+
+    def refuse_geocentric(self, chosen):
+        """Raises the error for columns of which some are x, y and z from the centre of the earth."""
+        equator, pole, most, least = GEOCENTRIC
+        for i in range(self.width - 2):
+            x, y, z = self.values[:, i : i + 3].T
+            away = (x * x + y * y) / equator**2 + z * z / pole**2 - 1
+            if not {i, i + 1, i + 2}.isdisjoint(chosen) and (abs(away) < most).all() and (abs(z) > least).all():
+                raise FileError(
+                    f"{self.path}: {self.listed([i, i + 1, i + 2])} are x, y and z from the centre of the "
+                    "earth (ECEF); export longitude, latitude and height, or a map projection"
+                )
 
     # -- what the values say about the choice
 
@@ -574,10 +638,13 @@ class Choice:
         if self.is_utm(y, x) and not self.has_swapped:
             self.notes.append(
                 "x is as large as a northing and y as an easting of UTM; if so, "
-                f"{option('columns')} {self.numbered([y, x] + self.indices[2:])} gives the map its true side"
+                f"{option('columns')} {self.numbered(self.swapped())} gives the map its true side"
             )
 
     # -- words
+
+    def none_is_named(self):
+        return f"no column is named as {'x, y or z' if self.needed == 3 else 'x or y'}"
 
     def note(self, words):
         self.notes.append(f"{words} (see {option('columns')})")

@@ -4,13 +4,17 @@
 
 import dataclasses
 import importlib
+import itertools
 import os
 import re
 
+from .column_names import known_names
+from .table_words import COMMENT_MARKS
 from ..messages import FileError
 from ..paths import is_geodatabase, suffix_of
 
 HEAD, LONG_HEAD = 4096, 1 << 16
+MARKS = tuple(mark.encode() for mark in COMMENT_MARKS)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -85,7 +89,7 @@ def count_numbers(line):
 def first_lines(head):
     """The first lines of a text that are neither blank nor comments; the last may be cut."""
     lines = [line for line in re.split(rb"[\r\n]+", head) if line.strip()]
-    return [line for line in lines if not line.lstrip().startswith((b"#", b"%", b"//", b"!", b"*"))]
+    return [line for line in lines if not line.lstrip().startswith(MARKS)]
 
 
 def is_text(head):
@@ -142,9 +146,21 @@ def is_gxf(head, path):
         return re.search(rb"(?m)^#GRID[ \t]*\r?$", stream.read(LONG_HEAD)) is not None
 
 
+def is_tekal(head, path):
+    """Text of Delft3D: of each line a name, which names no columns, the counts of rows and columns, rows."""
+    found = re.match(rb"(?:\*[^\n]*\n)*(?!DSAA|\s*[-+.\d])([^\n]{1,99})\n\s*([1-9]\d*)\s+([23])\s*\n", head)
+    if not found or known_names(found[1].decode("latin-1").split()):
+        return False
+    with open(path, "rb") as stream:
+        stream.seek(found.end())
+        rows, after = list(itertools.islice(stream, int(found[2]))), next(stream, b"")
+    is_block = len(rows) > 0 and count_numbers(rows[-1]) == int(found[3])
+    return is_block and (not after.strip() or count_numbers(after) < len(after.split()))
+
+
 def is_segments(head, path):
     """Text of lines that are marked where they begin, or by the mark at the end of the last one."""
-    if re.match(SEGMENTS, head, re.DOTALL):
+    if re.match(SEGMENTS, head, re.DOTALL) or is_tekal(head, path):
         return True
     if not count_numbers(head.partition(b"\n")[0]):
         return False
@@ -194,6 +210,7 @@ EARTHVISION = rb"(#[^\n]*\n)*#\s*(Type:\s*scattered data|Field:\s*\d)"
 IESX = rb"(\s*[#!][^\n]*\n)*PROFILE [^\n]*TYPE +\d"
 LANDXML = rb"(\xef\xbb\xbf)?\s*(<\?xml.*?\?>\s*)?(<!--.*?-->\s*)*<LandXML\b"
 PCD = rb"(#[^\n]*\n)*VERSION [.\d]+\s*\nFIELDS"
+DHI = rb"(\d+ +\d+ +)?\d+ +[A-Za-z][^\n]*\n *1\s+([-+.\deE]+\s+){3}\d+\s*\n *2\s"
 ZMAP = rb"(\s*![^\n]*\n)*\s*@[^\n]*,\s*"
 PETREL = rb"(#[^\n]*\n)*\s*VERSION \d+\s+BEGIN HEADER\s"
 # Lines begin with > or ->, or end with 999 999 999.
@@ -219,13 +236,14 @@ FORMATS = (
     Format("a LandXML file", ".landxml", begins(LANDXML), "landxml", "landxml"),
     Format("a PCD file", ".pcd", begins(PCD), "pcd"),
     Format("an ADCIRC mesh", ".14", is_adcirc, "adcirc"),
+    Format("a DHI mesh", ".mesh", begins(DHI), "adcirc.read_dhi"),
     Format("a CPS-3 grid", ".cps .cps3", begins(rb"\s*FSASCI\b"), "horizons.read_cps3_grid"),
     Format("a GXF grid", ".gxf", is_gxf, "gxf.read_grid"),
     Format("a ZMAP+ grid", ".zmap .dat", begins(ZMAP + rb"GRID\s*,"), "horizons.read_zmap"),
     Format("ZMAP+ points", ".zmap .dat", begins(ZMAP + rb"DATA\s*,"), "horizons.read_zmap_points"),
     Format("EarthVision data", ".ev", begins(EARTHVISION), "horizons.read_earthvision"),
     Format("Petrel points", "", begins(PETREL), "horizons.read_petrel_points"),
-    Format("lines in segments", ".gmt", is_segments, "horizons.read_segments", "horizons"),
+    Format("lines in segments", ".gmt .pli .pliz .pol .ldb", is_segments, "horizons.read_segments", "horizons"),
     Format("a raster", ".sgrd .sdat", is_saga_header, "rasters"),
     Format("a vector file", ".csv", is_table_with_geometry, "vectors", "vectors"),
     Format("a vector file", ".gmt", begins(rb"# ?@VGMT"), "vectors", "vectors"),
@@ -260,6 +278,7 @@ FOREIGN = tuple(
         (rb"MATLAB 5\.0|.{512}\x89HDF[^\n]*MATLAB", "is a MATLAB file: save x, y and z by writematrix() as .csv"),
         (rb"PAR1", "is a Parquet table: save it as .csv, in pandas by to_csv()"),
         (rb"\x80[\x02-\x05]", "is a pickle of Python: save the array by numpy.save()"),
+        (rb"\$MeshFormat", "is a mesh of Gmsh: gmsh {path} -save -format vtk -o mesh.vtk makes one of it that is read"),
         (rb"MESH2D\b", "is a mesh of SMS (.2dm): save it as .vtu or .ply, in QGIS as points"),
         (rb"%PDF", "is a PDF document"),
         (rb"\s*<(!doctype )?html", "is a web page"),
@@ -276,7 +295,14 @@ FOREIGN = tuple(
         (rb"[^,\n]*,\s*\d{1,2}-[a-z]{3}-\d{2}[^\n]*\n\s*0,\s*-?\d+\.\d+,",
          "is a Surpac string file, with y before x: awk -F, '$1 + 0 > 0 {print $3, $2, $4}' {path} > points.txt takes x, "
          "y and z out of it"),
-        (rb"\s*\*?11\d{4}[+-]", "is a Leica GSI file: export x, y and z as text from the instrument or its program"),
+        (rb"\s*\*?11\d{4}[+-]|CO,Nikon RAW|\s*\x02?00[NT]MS|(--[^\n]*\s+)*(JB,NM[^\n]*\s+MO|SP,PN|OC,OP|LS,HI)|"
+         rb"\x02_'|S[DS] {6}\d|\s*0001 +[A-Z.]+\s*\n\s*0002 |(\d\d?=[^\n]*\n){4}|\{\d+ [^\n{}]*\}",
+         "is a raw file of a total station (Leica GSI, Nikon, Sokkia, Topcon, Trimble, Zeiss): export x, y and z as text "
+         "from the instrument or its program"),
+        (rb"(\xef\xbb\xbf)?\s*(<\?xml[^>]*>\s*)?<TrainingCenterDatabase",
+         "is a track of Garmin: gpsbabel -i gtrnctr -f {path} -o gpx -F track.gpx makes one of it that is read"),
+        (rb"A[A-Z]{3}[^\n]*\n(H[FOP]|I\d\d)[^\n]*\n",
+         "is a track of a flight recorder: gpsbabel -i igc -f {path} -o gpx -F track.gpx makes one of it that is read"),
         (rb"\s*\d+\s*\n\s*\d+\s*\n(\s*\S+ +\S+ +\S+ *\r?\n){4}(\s*\S+ +\S+ +\S+ +\S+ *\r?\n){4}",
          "is a Leica PTX scan: convert it to .las or .ply, by CloudCompare -O {path} -C_EXPORT_FMT PLY -SAVE_CLOUDS"),
         (rb"FTP NEW \d|((VER|INF|FTP|TND|PRJ) [^\n]*\n)+(DEV|POS|EC1|ECH|MSG) ",
@@ -305,7 +331,7 @@ def recognise(path):
             return kind, []
     # The reader of text says best what is wrong with a text.
     is_plain = is_plain_text(head) and (not suffix or re.search(rb"\d", head))
-    if suffix in TEXT.split() or is_plain and not named:
+    if suffix in TEXT.split() or is_plain and (not named or head.lstrip()[:1] in (b"[", b"{")):
         return FORMATS[-1], []
     if named:
         return named[0], []

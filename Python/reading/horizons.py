@@ -10,7 +10,7 @@ import numpy
 
 from ..clouds import Cloud, add_array, make_lines, make_points
 from .column_names import meaning
-from .formats import HEAD
+from .formats import HEAD, is_tekal
 from ..messages import FileError, Reason, counted
 from ..progress import no_progress, lines_with_progress
 from .rasters import raster_cloud
@@ -237,6 +237,23 @@ def read_petrel_points(path, options):
     raise FileError(f"{path}: is cut off: its END HEADER is missing")
 
 
+def without_names(path, lines):
+    """The lines of a Tekal file with a mark in place of each block's name and counts, as of lines in segments."""
+    left, is_named = 0, False
+    for line in lines:
+        if left:
+            left -= 1
+            yield line
+        elif is_named:
+            left, is_named = int((re.match(rb"\s*(\d+)\s+\d+\s*$", line) or [0, 0])[1]), False
+            if not left:
+                raise FileError(f"{path}: is damaged: '{line[:40].decode('latin-1').strip()}' does not count the points of a line")
+            yield b""
+        else:
+            is_named = line.strip() != b"" and not line.startswith(b"*")
+            yield b">" if is_named else b""
+
+
 def segments(path, progress):
     """Arrays of (n, 3) points, one for each line of a file of lines; z NaN where there is none."""
     parts, rows, z = [], [], numpy.nan
@@ -247,7 +264,11 @@ def segments(path, progress):
             rows.clear()
 
     with open(path, "rb") as stream:
-        for number, line in enumerate(lines_with_progress(stream, progress), 1):
+        lines = lines_with_progress(stream, progress)
+        if is_tekal(stream.read(HEAD), path):
+            lines = without_names(path, lines)
+        stream.seek(0)
+        for number, line in enumerate(lines, 1):
             if line.startswith(SEPARATORS) or END_OF_LINE.fullmatch(line):
                 close()
                 found = re.search(rb"-Z\s*([-+.\deE]+)", line)

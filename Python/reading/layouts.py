@@ -10,8 +10,8 @@ import re
 
 from .column_names import known_names, meaning, plain, length_unit
 from .table_words import (
-    BLANK_IN_NUMBER, BLANKS_IN_THOUSANDS, COMMAS_TWICE, COMMENT_MARKS, DATE, ESRI_GRID, GROUPED, MISSING, NEXT_TO_AXES,
-    NO_NUMBERS, NO_TABLES, NUMBERED_NAME, PAIRS, SEPARATORS, SEXAGESIMAL, SURFER_GRID, THOUSANDS, TOUCHING, WITH_DECIMALS
+    COMMAS_TWICE, COMMENT_MARKS, DATE, GRIDS, GROUPED, MISSING, NEXT_TO_AXES, NO_NUMBERS, NO_TABLES, NUMBERED_NAME,
+    PAIRS, SEPARATORS, SEXAGESIMAL, THOUSANDS, TOUCHING, WITH_DECIMALS
 )
 from ..messages import FileError
 
@@ -67,36 +67,31 @@ def find_layout(path, lines, needed):
     lines = [line for line in lines if line.strip()]
     sample = [line for line in lines if not is_comment(line)][:400]
     head = "\n".join(line.strip().lower() for line in lines[:20])
-    for pattern, what in NO_TABLES:
+    for pattern, words in NO_TABLES:
         if re.match(pattern, head):
-            lacks = what in (ESRI_GRID, SURFER_GRID) and importlib.util.find_spec("osgeo") is None
-            advice = "; install python3-gdal to read it" if lacks else ""
-            raise FileError(f"{path}: is {what}, not a table of points{advice}")
-    counts = {layout: [layout.numbers(line) for line in sample] for layout in LAYOUTS}
+            lacks = words in GRIDS and importlib.util.find_spec("osgeo") is None
+            raise FileError(f"{path}: {words.replace('{path}', path)}" + "; install python3-gdal to read it" * lacks)
     if not sample:
         raise FileError(f"{path}: holds no data, only blank or comment lines")
+    counts = {layout: [layout.numbers(line) for line in sample] for layout in LAYOUTS}
 
     def rows_and_numbers(layout):
         return sum(count >= needed for count in counts[layout]), sum(counts[layout])
 
-    def share(pattern):
-        return sum(bool(re.search(pattern, line)) for line in sample) / len(sample)
-
-    best, most = max(LAYOUTS, key=rows_and_numbers), max(map(max, counts.values()))
-    if rows_and_numbers(best)[0] and not share(BLANK_IN_NUMBER):
-        if not best.separator and any(share(pattern) > least for pattern, least in BLANKS_IN_THOUSANDS):
-            raise FileError(f"{path}: {THOUSANDS}")
-        return best
-    for pattern, words in NO_NUMBERS:
-        if share(pattern):
+    best = max(LAYOUTS, key=rows_and_numbers)
+    has_rows = rows_and_numbers(best)[0] > 0
+    for pattern, most, words in NO_NUMBERS:
+        if sum(bool(re.search(pattern, line)) for line in sample) > (most if has_rows else 0.0) * len(sample):
             raise FileError(f"{path}: {words}")
+    if has_rows:
+        return best
     touching = [word for word in map(touching_in, sample) if word]
     if 2 * len(touching) > len(sample):
         raise FileError(f"{path}: {are_touching(touching[0])}")
-    if most == 0:
+    if not any(re.search(r"\d", line) for line in sample):
         raise FileError(f"{path}: holds text, but no numbers")
     raise FileError(
-        f"{path}: no line holds {needed} numbers; the most is {most}. "
+        f"{path}: no line holds {needed} numbers; the most is {max(map(max, counts.values()))}. "
         f"{'x, y and z' if needed == 3 else 'x and y'} are needed in columns of their own"
     )
 
@@ -226,15 +221,16 @@ def find_names(layout, head, width, one_may_lack=True):
         candidates.append([name.split(",")[-1] for name in part])
     for line in reversed(head):
         for other, words in splittings(layout, line):
-            candidates.append(words)
+            others = [words]
             if other.separator is None:
-                candidates.append(re.split(r"\s{2,}|\t", line.strip()))
                 # "x (m)  y (m)": blanks within names; good enough when single letters are left
-                candidates.append([w for w in words if re.sub(r"[(\[{].*|\W|_", "", w)])
+                others += [re.split(r"\s{2,}|\t", line.strip()), [w for w in words if re.sub(r"[(\[{].*|\W|_", "", w)]]
             if one_may_lack and len(words) == width - 1 and known_names(words):
-                candidates.append([""] + words)  # as R writes it: row names have no name
+                others.append(["", *words])  # as R writes it: row names have no name
             if len(words) == width + 1 and not words[-1]:
-                candidates.append(words[:-1])
+                others.append(words[:-1])
+            # With another separator than the data has, words that mean nothing are a sentence.
+            candidates += [names for names in others if other is layout or known_names(names) > 1]
     candidates = [names for names in candidates if len(names) == width and any(names)]
     candidates = [names for names in candidates if not all(is_number(name) for name in names)]
     return max(candidates, key=known_names, default=None)

@@ -29,17 +29,18 @@ from .layouts import (
     touching_in,
 )
 from .nulls import leave_out
-from .text_blocks import Blocks, block_lines
+from .text_blocks import Blocks, block_lines, encoding_of
 from ..messages import FileError, counted
 from ..progress import no_progress, items_with_progress
 from ..projecting import note_on_degrees
 from ..selecting import MOST_VALUES, WordReader
 from ..names import option
 
+COMMENTS = re.compile(rb"\n[ \t]*[" + "".join(COMMENT_MARKS).encode() + b"]")
 TAIL = 50  # lines at the end of a block among which summaries are looked for
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED, MOST_SUMMARIES = 3, 5  # that many lines of other kinds, and of summaries, are named
-MOST_UNEVEN = 0.2  # lines of numbers that are left out, as a share of rows
+MOST_UNEVEN = 0.5, 0.08  # lines of numbers that are longer than others or left out, as a share of rows
 WITHOUT_DATA = "all rows are without data"
 NO_ROWS = {2: "no line is a row of x and y", 3: "no line is a row of x, y and z"}
 
@@ -68,8 +69,10 @@ class Table:
                      before the data
     """
 
-    def __init__(self, path, lines, options, needed, advice):
+    def __init__(self, path, block, options, needed, advice):
         self.path, self.needed, self.advice = path, needed, advice or advice_on_columns()
+        self.encoding = encoding_of(block)
+        lines = self.lines(block)
         self.skips, self.can_skip, self.bad_lines = options.skip_bad_lines, advice is None, []
         self.layout = find_layout(path, lines[:5000], needed)
         self.head_lines, self.has_summaries = set(), False
@@ -90,7 +93,7 @@ class Table:
         if not options.columns:
             check_names(path, self.layout, before, rows[:400], self.names, self.width, self.advice)
         self.choice = Choice(
-            path, rows, consecutive, self.layout, self.names, self.width, options.columns, needed, advice
+            path, rows, consecutive, self.layout, head, self.names, self.width, options.columns, needed, advice
         )
         self.indices, self.notes = self.choice.indices, self.choice.notes
         check_marks(path, rows, self.choice.of_numbers)
@@ -101,6 +104,9 @@ class Table:
         self.first = begin - 1
         before = [line for number, line in preamble if number < begin]
         self.head_lines, self.headers = set(map(str.strip, before)), len(before) - len(self.bad_lines)
+
+    def lines(self, block):
+        return block_lines(block, self.encoding)
 
     def read_head(self, lines):
         """(lines before the data, [(number, line)] of those of them that are not comments). Sets first
@@ -130,6 +136,11 @@ class Table:
     def is_like(self, line):
         """Whether a line holds enough numbers for a row."""
         return self.layout.numbers(line) >= self.needed
+
+    def holds_numbers(self, line):
+        """Whether a line holds enough numbers for a row, or nothing else."""
+        words = self.layout.words(line)
+        return self.is_like(line) or len(words) > 1 and self.layout.numbers(line) == len(words)
 
     def bad_line(self, number, line, why, advice=""):
         """The error for a line that is not a row."""
@@ -236,12 +247,13 @@ class Parser:
 
     def add(self, block):
         """Takes the lines of a block."""
-        table, lines = self.table, block_lines(block)
+        table, lines = self.table, self.table.lines(block)
         skip = table.first if self.line == 0 and self.blocks.begin == 0 else 0  # lines that are not data
         odd = [i for i in self.odd_lines(block, lines) if i >= skip and table.is_row(lines[i])]
         words = {i: table.layout.words(lines[i]) for i in odd}
-        longer = [[self.number(i), len(words[i])] for i in odd if len(words[i]) > table.words]
-        self.facts["ragged"] = self.facts["ragged"] or longer[:1]
+        longer = [i for i in odd if len(words[i]) > table.words]
+        self.facts["ragged"] = self.facts["ragged"] or [[self.number(i), len(words[i])] for i in longer[:1]]
+        self.facts["uneven"] += sum(table.layout.numbers(lines[i]) == len(words[i]) for i in longer)
         short = {i for i in odd if self.is_short(words[i])}
         self.add_rows(lines, self.rows_among(block, lines, skip), short, b'"' in block)
         self.line += len(lines)
@@ -270,7 +282,7 @@ class Parser:
     def rows_among(self, block, lines, skip):
         """The places of the rows. Counts other lines, and notes where a row follows a blank line."""
         table, facts = self.table, self.facts
-        plain = not skip and not any(mark.encode() in block for mark in COMMENT_MARKS)
+        plain = not skip and not is_comment(lines[0]) and not COMMENTS.search(block)
         plain = plain and not table.sees_summaries and not any(map(table.summary, lines[-TAIL:]))
         if plain and all(map(str.strip, lines)):
             self.starts += [facts["count"]] * self.after_blank
@@ -397,7 +409,7 @@ class Parser:
     def final_notes(self):
         """Notes, once all lines are read. Raises FileError where many rows have other numbers of columns."""
         table, facts = self.table, self.facts
-        if facts["uneven"] > MOST_UNEVEN * facts["count"]:
+        if facts["uneven"] > MOST_UNEVEN[table.skips] * facts["count"]:
             raise FileError(
                 f"{table.path}: {facts['uneven']:,} lines of numbers have other columns than {facts['count']:,} rows: "
                 "blanks do not part the columns of this table; export it as .csv"
@@ -439,7 +451,7 @@ def parsed(path, options, needed=3, advice=None, part=WHOLE):
         head = next(iter(Blocks(path, stream)), None)
         if head is None:
             raise FileError(f"{path}: is empty")
-        table = Table(path, block_lines(head[0]), options, needed, advice)
+        table = Table(path, head[0], options, needed, advice)
         is_named = bool(options.where or options.layer)
         parser = Parser(table, Blocks(path, stream, part), lambda _: options.progress(done), is_named)
         yield parser
@@ -465,7 +477,7 @@ def read_table(path, needed=3, progress=no_progress):
     Returns (rows, line numbers, starts, notes): rows is an array of n * needed doubles, a start is
     the index of a row that follows a blank line or one that begins with ">".
     """
-    advice = f"a header line with {', '.join('xyz'[:needed])} names the columns"
+    advice = f"a header line with {', '.join(('easting', 'northing', 'elevation')[:needed])} names the columns"
     parser, rows, numbers, notes = parse(path, ReadOptions(progress=progress), needed, advice)
     return rows[:, :needed].copy(), numbers, parser.starts, notes
 

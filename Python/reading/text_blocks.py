@@ -6,6 +6,8 @@ import io
 import os
 import re
 
+from .column_names import known_names
+from .table_words import ENCODINGS
 from ..clouds import WHOLE, Part
 from ..messages import FileError
 
@@ -79,12 +81,19 @@ def plain(data):
     return data.replace(b"\xe2\x88\x92", b"-")
 
 
-def block_lines(block):
-    """The lines of a block: UTF-8, or Latin-1 where it is not."""
+def encoding_of(block):
+    """The encoding in which most words of a header mean something, of text that is not UTF-8."""
+    head = b" ".join(line for line in block.split(b"\n", 20)[:20] if not re.search(rb"\d[.,]\d", line))
+    texts = {encoding: head.decode(encoding, "replace") for encoding in ENCODINGS}
+    return max(texts, key=lambda encoding: known_names(re.split(r"[\s,;|]+", texts[encoding])))
+
+
+def block_lines(block, encoding):
+    """The lines of a block: UTF-8, or another encoding where it is not."""
     try:
         text = block.decode("utf-8")
     except UnicodeDecodeError:
-        text = block.decode("latin-1")
+        text = block.decode(encoding, "replace")
     lines = text.split("\n")
     if not lines[-1]:
         lines.pop()

@@ -158,7 +158,7 @@ class Doubts(Tables):
             self.assertEqual(tuple(rows[0]), expected)
         with self.assertRaises(FileError) as caught:
             read_table(self.file("a.txt", "X,X,Y\n1,2,3\n"), needed=2)
-        self.assertIn("a header line with x, y names the columns", str(caught.exception))
+        self.assertIn("a header line with easting, northing names the columns", str(caught.exception))
         self.assertNotIn("--columns", str(caught.exception))
 
     def test_northing_before_easting_without_a_header_is_noted(self):
@@ -205,8 +205,9 @@ class Doubts(Tables):
             (thousands, "marks between thousands"),
             (thousands.replace(",", "."), "marks between thousands"),
             ("Lat Lon Depth\n50 16.1077N 9 4.6794E 121.4\n48 46.3129N 8 38.2E 124.6\n",
+             "a letter for north"),
+            ("Lat Lon Depth\n50 16.1 9 4.6 121\n48 46.2 8 38.2 124\n",
              "the header has 3 names, but lines have 5 columns; export degrees"),
-            ("Lat Lon Depth\n50 16.1 9 4.6 121\n48 46.2 8 38.2 124\n", "lines have 5 columns"),
             ("Lat Lon Depth\n48 46 18.7 8 38 12.7 124.6\n48 46 18.8 8 38 12.9 124.7\n",
              "look like degrees, minutes and seconds"),
             ("X,Y,Z\n1.5,2.5,3.5,4.5,5.5\n2.5,1.5,3.5,4.5,6.5\n", "the header has 3 names"),

@@ -52,6 +52,7 @@ LANDXML = """<?xml version="1.0"?>
 </LandXML>
 """
 DESIGN = '<Surface name="design"><Definition><Pnts><P id="1">1 2 3</P></Pnts></Definition></Surface>'
+NODES = "1 0 0 -1.5 1\n2 10 0 -2.5 1\n3 10 10 -4.5 1\n4 0 10 -3.5 0\n"
 MESH = "a bay\n2 4\n1 0.0 0.0 5.0\n2 10.0 0.0 6.0\n3 10.0 10.0 -1.5\n4 0.0 10.0 2.0\n1 3 1 2 3\n2 3 1 3 4\n0\n0\n0\n0\n"
 FLOATS = [(1.5, 2.5, 3.5, 255 << 16 | 7), (4.0, 5.0, 6.0, 9 << 8), (numpy.nan, numpy.nan, numpy.nan, 0)]
 
@@ -122,6 +123,28 @@ class Formats(InFolder):
         self.assert_rows(self.read(MESH, "bay.grd", depth=True), up)
         self.assertIn("ADCIRC mesh 'a bay'", self.read(MESH, "fort.14").notes)
 
+    def test_meshes_of_mike_are_their_nodes(self):
+        rows = [(0, 0, -1.5), (10, 0, -2.5), (10, 10, -4.5), (0, 10, -3.5)]
+        for counts, elements in (("100079 1000 4", "2 3 21\n1 1 2 3\n2 1 3 4\n"), ("4", "1 4 25\n1 1 2 3 4\n")):
+            cloud = self.read(f"{counts} UTM-33\n{NODES}{elements}", "a.mesh")
+            self.assert_rows(cloud, rows)
+            self.assertIn("DHI mesh, UTM-33", cloud.notes)
+            self.assertEqual(self.read(f"{counts} UTM-33\n{NODES}{elements}", "a.mesh", depth=True).points.GetPoint(0)[2], 1.5)
+
+    def test_lines_of_delft3d_have_a_name_and_counts_each(self):
+        text = "* dikes\nL1\n 4 3\n 0 0 1.5\n 9 0 2.5\n 9 9 4.5\n 0 0 1.5\nL 2\n 2 3\n 1 8 3.5\n 2 2 2.25\n"
+        self.assertEqual(self.read(text, "a.pliz").points.GetNumberOfPoints(), 6)
+        lines = reading.read_faults(self.file("a.pliz", text))
+        self.assertEqual([lines.GetCell(i).GetNumberOfPoints() for i in range(lines.GetNumberOfCells())], [4, 2])
+        ring = reading.read_boundary(self.file("a.pol", "ring\n3 2\n0 0\n9 0\n9 9\n"))
+        self.assertEqual(ring.GetCell(0).GetNumberOfPoints(), 4)
+        self.assert_refused("is damaged: 'two 3' does not count", text.replace(" 2 3", " two 3"), "a.pliz")
+        for head in ("x y", "a ring"):  # a table whose first row may be such counts
+            ring = reading.read_boundary(self.file("a.txt", f"{head}\n2 2\n8 2\n8 8\n2 8\n2 2\n"))
+            self.assertEqual(ring.GetCell(0).GetNumberOfPoints(), 5)
+        ring = reading.read_boundary(self.file("a.txt", "x y\n4 2\n8 2\n8 8\n4 8\n4 2\n"))
+        self.assertEqual(ring.GetCell(0).GetNumberOfPoints(), 5)
+
     def test_an_obj_without_vertices_is_refused_and_numpy_does_not_warn(self):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -141,6 +164,9 @@ class Formats(InFolder):
             ("a.dat", IESX.replace("E+06", "E+0x"), "line 3: '6.0583550"),
             ("a.dat", IESX.replace("TYPE 1", "TYPE 9"), "of type 9"),
             ("a.dat", "PROFILE a TYPE 1 4\nEOD\n", "holds no points"),
+            ("a.mesh", f"4 UTM-33\n{NODES}two 3 21\n1 1 2 3\n", "line 6: does not give the number of elements"),
+            ("a.mesh", f"4 UTM-33\n{NODES}2 3 21\n1 1 2 3\n", "2 elements are announced, 1 found"),
+            ("a.mesh", f"4 UTM-33\n{NODES}1 3 21\n1 1 2 9\n", "an element has the node 9"),
             ("a.xml", (LANDXML % "")[:-20], "cut off or damaged"),
             ("a.xml", LANDXML.replace("20 30 6", "20 30 six") % "", "is damaged: P holds '20 30 six'"),
             ("a.xml", LANDXML.replace("1 7 3", "1 7 8") % "", "corner '8'"),

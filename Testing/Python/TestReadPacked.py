@@ -169,7 +169,7 @@ class Foreign(InFolder):
             ("is a glTF file", "a.glb", b"glTF" + bytes(100)),
             ("holds a Collection", "a.pvd", '<VTKFile type="Collection"><Collection/></VTKFile>'),
             ("is not a text file", "a.xyz", bytes(1000)),
-            ("GDAL knows no vector format", "a.json", '{"a": [1, 2, 3]}'),
+            ("is JSON, of which GDAL reads GeoJSON", "a.json", '{"a": [1, 2, 3]}'),
             ("is its .hdr next to it?", "a.flt", bytes(range(64))),
             ("its name must give its place", "a.hgt", b"\1\0" * 1201),
             ("cannot be read", "a.png", b"\x89PNG\r\n\x1a\n" + bytes(30)),
