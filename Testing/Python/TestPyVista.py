@@ -44,8 +44,11 @@ def stand_in():
 try:
     import pyvista
     from pyvista import register_dataset_accessor  # noqa: F401
+
+    IS_INSTALLED = True
 except ImportError:
     pyvista = stand_in()
+    IS_INSTALLED = False
 
 
 def points_of(group):
@@ -94,6 +97,20 @@ class PyVista(unittest.TestCase):
             path = os.path.join(folder, "surface.ts")
             writers[".ts"].load()(pyvista.wrap(surface), path)
             self.assertEqual(vtkelevationsurface.read(path).points.GetNumberOfPoints(), 25)
+
+    @unittest.skipUnless(IS_INSTALLED, "PyVista 0.48 or newer is not installed")
+    def test_pyvista_finds_them_by_itself(self):
+        mesh = pyvista.wrap(self.points)
+        surface = mesh.elevation_surface.reconstruct(gap_tolerance=3)
+        self.assertIsInstance(surface, pyvista.PolyData)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "surface.ts")
+            surface.save(path)
+            self.assertEqual(pyvista.read(path).n_points, 25)
+            path = os.path.join(folder, "horizon.zmap")
+            with open(path, "w", encoding="utf-8") as stream:
+                stream.write("@h, GRID, 3\n15, 1e30, , 7, 1\n2, 3, 0, 2, 0, 1\n0.0, 0.0, 0.0\n@\n1 2\n3 4\n5 6\n")
+            self.assertEqual(sorted(pyvista.read(path).points[:, 2]), [1, 2, 3, 4, 5, 6])
 
     def test_the_package_says_its_version_and_what_it_offers(self):
         self.assertEqual(version("vtkelevationsurface"), vtkelevationsurface.__version__)
