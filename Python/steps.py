@@ -133,7 +133,7 @@ class Step:
         def end():
             if error:
                 raise error
-            return self.report(name, messages, boundary_of(algorithm) if name == "trim" else None)
+            return self.report(name, messages, rings_of(algorithm) if name != "delaunay" else None)
 
         try:
             lines = together(self.ranks, end)
@@ -177,7 +177,7 @@ class Step:
         del self.result.notes[before:]
         return algorithm, messages, notes, raised[0] if raised else None
 
-    def report(self, name, messages, boundary):
+    def report(self, name, messages, rings):
         """Raises the errors of a step. Returns [whether it is OnOneRank, note] of its warnings."""
         warnings = [warning for warning in messages.warnings if warning.code != "OnOneRank"]
         problems = messages.errors or (warnings if self.strict else [])
@@ -187,11 +187,11 @@ class Step:
                 about = "boundary"
             elif name == "delaunay" and concerns_constraints(problems[0]):
                 about = "faults"
-            words = " ".join(in_our_names(one, name, boundary) for one in problems)
+            words = " ".join(in_our_names(one, name, rings) for one in problems)
             raise ElevationSurfaceError(words, about, STEPS[name])
         self.result.warnings += warnings
         return [
-            [warning.code == "OnOneRank", f"{STEPS[name]}: {in_our_names(warning, name, boundary)}"]
+            [warning.code == "OnOneRank", f"{STEPS[name]}: {in_our_names(warning, name, rings)}"]
             for warning in messages.warnings
         ]
 
@@ -204,11 +204,11 @@ def concerns_constraints(message):
 CALLED_IN_PANEL = {"constraints": "faults", "constraints'": "faults'"}
 
 
-def in_our_names(message, step, boundary=None):
+def in_our_names(message, step, rings=None):
     """A filter's Message, with the names of options where it has names of properties.
 
-    step      delaunay, trim or fill
-    boundary  None, or that of the step, whose lines may have names
+    step   delaunay, trim or fill
+    rings  None, or the boundary or areas of the step, whose lines may have names
     """
 
     def name_of(setter):
@@ -218,14 +218,14 @@ def in_our_names(message, step, boundary=None):
         return setter
 
     words = dict(CALLED_IN_PANEL) if are_for(PANEL) else {}
-    if boundary is not None:
-        words.update((f"the {cell}", name) for cell, name in cell_names(boundary).items())
+    if rings is not None:
+        words.update((f"the {cell}", name) for cell, name in cell_names(rings).items())
     return message.named(name_of, words)
 
 
-def boundary_of(trim):
-    """The boundary that vtkTrimOutwardTriangles is given, or None."""
-    return trim.GetInputDataObject(1, 0) if trim.GetNumberOfInputConnections(1) else None
+def rings_of(algorithm):
+    """The boundary or the areas that a filter is given, or None."""
+    return algorithm.GetInputDataObject(1, 0) if algorithm.GetNumberOfInputConnections(1) else None
 
 
 def triangulate(run, lines, has_all=False, points=None):
