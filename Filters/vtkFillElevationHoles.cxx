@@ -46,6 +46,7 @@ FillOptions OptionsOf(vtkFillElevationHoles* filter)
   options.MaximumHoleEdges = toIndex(filter->GetMaximumHoleEdges(), VTK_INT_MAX);
   options.Spacing = filter->GetSpacing();
   options.Mode = static_cast<AreaMode>(filter->GetAreaMode());
+  options.LevelArray = filter->GetLevelArrayName() ? filter->GetLevelArrayName() : "";
   options.FillCutOuts = filter->GetFillCutOuts();
   options.ConfidenceLevel = filter->GetConfidenceLevel();
   // The assertions below hold the numbers of both together.
@@ -102,7 +103,7 @@ FillResult FillBlock(
   elevation::CheckOptions(options, openEdgeLength);
   elevation::CheckArrays(input);
   std::vector<elevation::Message> warnings;
-  options.Chosen = elevation::ToAreas(block.Second, progress.Between(0.0, 0.0), warnings);
+  options.Chosen = elevation::ToAreas(block.Second, options, progress.Between(0.0, 0.0), warnings);
   const elevation::DataSetPoints points = elevation::ViewPoints(input);
   const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
   Mesh mesh;
@@ -163,6 +164,7 @@ vtkFillElevationHoles::vtkFillElevationHoles()
 vtkFillElevationHoles::~vtkFillElevationHoles()
 {
   this->SetController(nullptr);
+  this->SetLevelArrayName(nullptr);
 }
 
 int vtkFillElevationHoles::FillInputPortInformation(int port, vtkInformation* info)
@@ -225,7 +227,8 @@ int vtkFillElevationHoles::RequestData(
     std::vector<elevation::Message> warnings;
     // The areas are the same on all ranks.
     ranks.Agree([&] {
-      chosen.Chosen = elevation::ToAreas(block.Second, block.Progress.Between(0.0, 0.0), warnings);
+      chosen.Chosen =
+        elevation::ToAreas(block.Second, options, block.Progress.Between(0.0, 0.0), warnings);
     });
     if (!elevation::FillOnRanks(ranks, chosen, interpolates, this->OpenEdgeLength, block, patches))
     {
@@ -275,6 +278,8 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumHoleEdges: " << this->MaximumHoleEdges << "\n";
   os << indent << "MaximumNumberOfInsertedPoints: " << this->MaximumNumberOfInsertedPoints << "\n";
   os << indent << "AreaMode: " << this->GetAreaModeAsString() << "\n";
+  const bool hasLevels = this->LevelArrayName && *this->LevelArrayName;
+  os << indent << "LevelArrayName: " << (hasLevels ? this->LevelArrayName : "(none)") << "\n";
   os << indent << "FillCutOuts: " << (this->FillCutOuts ? "On" : "Off") << "\n";
   os << indent << "MaximumNumberOfExpectedPoints: " << this->MaximumNumberOfExpectedPoints << "\n";
   os << indent << "Spacing: " << this->Spacing << "\n";

@@ -129,7 +129,7 @@ public:
    *   it, like a plate that bends as little as it can. Continues planes exactly.
    * - CUBIC_SPLINE: as THIN_PLATE, but smoother: better on calm terrain, worse on noise.
    * - LEVEL: all new points of a hole have one z, as of water: that of the rim which a tenth of the
-   *   rim's points do not exceed. The rim stays as it is; output 1 has the level, and how far the
+   *   rim's points do not exceed (see also LevelArrayName). The rim stays as it is; output 1 has the level, and how far the
    *   highest point of the rim lies above it and the lowest below. Other arrays as by NEIGHBOR_MEAN;
    *   errors are NaN.
    * - ADAPTIVE: for each hole the one of MEMBRANE, THIN_PLATE and CUBIC_SPLINE that predicts the
@@ -273,6 +273,19 @@ public:
 
   ///@{
   /**
+   * The cell array of the areas that has the level of each line or polygon, as an attribute of
+   * lakes. Holes that touch an area are filled as by LEVEL, with the level of the area, that is of
+   * the ring which bounds it from outside. Where this has none (NaN), Interpolation decides, and a
+   * warning names the first such area. A hole that touches areas of different levels is not filled
+   * (status FAILED), and a warning names both. It needs areas and AreaMode FILL_ONLY, and an array
+   * that is not there is an error. nullptr (default) or "": areas have no levels.
+   */
+  vtkSetStringMacro(LevelArrayName);
+  vtkGetStringMacro(LevelArrayName);
+  ///@}
+
+  ///@{
+  /**
    * Whether to fill holes that a boundary given to vtkTrimOutwardTriangles has cut out: a lake, an
    * island, a building. Such a hole has an edge, of its rim or of an island, between two points
    * that are 1 in the input's point array OnBoundary, which that filter makes; so a gap in the data
@@ -396,8 +409,8 @@ public:
    * whose text has the same for people, are invoked. Codes, besides those of data that are invalid,
    * which are "Words": NothingToFill, HoleNotFilled and RegionNotFilled (with a reason:
    * BordersTouch, SizeOutOfRange, MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall,
-   * PointsCoincide), MoreHolesNotFilled, ErrorsOutgrowRoughness, LinesDisagree, BordersMeet,
-   * AreasTouchNoHole, RingsRepeated, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
+   * PointsCoincide, LevelsDiffer), MoreHolesNotFilled, ErrorsOutgrowRoughness, LinesDisagree,
+   * BordersMeet, AreasTouchNoHole, LevelsMissing, LevelsNotUsed, NoLevelArray, InfiniteLevel, RingsRepeated, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
    * TooManyPointsToFill, TooManyPointsByDefault,
    * InvalidOpenEdgeLength, InvalidHoleSize, InvalidHoleEdges, InvalidSpacing, InvalidConfidence,
    * InvalidInsertedPoints, InvalidExpectedPoints, InvalidThreads, InvalidPrecision, FoldsInSingle,
@@ -419,6 +432,7 @@ protected:
   vtkIdType MaximumHoleEdges = 0;
   vtkIdType MaximumNumberOfInsertedPoints = 100000000;
   int AreaMode = FILL_ONLY;
+  char* LevelArrayName = nullptr;
   bool FillCutOuts = false;
   vtkIdType MaximumNumberOfExpectedPoints = 0;
   double Spacing = 0.0;

@@ -342,6 +342,12 @@ def line_parts(data):
     return names, parts
 
 
+def line_cells(data):
+    """(n,) numbers of the cells that the lines of line_parts() are."""
+    sizes = [numpy.diff(vtk_to_numpy(c.GetOffsetsArray())) for c in (data.GetLines(), data.GetPolys())]
+    return data.GetNumberOfVerts() + numpy.flatnonzero(numpy.concatenate(sizes))
+
+
 def cell_names(data):
     """{how the filters call a line or polygon: its name}; empty where make_lines() was given no names."""
     words = data.GetCellData().GetAbstractArray(LINE_NAMES)
@@ -358,14 +364,8 @@ def bare_lines(data):
     """(n,) of bool: which of the lines of line_parts() have no z of their own: they are marked, or their
     points have none."""
     flags = data.GetCellData().GetArray(WITHOUT_Z)
-    is_bare = numpy.zeros(data.GetNumberOfCells(), dtype=bool)
-    if flags:
-        is_bare = vtk_to_numpy(flags) != 0
-    ends = [vtk_to_numpy(c.GetOffsetsArray()) for c in (data.GetLines(), data.GetPolys())]
-    has_points = numpy.concatenate([numpy.diff(e) > 0 for e in ends])
-    is_bare = is_bare[data.GetNumberOfVerts() :][: len(has_points)][has_points]
-    without = [numpy.isnan(part[:, 2]).all() for part in line_parts(data)[1]]
-    return is_bare | numpy.array(without, dtype=bool)
+    without = numpy.array([numpy.isnan(part[:, 2]).all() for part in line_parts(data)[1]], dtype=bool)
+    return without | (vtk_to_numpy(flags)[line_cells(data)] != 0) if flags else without
 
 
 def crs_of(data):
@@ -383,11 +383,11 @@ def set_crs(data, crs):
     data.GetFieldData().AddArray(words)
 
 
-def add_array(points, name, values):
-    """Adds numbers, one or some for each point, as point array."""
+def add_array(data, name, values, kind="Point"):
+    """Adds numbers, one or some for each point, or with "Cell" for each cell, as array."""
     array = numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)
     array.SetName(name)
-    points.GetPointData().AddArray(array)
+    getattr(data, f"Get{kind}Data")().AddArray(array)
 
 
 def some_points(data, keep):

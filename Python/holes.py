@@ -186,8 +186,11 @@ def hole_lines(holes, line):
         line("", f"{words} drawn back, by up to {drawn['most']:.4g}: beyond the heights around")
     water = [hole for hole in holes["list"] if hole["level"] is not None]
     for hole in water[:MOST_LEVELS]:
-        line("", f"hole {hole['hole']} level at {hole['level']:.6g}: its rim lies up to "
-             f"{hole['rim_above_level']:.4g} above and {hole['rim_below_level']:.4g} below")
+        above, below = hole["rim_above_level"], hole["rim_below_level"]
+        where = f"up to {above:.4g} above and {below:.4g} below"
+        if above < 0 or below < 0:  # the level is that of an area
+            where = f"{-above:.4g} to {below:.4g} below" if above < 0 else f"{-below:.4g} to {above:.4g} above"
+        line("", f"hole {hole['hole']} level at {hole['level']:.6g}: its rim lies {where}")
     if len(water) > MOST_LEVELS:
         line("", f"{len(water) - MOST_LEVELS:,} more level; see the report as JSON")
     if holes["cut_out"]:

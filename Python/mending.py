@@ -6,9 +6,12 @@ The filters take closed rings that do not cross themselves, and nothing else. GE
 makes rings valid: what a ring goes around counts as inside, also where it goes around twice.
 """
 
-import numpy
+import dataclasses
 
-from .clouds import make_lines, line_parts
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from .clouds import add_array, line_cells, line_parts, make_lines
 from .gdal_common import gdal_module, quiet
 from .messages import ElevationSurfaceError, counted
 from .names import option
@@ -18,6 +21,19 @@ GAP = 0.01  # of the length of a ring: ends of lines no farther apart are joined
 MOVED = 0.5  # of the edges next to them: ends no farther apart are made one point
 MOST_NAMED = 20  # mends of a kind that get a note each
 NEIGHBOURS = 8  # ends that may be the other side of a gap
+
+
+@dataclasses.dataclass
+class Line:
+    """A line, or a part of a ring.
+
+    points  (n, 3), the last the first of a closed one
+    cells   the lines that were given which it is made of
+    """
+
+    name: str
+    points: numpy.ndarray
+    cells: list
 
 
 def mended(boundary, name, strict=False, about="boundary"):
@@ -33,17 +49,31 @@ def mended(boundary, name, strict=False, about="boundary"):
     names, parts = line_parts(boundary)
     if not parts or not all(numpy.isfinite(part[:, :2]).all() for part in parts):
         return boundary, []  # the filter says what is wrong
+    lines = [Line(*one) for one in zip(names, parts, line_cells(boundary)[:, None].tolist())]
     try:
-        notes = close_gaps(names, parts, name, strict)
-        rings = make_lines(parts, names) if notes else boundary
+        notes = close_gaps(lines, name, strict)
+        rings = made_of(lines, boundary) if notes else boundary
         if trial(rings)[0]:
-            names, parts, valid = without_crossings(names, parts, name, strict)
+            lines, valid = without_crossings(lines, name, strict)
             if valid:
-                notes, rings = notes + valid, make_lines(parts, names)
+                notes, rings = notes + valid, made_of(lines, boundary)
     except ElevationSurfaceError as error:
         error.about = about
         raise
     return rings, notes
+
+
+def made_of(lines, given):
+    """Lines as vtkPolyData with the cell arrays, of single numbers, of those that were given. A line that is
+    made of several has their common number, or none (NaN)."""
+    rings = make_lines([line.points for line in lines], [line.name for line in lines])
+    for i in range(given.GetCellData().GetNumberOfArrays()):
+        array = given.GetCellData().GetArray(i)
+        if array and array.GetNumberOfComponents() == 1 and not rings.GetCellData().HasArray(array.GetName()):
+            numbers = vtk_to_numpy(array).astype("f8")
+            known = [numpy.unique(numbers[line.cells][~numpy.isnan(numbers[line.cells])]) for line in lines]
+            add_array(rings, array.GetName(), [one[0] if len(one) == 1 else numpy.nan for one in known], "Cell")
+    return rings
 
 
 def refusal(words, strict):
@@ -73,8 +103,9 @@ def length_of(part):
     return float(numpy.hypot(*numpy.diff(part[:, :2], axis=0).T).sum())
 
 
-def close_gaps(names, parts, name, strict):
-    """Joins ends of lines where no other line goes on. Changes names and parts. Returns notes."""
+def close_gaps(mended_lines, name, strict):
+    """Joins ends of lines where no other line goes on. Changes the Lines. Returns notes."""
+    names, parts = [line.name for line in mended_lines], [line.points for line in mended_lines]
     is_open = [part[0, 0] != part[-1, 0] or part[0, 1] != part[-1, 1] for part in parts]
     lines = numpy.flatnonzero(is_open)
     if not len(lines):
@@ -103,12 +134,13 @@ def close_gaps(names, parts, name, strict):
         shortest = min(edge_at(parts[lines[e // 2]], e % 2) for e in (end, other))
         if gap <= MOVED * shortest:
             for e in numpy.flatnonzero(end_places == q):
-                parts[lines[e // 2]] = parts[lines[e // 2]].copy()
-                parts[lines[e // 2]][-(e % 2), :2] = places[p].real, places[p].imag
+                moved = mended_lines[lines[e // 2]]
+                moved.points = parts[lines[e // 2]] = moved.points.copy()
+                moved.points[-(e % 2), :2] = places[p].real, places[p].imag
             notes.append(f"{words}: the second is moved onto the first")
         else:
-            parts.append(numpy.array([parts[lines[e // 2]][-(e % 2)] for e in (end, other)]))
-            names.append(one)
+            edge = numpy.array([parts[lines[e // 2]][-(e % 2)] for e in (end, other)])
+            mended_lines.append(Line(one, edge, mended_lines[lines[end // 2]].cells))
             notes.append(f"{words}: closed by a straight edge")
     return first_ones(notes, f"{name}: gaps of up to {in_words(max(gaps))}")
 
@@ -170,19 +202,19 @@ def ring_lengths(parts, lines, ends, pairs, places):
 # ---- crossings --------------------------------------------------------------------------------
 
 
-def without_crossings(names, parts, name, strict):
-    """(names, parts, notes), each ring that crosses itself being made valid. The others stay."""
-    names, parts = chained(names, parts)
+def without_crossings(lines, name, strict):
+    """(Lines, notes), each ring that crosses itself being made valid. The others stay."""
     kept, notes = [], []
-    for title, ring in zip(names, parts):
+    for line in chained(lines):
+        title, ring = line.name, line.points
         is_ring = len(ring) > 3 and (ring[0, :2] == ring[-1, :2]).all()
         errors, _, triangles = trial(make_lines([ring])) if is_ring else ([], 0, 0)
         if not errors or not triangles:  # where it encloses none, the filter reports that
-            kept.append((title, ring))
+            kept.append(line)
             continue
         made = valid(ring, f"{name}: {title} crosses itself: {errors[0]}")
         if not made:
-            kept.append((title, ring))
+            kept.append(line)
             continue
         where = f"{name}: {title} crosses itself {places_in_words(ring, made)}"
         if strict:
@@ -193,16 +225,13 @@ def without_crossings(names, parts, name, strict):
             f"{where}: made valid by GEOS, {counted(len(areas), 'polygon')}"
             + (share if len(areas) > 1 else f" of area {areas[0]:.6g}")
         )
-        kept += [(title, part) for _, rings in made for part in rings]
-    return (
-        [title for title, _ in kept],
-        [ring for _, ring in kept],
-        first_ones(notes, f"{name}: rings that cross themselves"),
-    )
+        kept += [Line(title, part, line.cells) for _, rings in made for part in rings]
+    return kept, first_ones(notes, f"{name}: rings that cross themselves")
 
 
-def chained(names, parts):
-    """(names, parts), lines that follow each other from end to end being one."""
+def chained(lines):
+    """Lines, those that follow each other from end to end being one."""
+    parts = [line.points for line in lines]
     ends, done, chains = {}, set(), []
     for i, part in enumerate(parts):
         for end in (0, -1):
@@ -220,10 +249,11 @@ def chained(names, parts):
             members.append(i)
             ring = numpy.concatenate((ring, (parts[i] if end == 0 else parts[i][::-1])[1:]))
             here = tuple(ring[-1, :2])
-        title = list(dict.fromkeys(names[i] for i in members))
+        title = list(dict.fromkeys(lines[i].name for i in members))
         more = f" and {counted(len(title) - 1, 'more line')} of its ring" if len(title) > 1 else ""
-        chains.append((title[0] + more, ring))
-    return [title for title, _ in chains], [ring for _, ring in chains]
+        cells = [cell for i in members for cell in lines[i].cells]
+        chains.append(Line(title[0] + more, ring, cells))
+    return chains
 
 
 def valid(ring, words):

@@ -11,7 +11,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIdList
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-from .clouds import cells_of, make_points, some_points
+from .clouds import cells_of, joined, make_points, some_points
 from .messages import Messages
 from .spreading import WITHIN_ERROR
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
@@ -90,6 +90,56 @@ def along_edges(outline, surface):
     result = make_points(numpy.concatenate(added))
     result.SetLines(lines)
     return result
+
+
+def within(lines, outline, reach):
+    """Lines without what is outside of an outline: their edges, cut at the points of the outline on them, but
+    for those that are outside as a whole. One that crosses the outline between its points stays."""
+    own, corners = (vtk_to_numpy(data.GetPoints().GetData()).astype("f8") for data in (lines, outline))
+    order = numpy.argsort(corners[:, 1], kind="stable")
+    numbered = numpy.column_stack((corners[order, :2], len(own) + order))
+    whole, edges = edge_ids(lines), []
+    for p, q in whole.tolist():
+        through = [p, *between(own[p], own[q], numbered, reach)[:, 2].astype("i8").tolist(), q]
+        edges += zip(through[:-1], through[1:])
+    edges = numpy.array(edges, dtype="i8").reshape(-1, 2)
+    ends = numpy.concatenate((own, corners))[edges][:, :, :2]
+    is_outside = outside_of(outline, ends.mean(axis=1), reach)
+    is_outside[is_outside] = ~are_crossing(ends[is_outside], *edges_of(outline))
+    if len(edges) == len(whole) and not is_outside.any():
+        return lines
+    result = joined([some_points(data, numpy.arange(data.GetNumberOfPoints())) for data in (lines, outline)])
+    result.SetLines(cells_of(edges[~is_outside]))
+    return result
+
+
+def elevated(lines, surface):
+    """Lines whose points without z (NaN) get that of the vertex of a surface there, if there is one."""
+    xyz = vtk_to_numpy(lines.GetPoints().GetData()).astype("f8")
+    soft = numpy.flatnonzero(numpy.isnan(xyz[:, 2]))
+    if not len(soft):
+        return lines
+    vertices = vtk_to_numpy(surface.GetPoints().GetData())
+    vertices = vertices[numpy.unique(vtk_to_numpy(surface.GetPolys().GetConnectivityArray()))]
+    there = dict(zip(places_of(vertices).tolist(), vertices[:, 2].tolist()))
+    xyz[soft, 2] = [there.get(place, numpy.nan) for place in places_of(xyz[soft]).tolist()]
+    result = lines.NewInstance()
+    result.ShallowCopy(lines)
+    result.SetPoints(make_points(xyz).GetPoints())
+    return result
+
+
+def are_crossing(edges, p, q):
+    """(n,) of bool: which edges, (n, 2, 2), cross one of those from p to q, (m, 2) each."""
+
+    def side(a, b, c):
+        (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+        return numpy.sign(ux * vy - uy * vx)
+
+    crossing = [
+        (side(a, b, p) * side(a, b, q) < 0) & (side(p, q, a) * side(p, q, b) < 0) for a, b in edges
+    ]
+    return numpy.array([one.any() for one in crossing], dtype=bool)
 
 
 def between(p, q, points, reach):
@@ -192,14 +242,22 @@ def trial(rings, are_edges=False):
 
 def edges_of(lines):
     """((n, 2), (n, 2)): x,y of both ends of the edges of lines."""
-    cells = lines.GetLines()
-    ids = vtk_to_numpy(cells.GetConnectivityArray())
-    offsets = vtk_to_numpy(cells.GetOffsetsArray())
-    is_start = numpy.ones(len(ids), dtype=bool)
-    is_start[offsets[1:] - 1] = False
-    starts = numpy.flatnonzero(is_start)
     xy = vtk_to_numpy(lines.GetPoints().GetData())[:, :2].astype("f8")
-    return xy[ids[starts]], xy[ids[starts + 1]]
+    begins, ends = edge_ids(lines).T
+    return xy[begins], xy[ends]
+
+
+def edge_ids(lines):
+    """(n, 2) ids of both ends of the edges of lines and polygons."""
+    edges = []
+    for cells, are_closed in ((lines.GetLines(), False), (lines.GetPolys(), True)):
+        ids, offsets = (vtk_to_numpy(a) for a in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
+        has_points = numpy.diff(offsets) > 0
+        first, last = offsets[:-1][has_points], offsets[1:][has_points] - 1
+        following, is_edge = numpy.roll(ids, -1), numpy.ones(len(ids), dtype=bool)
+        following[last], is_edge[last] = ids[first], are_closed
+        edges.append(numpy.column_stack((ids, following))[is_edge].astype("i8"))
+    return numpy.concatenate(edges)
 
 
 def outside_of(lines, points, reach):

@@ -38,7 +38,7 @@ from .report import MOST_LISTED, OUTSIDE, REASONS, facts_of, fault_report, trimm
 from .results import Failure, write_report
 from .several_heights import PieceHeights
 from .spreading import IN_NO_TRIANGLE
-from .steps import STEPS, boundary_of, in_our_names, concerns_constraints
+from .steps import STEPS, concerns_constraints, in_our_names, rings_of
 from .supervisor import note_partial_file, rank_and_size
 from .vtkElevationSurfacePieces import vtkReconstructPieces
 from .writing.xml_writer import write_vtp
@@ -266,8 +266,8 @@ class Pieces:
             raise Failure(" ".join([f"{file}: {self.with_step(problems[0])}", *more]))
 
     def in_our_names(self, message):
-        boundary = boundary_of(self.source.GetTrim()) if message.step == "trim" else None
-        return in_our_names(message, message.step, boundary)
+        of_step = {"trim": self.source.GetTrim(), "fill": self.source.GetFill()}.get(message.step)
+        return in_our_names(message, message.step, of_step and rings_of(of_step))
 
     def with_step(self, message):
         return f"{STEPS[message.step]}: {self.in_our_names(message)}"

@@ -463,7 +463,8 @@ def reconstruct_cloud(
     def once(name, make, *key):  # for this cloud
         return kept.result(name, (state_of([cloud.points]), *key), make, ranks)
 
-    check_together(dict.fromkeys(lines, True), argument, lines)
+    given_names = {**dict.fromkeys(lines, True), "level_attribute": given.get("level_attribute")}
+    check_together(given_names, argument, NAMES)
     reach = once("reach", lambda: least_reach(cloud.points, ranks))
     check_spacing(reach, given.get("spacing", 0.0))
     cloud, lines = in_plane(cloud, lines, given, ranks)

@@ -296,6 +296,47 @@ def set_unused(surface, unused, reasons):
         surface.GetFieldData().AddArray(array)
 
 
+def with_hidden(points, hidden):
+    """Points of which more are hidden, (n,) of bool, than are before."""
+    marked = points.NewInstance()
+    marked.ShallowCopy(points)
+    set_marks(marked, numpy.where(hidden, vtkDataSetAttributes.HIDDENPOINT, 0) | marks_of(points))
+    return marked
+
+
+def show_hidden(surface, hidden, reasons, points):
+    """Makes a triangulation of with_hidden() points one of all points, of which these are no vertices.
+
+    reasons  (n,) numbers of why points are no vertices where none is hidden
+    points   before some were hidden
+    """
+    marks, count = marks_of(surface), len(hidden)
+    marks[:count][hidden] = marks_of(points)[hidden]
+    surface.GetPointData().RemoveArray(GHOSTS)
+    if points.GetPointData().HasArray(GHOSTS):
+        set_marks(surface, marks)
+    unused, why = (
+        vtk_to_numpy(surface.GetFieldData().GetArray(f"UnusedPoint{what}")) for what in ("Ids", "Reasons")
+    )
+    stays = (unused >= count) | ~hidden[numpy.minimum(unused, count - 1)]
+    more = numpy.flatnonzero(hidden & (reasons != 0))
+    unused, why = numpy.append(unused[stays], more), numpy.append(why[stays], reasons[more])
+    order = numpy.argsort(unused)
+    set_unused(surface, unused[order], why[order])
+
+
+def marks_of(data):
+    """(n,) marks of vtkDataSetAttributes for points, which may be changed."""
+    array = data.GetPointData().GetArray(GHOSTS)
+    return vtk_to_numpy(array).copy() if array else numpy.zeros(data.GetNumberOfPoints(), "u1")
+
+
+def set_marks(data, marks):
+    array = numpy_to_vtk(marks.astype("u1"), deep=True)
+    array.SetName(GHOSTS)
+    data.GetPointData().AddArray(array)
+
+
 def set_counts(surface, filters):
     """Sets the field data that are counts of a filter: those of a rank are of its part alone."""
     fields = surface.GetFieldData()

@@ -18,14 +18,25 @@ from .outline import (
     ON_OUTLINE,
     along_edges,
     border_of,
+    elevated,
     in_use,
     outside_of,
     simplified,
     spacing_of,
+    within,
 )
 from .properties import PROPERTIES, is_simplified, set_properties
 from .ranks import all_values, collected, extremes, together, total
-from .spreading import OUTSIDE_OUTLINE, WITHIN_ERROR, own_point_count, reasons_of, update
+from .spreading import (
+    OUTSIDE_OUTLINE,
+    SAME_PLACE,
+    WITHIN_ERROR,
+    own_point_count,
+    reasons_of,
+    show_hidden,
+    update,
+    with_hidden,
+)
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
 
 # Of gap tolerances, in spacings: that of survey lines 200 times as far apart as their points.
@@ -122,7 +133,7 @@ class Step:
         def end():
             if error:
                 raise error
-            return self.report(name, messages, boundary_of(algorithm) if name == "trim" else None)
+            return self.report(name, messages, rings_of(algorithm) if name != "delaunay" else None)
 
         try:
             lines = together(self.ranks, end)
@@ -166,7 +177,7 @@ class Step:
         del self.result.notes[before:]
         return algorithm, messages, notes, raised[0] if raised else None
 
-    def report(self, name, messages, boundary):
+    def report(self, name, messages, rings):
         """Raises the errors of a step. Returns [whether it is OnOneRank, note] of its warnings."""
         warnings = [warning for warning in messages.warnings if warning.code != "OnOneRank"]
         problems = messages.errors or (warnings if self.strict else [])
@@ -176,11 +187,11 @@ class Step:
                 about = "boundary"
             elif name == "delaunay" and concerns_constraints(problems[0]):
                 about = "faults"
-            words = " ".join(in_our_names(one, name, boundary) for one in problems)
+            words = " ".join(in_our_names(one, name, rings) for one in problems)
             raise ElevationSurfaceError(words, about, STEPS[name])
         self.result.warnings += warnings
         return [
-            [warning.code == "OnOneRank", f"{STEPS[name]}: {in_our_names(warning, name, boundary)}"]
+            [warning.code == "OnOneRank", f"{STEPS[name]}: {in_our_names(warning, name, rings)}"]
             for warning in messages.warnings
         ]
 
@@ -193,11 +204,11 @@ def concerns_constraints(message):
 CALLED_IN_PANEL = {"constraints": "faults", "constraints'": "faults'"}
 
 
-def in_our_names(message, step, boundary=None):
+def in_our_names(message, step, rings=None):
     """A filter's Message, with the names of options where it has names of properties.
 
-    step      delaunay, trim or fill
-    boundary  None, or that of the step, whose lines may have names
+    step   delaunay, trim or fill
+    rings  None, or the boundary or areas of the step, whose lines may have names
     """
 
     def name_of(setter):
@@ -207,19 +218,23 @@ def in_our_names(message, step, boundary=None):
         return setter
 
     words = dict(CALLED_IN_PANEL) if are_for(PANEL) else {}
-    if boundary is not None:
-        words.update((f"the {cell}", name) for cell, name in cell_names(boundary).items())
+    if rings is not None:
+        words.update((f"the {cell}", name) for cell, name in cell_names(rings).items())
     return message.named(name_of, words)
 
 
-def boundary_of(trim):
-    """The boundary that vtkTrimOutwardTriangles is given, or None."""
-    return trim.GetInputDataObject(1, 0) if trim.GetNumberOfInputConnections(1) else None
+def rings_of(algorithm):
+    """The boundary or the areas that a filter is given, or None."""
+    return algorithm.GetInputDataObject(1, 0) if algorithm.GetNumberOfInputConnections(1) else None
 
 
-def triangulate(run, lines, has_all=False):
-    """The first step, with lines or None as constraints; has_all: of all points, whatever is given."""
-    result, ranks, points = run.result, run.ranks, run.result.cloud.points
+def triangulate(run, lines, has_all=False, points=None):
+    """The first step, with lines or None as constraints.
+
+    has_all  of all points, whatever is given
+    points   instead of those of the cloud
+    """
+    result, ranks, points = run.result, run.ranks, points or run.result.cloud.points
     delaunay = run.configure("delaunay", vtkGridDelaunay2D())
     if has_all:
         delaunay.SetMaximumElevationError(0.0)
@@ -319,15 +334,15 @@ class LineKeeper:
 
 
 def trim_few(run, boundary, faults):
-    """The first two steps for few points: the outline is that of all."""
+    """The first two steps for few points: the outline is that of all, and what is outside of it does not
+    count."""
     result, error = run.result, run.properties.get("maximum_elevation_error", 0.0)
     if run.properties.get("maximum_number_of_points"):
         error = numpy.inf  # of the points of the outline, those come back that are worth their number
     triangulate(run, faults, has_all=True)
     # Edges that follow the surface would have many points, each of which becomes a vertex.
     trim_along(run, boundary, vtkTrimOutwardTriangles.STRAIGHT)
-    result.outlined, lattice = (result.delaunay, result.trim), result.lattice
-    lines = [] if faults is None else [faults]
+    result.outlined, lattice, reasons = (result.delaunay, result.trim), result.lattice, result.reasons
     if boundary is not None:
         # It has no elevations, and may leave the points: its edges in the surface of all points do.
         outline = border_of(result.trim.GetOutput())
@@ -338,9 +353,12 @@ def trim_few(run, boundary, faults):
         outline, reach = simplified(outline, spacing, error), ON_OUTLINE * spacing
     if boundary is None and result.trim.GetNumberOfOutwardTriangles() == 0:
         outline = None  # the convex hull, which stays without constraints
-    else:
-        lines.append(outline)
-    triangulate(run, joined(lines) if lines else None)
+    xyz = vtk_to_numpy(result.cloud.points.GetPoints().GetData())
+    outside = numpy.zeros(len(reasons), dtype=bool)
+    if outline is not None:
+        is_vertex = numpy.isin(reasons, (0, SAME_PLACE))
+        outside[is_vertex] = outside_of(outline, xyz[is_vertex], reach)
+    triangulate_inside(run, faults, outline, outside)
     if outline is None:
         outline = border_of(result.delaunay.GetOutput())
     elif boundary is None:
@@ -351,8 +369,24 @@ def trim_few(run, boundary, faults):
     result.lattice = lattice
     result.boundary = (result.trim if boundary is None else result.outlined[1]).GetOutput(2)
     left = numpy.flatnonzero(result.reasons == WITHIN_ERROR)
-    xyz = vtk_to_numpy(result.cloud.points.GetPoints().GetData())
     result.reasons[left[outside_of(outline, xyz[left], reach)]] = OUTSIDE_OUTLINE
+
+
+def triangulate_inside(run, faults, outline, outside):
+    """Triangulates few points, along faults and an outline, of which there may be none, as if points that are
+    outside, (n,) of bool, and faults there did not exist: else they would be some of the few."""
+    result, of_all = run.result, run.result.delaunay.GetOutput()
+    reasons, points = result.reasons, result.cloud.points
+    lines = [] if outline is None else [outline]
+    if faults is not None and outline is not None:
+        faults = within(elevated(faults, of_all), outline, ON_BORDER * outline.GetLength())
+    if faults is not None:
+        lines.insert(0, faults)
+    triangulate(run, joined(lines) if lines else None, points=with_hidden(points, outside))
+    surface = result.delaunay.GetOutput()
+    show_hidden(surface, outside, reasons, points)
+    surface.GetFieldData().AddArray(of_all.GetFieldData().GetArray("NumberOfDuplicatePoints"))
+    result.reasons[outside] = numpy.where(reasons == 0, OUTSIDE_OUTLINE, reasons)[outside]
 
 
 def why_no_triangle(ranks, xyz, limit, warnings):

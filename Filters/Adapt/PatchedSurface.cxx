@@ -367,11 +367,17 @@ void MakeReport(
   PassRings(rims, input, progress, output);
 }
 
+namespace
+{
+bool IsFilled(const HoleReport& hole)
+{
+  return hole.Status == FillStatus::Filled || hole.Status == FillStatus::Replaced;
+}
+} // namespace
+
 vtkIdType CountFilled(const FillResult& patches)
 {
-  return std::count_if(patches.Reports.begin(), patches.Reports.end(), [](const HoleReport& hole) {
-    return hole.Status == FillStatus::Filled || hole.Status == FillStatus::Replaced;
-  });
+  return std::count_if(patches.Reports.begin(), patches.Reports.end(), IsFilled);
 }
 
 void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& outputs)
@@ -383,17 +389,59 @@ void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& o
   }
 }
 
-std::shared_ptr<const Areas> ToAreas(
-  vtkPolyData* lines, const Progress& progress, std::vector<Message>& warnings)
+namespace
 {
+/** The levels of lines, by the cell array that the options name; none without a name. */
+std::vector<double> LevelsOf(vtkPolyData* lines, const BoundaryLines& read, const std::string& name)
+{
+  std::vector<double> levels;
+  if (name.empty())
+  {
+    return levels;
+  }
+  vtkCellData* const data = lines->GetCellData();
+  vtkDataArray* const array = data->GetArray(name.c_str());
+  if (!array || array->GetNumberOfComponents() != 1)
+  {
+    std::string others;
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+    {
+      vtkDataArray* const other = data->GetArray(i);
+      if (other && other->GetName() && other->GetNumberOfComponents() == 1)
+      {
+        others += (others.empty() ? "; there are " : ", ") + std::string(other->GetName());
+      }
+    }
+    throw MakeError<sentences::NoLevelArray>(name, others);
+  }
+  for (Index line = 0; line < read.Lines.Count(); ++line)
+  {
+    levels.push_back(array->GetComponent(read.Cells[line], 0));
+    if (std::isinf(levels.back()))
+    {
+      throw MakeError<sentences::InfiniteLevel>(name, NameOf(read, line));
+    }
+  }
+  return levels;
+}
+} // namespace
+
+std::shared_ptr<const Areas> ToAreas(vtkPolyData* lines, const FillOptions& options,
+  const Progress& progress, std::vector<Message>& warnings)
+{
+  if (!options.LevelArray.empty() && !(lines && options.Mode == AreaMode::FillOnly))
+  {
+    throw MakeError<sentences::LevelsNotUsed>(options.LevelArray);
+  }
   if (!lines)
   {
     return nullptr;
   }
   CheckArrays(lines, std::string("The ") + AreaInputName + "'s");
   Message repeated;
+  const BoundaryLines read = ToBoundaryLines(lines, progress, AreaInputName);
   auto areas =
-    std::make_shared<const Areas>(ToBoundaryLines(lines, progress, AreaInputName), &repeated);
+    std::make_shared<const Areas>(read, LevelsOf(lines, read, options.LevelArray), &repeated);
   if (!repeated.IsEmpty())
   {
     warnings.push_back(repeated);
@@ -434,6 +482,21 @@ std::vector<Message> WarningsOf(const FillResult& patches, const FillOptions& op
   {
     warnings.push_back(MakeMessage<sentences::AreasTouchNoHole>(holes.Count(),
       NameOf(options.Chosen->Extent()), fillsOnly ? "none is filled" : "none is kept open"));
+  }
+  Index withoutLevel = 0, ring = None;
+  for (const HoleReport& report : patches.Reports)
+  {
+    const Index without = report.Water.Given.Without;
+    if (IsFilled(report) && without != None)
+    {
+      // Numbers of holes depend on the order of triangles; those of rings do not.
+      ring = withoutLevel++ == 0 ? without : std::min(ring, without);
+    }
+  }
+  if (withoutLevel > 0)
+  {
+    warnings.push_back(
+      MakeMessage<sentences::LevelsMissing>(withoutLevel, options.Chosen->NameOfRing(ring)));
   }
   double outgrowth = 0.0;
   Index outgrown = 0, first = None;

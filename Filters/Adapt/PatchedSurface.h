@@ -53,14 +53,15 @@ void MakeReport(
 constexpr const char* AreaInputName = "area input";
 
 /**
- * The areas that lines and polygons bound; nullptr: none.
+ * The areas that lines and polygons bound, with their levels if the options name these; nullptr:
+ * none.
  * @param[out] warnings  one is added where rings are there more than once
- * @throws Error naming the cell or point
+ * @throws Error naming the cell, point or array, or that levels would not be used
  */
-std::shared_ptr<const Areas> ToAreas(
-  vtkPolyData* lines, const Progress& progress, std::vector<Message>& warnings);
+std::shared_ptr<const Areas> ToAreas(vtkPolyData* lines, const FillOptions& options,
+  const Progress& progress, std::vector<Message>& warnings);
 
-/** Warnings about holes that failed, about areas that choose nothing, and about contacts. */
+/** Warnings about holes that failed, about areas that choose nothing or have no level, about contacts. */
 std::vector<Message> WarningsOf(const FillResult& patches, const FillOptions& options);
 
 /** How many holes are filled. */

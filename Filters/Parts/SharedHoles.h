@@ -41,7 +41,8 @@ struct FieldsOf<HoleReport>
     auto& [status, edges, size, perimeter, area, spacing, inserted, method, outgrowth, drawn, water,
       misties, more, reason] = report;
     return std::tie(status, edges, size, perimeter, area, spacing, inserted, method, outgrowth,
-      drawn.Count, drawn.Most, water.Height, water.RimAbove, water.RimBelow, misties, more, reason);
+      drawn.Count, drawn.Most, water.Height, water.RimAbove, water.RimBelow, water.Given.Height,
+      water.Given.Without, misties, more, reason);
   }
 };
 

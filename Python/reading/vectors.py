@@ -152,12 +152,13 @@ class Layer:
         except (TypeError, ValueError):
             return None
 
-    def set_heights(self, columns):
+    def set_heights(self, columns, is_needed=True):
         """Takes z from an attribute where the geometry has none. Returns notes.
 
-        columns  None, or three names of which the third is the attribute
+        columns    None, or three names of which the third is the attribute
+        is_needed  False: where several attributes could be z, none is
         """
-        name = self.height_attribute(columns)
+        name = self.height_attribute(columns, is_needed)
         has_z = bool(numpy.nan_to_num(self.coordinates()[:, 2]).any())
         if name is None or has_z and not columns and not self.flat:
             return [] if name is None or not has_z else [f"z from the geometry, not from {name}"]
@@ -172,7 +173,7 @@ class Layer:
         self.z_name = name
         return [f"z from attribute {name}" + ", where the geometry has none" * some]
 
-    def height_attribute(self, columns):
+    def height_attribute(self, columns, is_needed):
         """The name of the attribute of elevations, or None."""
         if columns:
             if columns[2] not in self.fields:
@@ -187,7 +188,7 @@ class Layer:
         named = [name for name in named if any(v is not None for v in self.fields[name])]
         best = min((meaning(name).rank for name in named), default=0)
         named = [name for name in named if meaning(name).rank == best]
-        if len(named) > 1 and self.flat:
+        if len(named) > 1 and self.flat and is_needed:
             raise FileError(
                 f"{self.path}: attributes {', '.join(named)} could be the elevation; choose one by "
                 f"{option('columns')} x,y,{named[0]}"
@@ -208,7 +209,7 @@ def are_angles(layer):
     return (numpy.abs(layer.coordinates()[:, :2]) <= (540.0, 90.0)).all()
 
 
-def read_layer(path, wanted, columns, progress, as_lines=False):
+def read_layer(path, wanted, columns, progress, as_lines=False, needs_z=True):
     """(Layer with its elevations, notes, crs)."""
     with quiet():
         data = open_file(path)
@@ -224,7 +225,7 @@ def read_layer(path, wanted, columns, progress, as_lines=False):
             reference = None
         crs = reference.ExportToWkt() if reference else None
     progress(0.85)
-    notes += layer.set_heights(columns)
+    notes += layer.set_heights(columns, needs_z)
     progress(0.9)
     return layer, notes, crs
 
@@ -272,18 +273,23 @@ def read_points(path, options):
 
 
 def read_lines(path, singular, progress):
-    """Lines and polygons with their holes, as vtkPolyData with lines and the field array CRS."""
-    layer, _, crs = read_layer(path, None, None, progress, as_lines=True)
-    names, parts, count = [], [], collections.Counter()
-    for feature, (kind, points) in zip(layer.ids, layer.parts):
+    """Lines and polygons with their holes, as vtkPolyData with lines and the field array CRS; attributes of
+    numbers become cell arrays."""
+    layer, _, crs = read_layer(path, None, None, progress, as_lines=True, needs_z=singular != "a boundary")
+    names, parts, features, count = [], [], [], collections.Counter()
+    for feature, number, (kind, points) in zip(layer.ids, layer.features, layer.parts):
         if kind != "point":
             count[feature] += 1
             part = f", part {count[feature]}" if count[feature] > 1 else ""
             names.append(f"feature {feature}{part}")
             parts.append(points)
+            features.append(number)
     if not parts:
         raise FileError(f"{path}: holds no line and no polygon that could be {singular}")
     data = make_lines(parts, names)
+    for name, values in layer.fields.items():
+        if any(isinstance(value, (int, float)) for value in values) and layer.numbers(name) is not None:
+            add_array(data, name, layer.numbers(name)[features], "Cell")
     if crs:
         set_crs(data, crs)
     return data

@@ -43,6 +43,7 @@ OTHER_VALUES = {
         "MaximumHoleSize": 12.5,
         "MaximumHoleEdges": 40,
         "AreaMode": "Keep Open",
+        "LevelArrayName": "water",
         "FillCutOuts": 1,
         "MaximumNumberOfInsertedPoints": 5000,
         "MaximumNumberOfExpectedPoints": 4000,

@@ -9,7 +9,7 @@ import unittest
 import numpy
 from in_folder import Program
 from vtkelevationsurface import ElevationSurfaceError, ElevationSurfaceWarning, read, reconstruct
-from vtkelevationsurface.clouds import make_lines
+from vtkelevationsurface.clouds import add_array, make_lines, make_points
 from vtkelevationsurface.outline import (
     ON_OUTLINE,
     outside_of,
@@ -20,6 +20,7 @@ from vtkelevationsurface.outline import (
 from vtkelevationsurface.report import OUTSIDE
 from vtkelevationsurface.spreading import OUTSIDE_OUTLINE, WITHIN_ERROR
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
 DATA = sys.argv[sys.argv.index("-D") + 1] if "-D" in sys.argv else "Data"
 ERROR = 0.2
@@ -281,6 +282,78 @@ class SoManyPoints(unittest.TestCase):
                 self.assertLessEqual(residuals(result, left, reach).max(), largest + reach)
                 errors.append(largest)
         self.assertLess(max(errors[2:]), 0.4 * min(errors[:2]))
+
+    def test_what_is_outside_of_a_boundary_does_not_count(self):
+        points = cloud()
+        window = numpy.array([(62.0, 12), (92, 12), (92, 52), (72, 52), (72, 32), (62, 32)])
+        inside = points[(points[:, 0] > 60) & (points[:, 1] < 54)]
+        twins = numpy.vstack((points, points[:50] + (0, 0, 1)))
+        across = numpy.column_stack((66 + 0 * STEPS, 2.0 * STEPS, 9 + 0.1 * (STEPS % 2)))  # y 0 to 78
+        for faults in (None, across):
+            few, cut = (
+                reconstruct(some, boundary=window, faults=faults, fill=False, duplicates="keep-first",
+                            maximum_number_of_points=60)
+                for some in (twins, inside)
+            )
+            self.assertEqual(few.surface.GetNumberOfPoints(), 60)
+            largest, of_cut = (one.report["simplified"]["largest_elevation_error"] for one in (few, cut))
+            self.assertLess(largest, 1.05 * of_cut)
+            corners, triangles = few.to_numpy()
+            self.assertAlmostEqual(area(few), 30 * 40 - 10 * 20)
+            self.assertEqual(len(numpy.unique(triangles)), len(corners))
+        places = corners[:, :2].tolist()
+        on_fault = sorted(y for x, y in places if x == 66)
+        self.assertEqual(on_fault, [12.0, *[2.0 * i for i in range(7, 16)], 32.0])
+
+    def test_points_outside_are_unused_as_they_are_without_the_number(self):
+        points = numpy.vstack((cloud(), cloud()[:50] + (0, 0, 1), [(1, numpy.nan, 0)]))
+        few, full = (
+            reconstruct(points, boundary=BOUNDARY, fill=False, duplicates="keep-first", boundary_edges="straight",
+                        remove_unused_points=False, maximum_number_of_points=most)
+            for most in (100, 0)
+        )
+        self.assertFalse(few.surface.GetPointData().HasArray("vtkGhostType"))
+        for reason in ("same x,y as another point", "not finite", OUTSIDE):
+            self.assertEqual(few.report["unused_reasons"][reason], full.report["unused_reasons"][reason])
+        fields, of_all = (one.surface.GetFieldData() for one in (few, full))
+        name = "NumberOfDuplicatePoints"
+        self.assertEqual(fields.GetArray(name).GetValue(0), of_all.GetArray(name).GetValue(0))
+        ids, why = (vtk_to_numpy(fields.GetArray("UnusedPoint" + what)) for what in ("Ids", "Reasons"))
+        self.assertEqual((numpy.diff(ids) > 0).all(), True)
+        self.assertEqual({reason: int((why == reason).sum()) for reason in numpy.unique(why)},
+                         {1: 50, 2: 1, 3: few.report["unused_reasons"][WITHIN]})
+
+    def test_marks_of_points_stay(self):
+        given = make_points(cloud())
+        marks = numpy.zeros(given.GetNumberOfPoints(), "u1")
+        marks[::7] = vtkDataSetAttributes.HIDDENPOINT
+        add_array(given, vtkDataSetAttributes.GhostArrayName(), marks)
+        result = reconstruct(given, boundary=BOUNDARY, fill=False, remove_unused_points=False,
+                             maximum_number_of_points=100)
+        found = vtk_to_numpy(result.surface.GetPointData().GetArray("vtkGhostType"))
+        numpy.testing.assert_array_equal(found[: len(marks)], marks)
+        self.assertTrue((vtk_to_numpy(given.GetPointData().GetArray("vtkGhostType")) == marks).all())
+        self.assertEqual(result.report["unused_reasons"]["marked as hidden"], numpy.count_nonzero(marks))
+
+    def test_what_an_outline_leaves_out_does_not_count(self):
+        points = cloud()
+        away = numpy.array([(-300.0, 20, 9), (20, 500, -9), (800, 90, 40), (60, -400, 7), (900, 900, 30)])
+        with self.assertWarnsRegex(ElevationSurfaceWarning, "leaves out 5 points"):
+            result = reconstruct(numpy.vstack((points, away)), fill=False, gap_tolerance=6, maximum_number_of_points=120)
+        self.assertEqual(set(result.reasons[-5:]), {OUTSIDE_OUTLINE})
+
+    def test_a_fault_keeps_the_z_that_it_has_among_all_points(self):
+        points = cloud()
+        soft = FAULT.copy()
+        soft[1:-1, 2] = numpy.nan
+        with self.assertWarnsRegex(ElevationSurfaceWarning, "38 points without z"):
+            full, few = (
+                reconstruct(points, faults=soft, boundary=BOUNDARY, fill=False, maximum_number_of_points=most)
+                for most in (0, 120)
+            )
+        z = [{tuple(row[:2]): row[2] for row in one.to_numpy()[0].tolist()} for one in (full, few)]
+        for x, y in FAULT[:, :2].tolist():
+            self.assertEqual(z[1][x, y], z[0][x, y])
 
     def test_it_serves_as_well_as_the_error_that_takes_as_many(self):
         points = cloud()

@@ -91,7 +91,7 @@ class Guide(unittest.TestCase):
 
     def test_each_picture_is_made_by_an_example_and_is_small(self):
         names = PICTURE.findall(GUIDE)
-        self.assertEqual(len(names), 9)
+        self.assertEqual(len(names), 10)
         for name in names:
             self.assertTrue(os.path.exists(os.path.join(self.folder, name + ".png")), name)
             kept = os.path.join(ROOT, "Documentation", "figures", f"guide-{name}.png")

@@ -4,11 +4,19 @@
 import sys
 import unittest
 
+import json
+
 import meshes
 import numpy
 from in_folder import Program
-from TestChosenHoles import CENTRES, LAKES, RADIUS, surface, survey
-from vtkelevationsurface import reconstruct, vtkFillElevationHoles
+from TestChosenHoles import CENTRES, LAKES, RADIUS, square, surface, survey
+from vtkelevationsurface import (
+    ElevationSurfaceError, ElevationSurfaceWarning, read_boundary, reconstruct, vtkFillElevationHoles,
+)
+from vtkelevationsurface.clouds import add_array, make_lines
+from vtkelevationsurface.given_lines import fitted
+from vtkelevationsurface.mending import mended
+from vtkelevationsurface.messages import Messages
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 
@@ -58,7 +66,145 @@ class Filter(unittest.TestCase):
             self.assertTrue(numpy.isnan(column(self.fill.GetOutput(1), name)).all())
 
 
+def with_levels(rings, levels, name="water"):
+    areas = meshes.rings(rings)
+    add_array(areas, name, numpy.array(levels), "Cell")
+    return areas
+
+
+class LevelsOfAreas(unittest.TestCase):
+    def fill(self, areas, name="water", **properties):
+        """(the filter, {where: level}, its Messages)"""
+        fill = vtkFillElevationHoles()
+        fill.SetInputData(surface())
+        fill.SetAreasData(areas)
+        fill.SetLevelArrayName(name)
+        for property_name, value in properties.items():
+            getattr(fill, "Set" + property_name)(value)
+        with Messages(fill) as messages:
+            fill.Update()
+        outlines, found = fill.GetOutput(1), {}
+        for hole in range(outlines.GetNumberOfCells()):
+            middle = numpy.reshape(outlines.GetCell(hole).GetBounds(), (3, 2)).mean(axis=1)[:2]
+            where = int(numpy.argmin(numpy.hypot(*(numpy.array(CENTRES) - middle).T)))
+            found[where] = float(column(outlines, "Level")[hole])
+        return fill, found, messages
+
+    def test_a_hole_gets_the_level_of_the_area_that_it_touches(self):
+        for dtype in ("f8", "f4", "i4"):
+            fill, levels, messages = self.fill(with_levels(LAKES, numpy.array([90, 130], dtype)))
+            self.assertEqual((levels[0], levels[2]), (90.0, 130.0))
+            self.assertTrue(numpy.isnan(levels[1]))
+            self.assertEqual(messages.warnings, [])
+            z = meshes.points_of(fill.GetOutput(0))[surface().GetNumberOfPoints():, 2]
+            self.assertEqual(set(z), {90.0, 130.0})
+            outlines = fill.GetOutput(1)
+            for hole in numpy.flatnonzero(~numpy.isnan(column(outlines, "Level"))):
+                level, rim = column(outlines, "Level")[hole], rim_of(outlines, hole)
+                self.assertEqual(column(outlines, "RimAboveLevel")[hole], rim.max() - level)
+                self.assertEqual(column(outlines, "RimBelowLevel")[hole], level - rim.min())
+
+    def test_areas_without_a_number_are_filled_as_others_and_reported(self):
+        areas = with_levels([*LAKES, square(*CENTRES[1], 1.0)], [90.0, numpy.nan, 110.0])
+        for method, is_known in ((fill_method, fill_method == 5) for fill_method in (3, 5)):
+            _, levels, messages = self.fill(areas, Interpolation=method)
+            self.assertEqual((levels[0], levels[1]), (90.0, 110.0))
+            self.assertEqual(not numpy.isnan(levels[2]), is_known)
+            (warning,) = messages.warnings
+            self.assertEqual((warning.code, warning.values), ("LevelsMissing", {"holes": "1", "area": "the line (cell 1)"}))
+
+    def test_a_hole_at_areas_of_different_levels_stays_open_and_both_are_named(self):
+        areas = with_levels([*LAKES, square(11.5, 11.5, 1.0)], [90.0, 130.0, 91.0])
+        fill, levels, messages = self.fill(areas)
+        self.assertEqual(levels[2], 130.0)
+        self.assertTrue(numpy.isnan(levels[0]))
+        self.assertEqual(sorted(column(fill.GetOutput(1), "Status")), [fill.FILLED, fill.FAILED, fill.NOT_CHOSEN])
+        (warning,) = messages.warnings
+        self.assertEqual(warning.code, "HoleNotFilled")
+        self.assertIn("that of the line (cell 0) is 90, that of the line (cell 2) is 91.", str(warning))
+
+    def test_what_cannot_be_is_an_error_that_names_it(self):
+        areas = with_levels(LAKES, [90.0, numpy.inf])
+        add_array(areas, "pair", numpy.zeros((2, 2)), "Cell")
+        with_vertex = meshes.lines(numpy.zeros((1, 3)), [])
+        for data, name, properties, code, words in (
+            (areas, "depth", {}, "NoLevelArray", '"depth", but the areas have no cell array of single numbers '
+             "with this name; there are water."),
+            (areas, "pair", {}, "NoLevelArray", '"pair", but'),
+            (meshes.rings(LAKES), "depth", {}, "NoLevelArray", "with this name."),
+            (areas, "water", {}, "InfiniteLevel", "the line (cell 1) has an infinite level"),
+            (areas, "water", {"AreaMode": 1}, "LevelsNotUsed", "and AreaMode FillOnly"),
+            (None, "water", {}, "LevelsNotUsed", 'LevelArrayName is "water"'),
+        ):
+            with self.subTest(words=words):
+                fill, _, messages = self.fill(data, name, **properties)
+                (error,) = messages.errors
+                self.assertEqual(error.code, code)
+                self.assertIn(words, str(error))
+                self.assertEqual(fill.GetOutput(0).GetNumberOfPoints(), 0)
+        self.assertEqual(self.fill(areas, "")[2].errors, [])
+
+    def test_rings_that_are_mended_keep_their_attributes(self):
+        eight = numpy.array([(0.0, 0, 0), (4, 4, 0), (4, 0, 0), (0, 4, 0), (0, 0, 0)])  # crosses itself
+        open_one = numpy.array([(9.0, 0, 0), (12, 0, 0), (12, 3, 0), (9, 3, 0), (9, 0.01, 0)])
+        halves = [numpy.array([(20.0, 0, 0), (25, 0, 0), (25, 5, 0)]), numpy.array([(25.0, 5, 0), (20, 5, 0), (20, 0, 0)])]
+        for second, common in ((7.0, 7.0), (numpy.nan, 7.0), (8.0, numpy.nan)):
+            lines = make_lines([eight, open_one, *halves], ["a", "b", "c", "d"])
+            add_array(lines, "water", numpy.array([5.0, 6.0, 7.0, second]), "Cell")
+            rings, notes = mended(lines, "lakes.gpkg")
+            self.assertEqual(len(notes), 2)
+            names = rings.GetCellData().GetAbstractArray("LineNames")
+            water = dict(zip([names.GetValue(i) for i in range(4)], column(rings, "water")))
+            self.assertEqual((water["a"], water["b"]), (5.0, 6.0))
+            numpy.testing.assert_equal(water["c and 1 more line of its ring"], common)
+
+
 class OfProgram(Program):
+    def geojson(self, file, rings, **attributes):
+        features = [
+            {"type": "Feature", "properties": {key: values[i] for key, values in attributes.items()},
+             "geometry": {"type": "Polygon", "coordinates": [[*ring.tolist(), ring[0].tolist()]]}}
+            for i, ring in enumerate(rings)
+        ]
+        crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::32632"}}
+        self.file(file, json.dumps({"type": "FeatureCollection", "crs": crs, "features": features}))
+
+    def test_takes_levels_from_an_attribute(self):
+        self.file("survey.xyz", "\n".join("%r %r %r" % tuple(row) for row in survey().tolist()))
+        third = square(*CENTRES[1], 1.0)
+        self.geojson("lakes.geojson", [*LAKES, third], water=[90.5, 131.0, None], depth=[1, 2, 3], name=["a", "b", "c"])
+        few = ["survey.xyz", "--maximum-edge-length", "2", "--fill-only", "lakes.geojson", "--no-picture"]
+        reports = []
+        for more in ([], ["--pieces", "3", "--no-trim", "--open-edge-length", "0"]):
+            done = self.call(*few, "--level-attribute", "water", "--report", "r.json", *more)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            holes = sorted(self.json("r.json")["holes"]["list"], key=lambda hole: hole["centre"])
+            reports.append([(h["level"], h["rim_above_level"], h["rim_below_level"]) for h in holes])
+            self.assertIn("1 of the filled holes touch areas that have no number in --level-attribute (NaN), the first "
+                          "being feature 2, so --interpolation decides", " ".join(done.stdout.split()))
+        self.assertEqual(reports[0], reports[1])
+        self.assertEqual([level for level, _, _ in reports[0]], [90.5, 131.0, None])
+        self.geojson("lakes.geojson", [*LAKES, square(11.5, 11.5, 1.0)], water=[90.5, 131.0, 92.0])
+        done = self.call(*few, "--level-attribute", "water")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("that of feature 0 is 90.5, that of feature 2 is 92. Give both the same in --level-attribute",
+                      " ".join(done.stdout.split()))
+        for arguments, code, words in (
+            (["--level-attribute", "water", "--strict"], 1, "was not filled. It touches areas with different levels"),
+            (["--level-attribute", "deep"], 1, '--level-attribute is "deep", but the areas have no cell array of '
+             "single numbers with this name; there are WithoutZ, water."),
+        ):
+            done = self.call(*few, *arguments)
+            self.assertEqual((done.returncode, len(done.stderr.strip().splitlines())), (code, 1), done.stderr)
+            self.assertIn(words, done.stderr)
+        for arguments, words in (
+            (["survey.xyz", "--level-attribute", "water"], "--level-attribute is for the areas of --fill-only"),
+            ([*few, "--level-attribute", "water", "--plane", "best"], "--plane and --level-attribute cannot be used"),
+        ):
+            done = self.call(*arguments)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(words, done.stderr)
+
     def test_fills_chosen_lakes_level_and_reports_by_how_much(self):
         self.file("survey.xyz", "\n".join("%r %r %r" % tuple(row) for row in survey().tolist()))
         parts = ["\n".join("%.17g %.17g" % tuple(p) for p in [*ring, ring[0]]) for ring in LAKES]
@@ -89,6 +235,16 @@ class Python(unittest.TestCase):
         holes = reconstruct(survey(), maximum_edge_length=2.0, interpolation="level").report["holes"]["list"]
         self.assertEqual([hole["interpolation"] for hole in holes], 3 * ["level"])
         self.assertTrue(all(hole["level"] > 0 for hole in holes))
+
+    def test_reconstruct_takes_the_levels_of_an_attribute(self):
+        areas = with_levels(LAKES, [90.0, 130.0])
+        result = reconstruct(survey(), maximum_edge_length=2.0, fill_only=areas, level_attribute="water")
+        levels = sorted(hole["level"] for hole in result.report["holes"]["list"] if hole["level"])
+        self.assertEqual(levels, [90.0, 130.0])
+        with self.assertRaisesRegex(ValueError, "^level_attribute is for the areas of fill_only, which are missing$"):
+            reconstruct(survey(), level_attribute="water")
+        with self.assertRaisesRegex(ElevationSurfaceError, '"deep", but the areas have no cell array'):
+            reconstruct(survey(), maximum_edge_length=2.0, fill_only=areas, level_attribute="deep")
 
 
 if __name__ == "__main__":

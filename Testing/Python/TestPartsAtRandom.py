@@ -102,6 +102,8 @@ def draw(random):
     steps = [step for step in modes.FILTERS if step == "Delaunay" or step == name or (step == "Trim" and case.rings)]
     are_nodes = len(finite) > 0 and finite[:, 0].min() > LATTICES[0][0] - 1e4
     properties = draw_properties(random, steps, distance, are_nodes)
+    if case.areas and random.random() < 0.4:
+        properties["Fill.LevelArrayName"] = "Water"
     return types.SimpleNamespace(filter=name, feature="cut out", properties=properties), case
 
 

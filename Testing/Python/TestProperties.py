@@ -64,6 +64,16 @@ def arguments_of(one):
     return [one.options[0], VALUES.get(one.name) or (one.choices or ("1",))[-1]]
 
 
+def needs_of(one):
+    """The property that it needs, or the first of several, as a list; empty: none."""
+    return [DESCRIBED[other] for other in one.words.get("needs", "").split(":")[0].split()[:1]]
+
+
+def needed_by(one):
+    """The arguments of what it needs."""
+    return [word for other in needs_of(one) for word in arguments_of(other)]
+
+
 def refusal_of(*arguments):
     """What the program says before it does anything; "" where it would begin."""
     said = io.StringIO()
@@ -84,7 +94,8 @@ class Classes(unittest.TestCase):
         for step, made in CLASSES.items():
             for name, one in properties_of(step).items():
                 with self.subTest(name=name):
-                    default = one.kind.numbers(one.default_in("filter"))
+                    is_text = one.kind.value_type == "string"
+                    default = [None] if is_text else one.kind.numbers(one.default_in("filter"))
                     self.assertEqual(numbers(getattr(made(), f"Get{name}")()), default)
 
     def test_ranges_and_choices_are_those_of_the_classes(self):
@@ -163,7 +174,7 @@ class Program(unittest.TestCase):
                 if f"--no-{step}" in one.options:
                     continue
                 with self.subTest(step=step, name=name):
-                    said = refusal_of(f"--no-{step}", *arguments_of(one))
+                    said = refusal_of(f"--no-{step}", *arguments_of(one), *(needed_by(one) if one.step == step else ()))
                     is_refused = f"options have no effect with --no-{step}" in said
                     self.assertEqual(is_refused, one.step == step, said)
 
@@ -173,10 +184,8 @@ class Program(unittest.TestCase):
                 if one.step == "pieces" or name == "remove_unused_points":  # given here to keep them, as pieces do
                     continue
                 with self.subTest(way=way, name=name):
-                    needs = one.words.get("needs", "").split(":")[0].split()[:1]
-                    given = [word for other in needs for word in arguments_of(DESCRIBED[other])]
-                    said = refusal_of(*way, *arguments_of(one), *given, "--boundary", "b.xyz")
-                    needed = DESCRIBED[(needs or [name])[0]]
+                    said = refusal_of(*way, *arguments_of(one), *needed_by(one), "--boundary", "b.xyz")
+                    needed = (needs_of(one) or [one])[0]
                     is_refused = bool(re.search("needs (the whole|all) .*in memory", said))
                     self.assertEqual(is_refused, not (one.in_pieces and needed.in_pieces), said)
 

@@ -118,6 +118,8 @@ holes that touch areas kept open  | AreaMode=1                 | coast and lakes
 areas on one rank only            |                            | coast and lakes + areas + on one | s  s  s  s  s  s  s
 areas, long triangles opened      | OpenEdgeLength=2.5         | coast and lakes + areas      | s  s  s  s  s  s  s
 areas, points of floats           |                            | coast and lakes + areas + float | s  s  s  s  s  s  s
+levels of areas                   | LevelArrayName="Water"     | coast and lakes + areas      | s  s  s  s  s  s  s
+levels of areas, on one rank only | LevelArrayName="Water", Interpolation=5 | coast and lakes + areas + on one | s  s  s  s  s  s  s
 most points inserted              | MaximumNumberOfInsertedPoints=50, Trim.BoundaryEdges=1 | coast and lakes              | s  s  s  s  s  s  s
 most points expected              | MaximumNumberOfExpectedPoints=20 | coast and lakes              | s  s  s  s  s  s  s
 spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  s

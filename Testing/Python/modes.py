@@ -16,6 +16,7 @@ from vtkelevationsurface import (
     vtkGridDelaunay2D,
     vtkTrimOutwardTriangles,
 )
+from vtkelevationsurface.clouds import add_array
 from vtkelevationsurface.vtkElevationSurfacePieces import vtkReconstructPieces
 from vtkmodules.vtkCommonDataModel import (
     vtkMultiBlockDataSet,
@@ -182,6 +183,14 @@ def coast_and_lakes(random, count):
 def areas_of(rings):
     """Around every second lake, so that others are not chosen."""
     return [1.2 * (ring - ring.mean(axis=0)) + ring.mean(axis=0) for ring in rings[1::2]]
+
+
+def area_data(case):
+    """Areas, all but the second with a level."""
+    data, levels = meshes.rings(case.areas), 100.0 + numpy.arange(len(case.areas))
+    levels[1:2] = numpy.nan
+    add_array(data, "Water", levels, "Cell")
+    return data
 
 
 def coast_along_edges(random, count):
@@ -402,7 +411,7 @@ def chain(row, case, data, threads, has_second=True):
     """{name: filter}: those up to the row's."""
     steps = {name: make() for name, make in FILTERS.items()}
     if case.areas:
-        steps["Fill"].SetAreasData(meshes.rings(case.areas) if has_second else vtkPolyData())
+        steps["Fill"].SetAreasData(area_data(case) if has_second else vtkPolyData())
     lines = meshes.lines(*case.lines) if case.lines and has_second else vtkPolyData()
     rings = meshes.rings(case.rings) if case.rings and has_second else vtkPolyData()
     if case.lines:
@@ -465,7 +474,7 @@ def piece_source(row, case, folder, is_alone=False):
     if case.rings:
         of["Trim"].SetBoundaryData(meshes.rings(case.rings))
     if case.areas:
-        of["Fill"].SetAreasData(meshes.rings(case.areas))
+        of["Fill"].SetAreasData(area_data(case))
     source.SetTrimOutward(row.filter == "Trim")
     source.SetFillHoles(row.filter == "Fill")
     source.SetHoleMemory(1e9)

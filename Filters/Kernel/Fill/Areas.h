@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Areas that choose holes: which holes they touch.
+ * Areas that choose holes: which holes they touch, and the levels that they give to these.
  *
  * Areas are bounded by rings, by the even-odd rule (Kernel/Trim/Rings.h). A hole touches them if
  * its region, the rim and the borders of islands included, has a point in common with their inside
@@ -13,6 +13,17 @@
  *     | |   | 1|   the hole (3); one point of each decides.
  *     o-|---o  |
  *       '------'   Cost: linear in the edges of the hole and in what is near them.
+ *
+ * An area has the level of the ring that bounds it from outside. Rings in it, around islands, are
+ * the inner bounds of the same area; a ring in an island is an area again:
+ *
+ *     o-----------------o
+ *     | 5  o---------o  |   Levels of rings: 5, 7, 9. A hole that touches the ring with 7 touches
+ *     |    |  o---o  |  |   the area between it and the outermost ring, whose level is 5. The
+ *     |    |  | 9 |7 |  |   innermost area has 9.
+ *     |    |  o---o  |  |
+ *     |    o---------o  |
+ *     o-----------------o
  */
 #ifndef elevation_Fill_Areas_h
 #define elevation_Fill_Areas_h
@@ -21,33 +32,68 @@
 #include "Kernel/Messages/Messages.h"
 #include "Kernel/Trim/Trim.h"
 
+#include <array>
+#include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace elevation
 {
 
+/** What areas say of a hole that they touch. */
+struct AreaLevel
+{
+  double Height = std::numeric_limits<double>::quiet_NaN(); ///< NaN: none of them has one
+  Index Without = None;                                     ///< then the first of their rings
+};
+
 class Areas
 {
 public:
   /**
+   * @param[in] levels     one a line, NaN: none; or empty
    * @param[out] repeated  as of JoinLines()
    * @throws Error of JoinLines(), which names line and point
    */
-  explicit Areas(const BoundaryLines& lines, Message* repeated = nullptr);
+  explicit Areas(const BoundaryLines& lines, const std::vector<double>& levels = {},
+    Message* repeated = nullptr);
 
   /** Whether a hole touches them. @param[in] mesh  has the points of the holes */
   bool Touch(const Mesh& mesh, const Holes& holes, Index hole) const;
+
+  bool HaveLevels() const { return !this->Levels.empty(); }
+
+  /**
+   * The level of the areas that a hole touches.
+   * @throws Error naming two of their lines that have different ones
+   */
+  AreaLevel LevelOf(const Mesh& mesh, const Holes& holes, Index hole) const;
+
+  /** What messages call the first line of a ring. */
+  const std::string& NameOfRing(Index ring) const { return this->Levels[ring].front().second; }
 
   /** The box of all rings. */
   Box Extent() const;
 
 private:
-  Areas(const std::vector<Point2>& points, const Rings& rings);
+  template <typename Visitor>
+  void VisitRings(const Mesh& mesh, const Holes& holes, Index hole, const Visitor& visit) const;
+  void FindOuters(const std::vector<Point2>& points);
+  std::vector<Index> RingsAround(const std::array<Point2, 3>& corner) const;
+  Index Innermost(const std::vector<Index>& rings) const;
 
+  std::vector<std::vector<Index>> Members; ///< the lines of each ring
+  Rings Joined;
   std::vector<Ends> Edges;    ///< of all rings
+  std::vector<Index> RingOf;  ///< one an edge
   std::vector<Point2> Starts; ///< the first point of each ring
   CellGrid EdgeGrid, StartGrid;
   RingLocator Inside;
+  // For levels alone:
+  std::vector<std::vector<std::pair<double, std::string>>> Levels; ///< of each ring, with its line
+  std::vector<Index> Depths; ///< how many rings are around each ring
+  std::vector<Index> Outers; ///< the ring that bounds the same area from outside
 };
 
 } // namespace elevation

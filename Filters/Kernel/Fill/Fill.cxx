@@ -401,7 +401,7 @@ private:
       FindNeighbors(patch, stages.Next());
       FindNearest(patch, stages.Next());
       const Values elevation = [this](Index id) { return this->Points.Elevation(id); };
-      if (this->Options.Method == Interpolation::Level)
+      if (this->Options.Method == Interpolation::Level || !std::isnan(report.Water.Given.Height))
       {
         const Index rim = this->GivenHoles.Rim(hole);
         std::vector<double> heights;
@@ -506,6 +506,17 @@ HoleReport MeasureHole(const Mesh& mesh, const Holes& holes, Index hole, const F
   if (options.Chosen && options.Chosen->Touch(mesh, holes, hole) != isToTouch)
   {
     report.Status = FillStatus::NotChosen;
+  }
+  if (report.Status == FillStatus::Filled && options.Chosen && options.Chosen->HaveLevels())
+  {
+    try
+    {
+      report.Water.Given = options.Chosen->LevelOf(mesh, holes, hole);
+    }
+    catch (const Error& error)
+    {
+      Fail(report, MessageOf(error));
+    }
   }
   if (!IsMeasurable(report.Size))
   {

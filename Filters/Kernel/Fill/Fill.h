@@ -74,6 +74,7 @@ struct FillOptions
 {
   std::shared_ptr<const Areas> Chosen; ///< that choose holes; none: all are filled
   AreaMode Mode = AreaMode::FillOnly;
+  std::string LevelArray; ///< what the levels of areas are called; empty: they have none
   /** Larger holes, by the diagonal of the rim's bounding box, are not filled; 0: no limit. */
   double MaximumHoleSize = 0.0;
   /** Holes with more edges, of rim and islands, are not filled; 0: no limit. */
@@ -124,6 +125,7 @@ struct WaterLevel
   double Height = std::numeric_limits<double>::quiet_NaN();
   double RimAbove = std::numeric_limits<double>::quiet_NaN(); ///< the highest of the rim above it
   double RimBelow = std::numeric_limits<double>::quiet_NaN(); ///< the lowest of the rim below it
+  AreaLevel Given;                                            ///< by areas that have levels
 };
 
 struct HoleReport
@@ -185,8 +187,8 @@ FillResult FillHoles(const Mesh& mesh, const PointView& points, Holes holes,
   const FillOptions& options, const WholeSurface& whole = WholeSurface());
 
 /**
- * The report of a hole by its edges alone: filled, unless MaximumHoleSize or MaximumHoleEdges
- * refuse it.
+ * The report of a hole by its edges alone: filled, unless MaximumHoleSize, MaximumHoleEdges or the
+ * areas refuse it; with the level that areas give.
  * @param[in] mesh  has the points of the holes
  */
 HoleReport MeasureHole(

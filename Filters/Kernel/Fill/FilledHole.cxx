@@ -91,10 +91,13 @@ void SetLevel(const Mesh& mesh, std::vector<double> rim, const FillOptions& opti
   rim.erase(
     std::remove_if(rim.begin(), rim.end(), [](double z) { return !std::isfinite(z); }), rim.end());
   std::sort(rim.begin(), rim.end());
+  WaterLevel& water = report.Water;
+  water.Height = water.Given.Height;
   if (!rim.empty())
   {
-    const double height = rim[(rim.size() - 1) / 10];
-    report.Water = { height, rim.back() - height, height - rim.front() };
+    water.Height = std::isnan(water.Height) ? rim[(rim.size() - 1) / 10] : water.Height;
+    water.RimAbove = rim.back() - water.Height;
+    water.RimBelow = water.Height - rim.front();
   }
   const std::size_t count = static_cast<std::size_t>(filled.Triangles.NumberOfNewVertices());
   SetElevations(std::vector<double>(count, report.Water.Height), filled.Triangles);

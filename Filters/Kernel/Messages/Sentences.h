@@ -226,6 +226,18 @@ ELEVATION_SENTENCE(LinesDisagree,
 ELEVATION_SENTENCE(AreasTouchNoHole,
   "None of the {holes} holes touches the areas, which are at {box}; so {outcome}. Are areas and "
   "surface in the same coordinates?");
+ELEVATION_SENTENCE(LevelsMissing,
+  "{holes} of the filled holes touch areas that have no number in {property:LevelArrayName} (NaN), "
+  "the first being {area}, so {property:Interpolation} decides on their elevations.");
+ELEVATION_SENTENCE(LevelsNotUsed,
+  "{property:LevelArrayName} is \"{name}\", but there are no areas whose holes are filled: it "
+  "needs "
+  "areas, and {property:AreaMode} FillOnly.");
+ELEVATION_SENTENCE(NoLevelArray,
+  "{property:LevelArrayName} is \"{name}\", but the areas have no cell array of single numbers "
+  "with this name{others}.");
+ELEVATION_SENTENCE(InfiniteLevel,
+  "{property:LevelArrayName} is \"{name}\", in which the {line} has an infinite level.");
 ELEVATION_SENTENCE(BordersMeet,
   "At {places} places a point lies inside a border edge or on another point, the first at point "
   "{point}; there the surface is not connected, so that an enclosed region may not be a hole. "
@@ -261,6 +273,10 @@ ELEVATION_SENTENCE(MoreThanAllPoints,
 ELEVATION_SENTENCE(SpacingTooSmall,
   "The spacing of {spacing} is below the precision of the coordinates; use a larger spacing.");
 ELEVATION_SENTENCE(PointsCoincide, "Inserted points coincide; use a larger spacing.");
+ELEVATION_SENTENCE(LevelsDiffer,
+  "It touches areas with different levels: that of {first} is {level}, that of {second} is "
+  "{other}. "
+  "Give both the same in {property:LevelArrayName}, or leave one out.");
 /** @} */
 
 /** @name Of a surface in pieces @{ */

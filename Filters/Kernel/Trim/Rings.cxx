@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
 #include <unordered_map>
 
 namespace elevation
@@ -30,7 +30,7 @@ RingLocator::RingLocator(const std::vector<Point2>& points, const Rings& rings)
 {
 }
 
-bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) const
+std::vector<Index> RingLocator::EdgesMet(const Point2& a, const Point2& b, const Point2& c) const
 {
   // p is the lowest corner, q the next one: near p, the triangle is above p and on the left of pq.
   // The point tested lies there, closer to p than anything else.
@@ -44,7 +44,7 @@ bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) co
   //  <-/-----p           their low end, without their high end) and pass p on the left. An edge
   //   low                through p goes up on one side of the triangle, which it does
   //                      not cut; q is on the same side, or on the edge.
-  bool isInside = false;
+  std::vector<Index> met;
   this->ByHeight.Visit(Point2{ 0.0, p.Y }, [&](Index i) {
     const bool isDown = this->Edges[i][1].Y < this->Edges[i][0].Y;
     const Point2 &low = this->Edges[i][isDown], &high = this->Edges[i][!isDown];
@@ -54,9 +54,17 @@ bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) co
     }
     const Sign side = Orientation(low, high, p);
     // An edge that goes up from p passes the triangle on the left or right, as it does not cut it.
-    isInside ^= side == Negative || (side == Zero && Orientation(p, high, q) == Negative);
+    if (side == Negative || (side == Zero && Orientation(p, high, q) == Negative))
+    {
+      met.push_back(i);
+    }
   });
-  return isInside;
+  return met;
+}
+
+bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) const
+{
+  return this->EdgesMet(a, b, c).size() % 2 != 0;
 }
 
 // ------------------------------------------------------------------------------------- given lines
@@ -70,18 +78,13 @@ bool IsBefore(const Ends& one, const Ends& other)
   return one[0] != other[0] ? IsLower(one[0], other[0]) : IsLower(one[1], other[1]);
 }
 
-std::string LineName(const BoundaryLines& lines, Index line)
-{
-  return (lines.IsPolygon[line] ? "polygon (cell " : "line (cell ") +
-    std::to_string(lines.Cells[line]) + ")";
-}
-
 /** A line without consecutive duplicate points; a closed one does not repeat its first point. */
 struct Piece
 {
   std::vector<Index> Points;
   Index Line;
   bool IsClosed;
+  std::vector<Index> Repeats; ///< lines that are the same ring
 };
 
 /** The lines as pieces, without those that have no point. @throws Error as JoinLines() */
@@ -98,7 +101,7 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines)
       if (!std::isfinite(p.X) || !std::isfinite(p.Y))
       {
         throw Error("The " + lines.Name + "'s " + NameOf(lines.Points, *point) + " of " +
-          LineName(lines, line) + " is not finite.");
+          NameOf(lines, line) + " is not finite.");
       }
       if (piece.Points.empty() || lines.Points[piece.Points.back()] != p)
       {
@@ -118,7 +121,7 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines)
     // A closed piece of two points would be an edge there and back.
     if (piece.IsClosed && piece.Points.size() < 3)
     {
-      throw Error("The " + lines.Name + "'s " + LineName(lines, line) + " has only " +
+      throw Error("The " + lines.Name + "'s " + NameOf(lines, line) + " has only " +
         std::to_string(piece.Points.size()) + " different point" +
         (piece.Points.size() == 1 ? "" : "s") + "; a ring has at least three.");
     }
@@ -152,25 +155,27 @@ Message DropRepeated(const BoundaryLines& lines, std::vector<Piece>& pieces)
     return std::lexicographical_compare(
       one.begin(), one.end(), other.begin(), other.end(), IsBefore);
   };
-  std::set<std::vector<Ends>, decltype(comesBefore)> known(comesBefore);
+  // Rings, and where they are among the kept ones.
+  std::map<std::vector<Ends>, std::size_t, decltype(comesBefore)> known(comesBefore);
   std::vector<Piece> kept;
   Index firstLine = None;
   for (Piece& piece : pieces)
   {
-    if (!piece.IsClosed || known.insert(SortedEdges(lines, piece)).second)
+    const auto ring =
+      piece.IsClosed ? known.emplace(SortedEdges(lines, piece), kept.size()).first : known.end();
+    if (ring == known.end() || ring->second == kept.size())
     {
       kept.push_back(std::move(piece));
+      continue;
     }
-    else if (firstLine == None)
-    {
-      firstLine = piece.Line;
-    }
+    kept[ring->second].Repeats.push_back(piece.Line);
+    firstLine = firstLine == None ? piece.Line : firstLine;
   }
   const std::size_t count = pieces.size() - kept.size();
   pieces = std::move(kept);
   return count == 0
     ? Message()
-    : MakeMessage<sentences::RingsRepeated>(lines.Name, count, "the " + LineName(lines, firstLine));
+    : MakeMessage<sentences::RingsRepeated>(lines.Name, count, "the " + NameOf(lines, firstLine));
 }
 
 /**
@@ -199,8 +204,13 @@ public:
     }
   }
 
-  /** The ring of a piece. @param[in,out] used  one flag per piece: whether it is in a ring */
-  std::vector<Index> RingFrom(std::size_t piece, std::vector<char>& used) const
+  /**
+   * The ring of a piece.
+   * @param[in,out] used     one flag per piece: whether it is in a ring
+   * @param[in,out] members  get the lines of the ring
+   */
+  std::vector<Index> RingFrom(
+    std::size_t piece, std::vector<char>& used, std::vector<Index>& members) const
   {
     std::vector<Index> ring;
     // From an end through the piece to its other end (end ^ 1), and on with that one's partner. The
@@ -208,6 +218,7 @@ public:
     for (std::size_t end = 2 * piece; !used[end / 2]; end = this->Partners[end ^ 1])
     {
       used[end / 2] = 1;
+      members.push_back(this->Pieces[end / 2].Line);
       for (std::size_t i = 0; i + 1 < this->Pieces[end / 2].Points.size(); ++i)
       {
         ring.push_back(this->PointAt(end, i));
@@ -238,7 +249,7 @@ private:
       if (count % 2 != 0)
       {
         throw Error("The " + this->Lines.Name +
-          " is not closed: " + LineName(this->Lines, piece.Line) + " ends at " +
+          " is not closed: " + NameOf(this->Lines, piece.Line) + " ends at " +
           NameOf(this->Lines.Points, this->PointAt(end, 0)) +
           (count == 1
               ? ", where no other line goes on."
@@ -307,7 +318,14 @@ void TakePoints(const PointView& points, BoundaryLines& lines)
   }
 }
 
-Rings JoinLines(const BoundaryLines& lines, Message* repeated)
+std::string NameOf(const BoundaryLines& lines, Index line)
+{
+  return (lines.IsPolygon[line] ? "polygon (cell " : "line (cell ") +
+    std::to_string(lines.Cells[line]) + ")";
+}
+
+Rings JoinLines(
+  const BoundaryLines& lines, Message* repeated, std::vector<std::vector<Index>>* members)
 {
   std::vector<Piece> pieces = MakePieces(lines);
   const Message ofRepeated = DropRepeated(lines, pieces);
@@ -325,18 +343,24 @@ Rings JoinLines(const BoundaryLines& lines, Message* repeated)
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
     // A piece that is in a ring already gives an empty one.
+    std::vector<Index> ofRing = pieces[i].Repeats;
+    ofRing.insert(ofRing.begin(), pieces[i].IsClosed ? 1 : 0, pieces[i].Line);
     const std::vector<Index> ring =
-      pieces[i].IsClosed ? pieces[i].Points : chains.RingFrom(i, used);
+      pieces[i].IsClosed ? pieces[i].Points : chains.RingFrom(i, used, ofRing);
     // A ring of two points is two lines along one edge, as of adjacent parcels: they cancel out.
     if (ring.size() > 2)
     {
       joined.Vertices.insert(joined.Vertices.end(), ring.begin(), ring.end());
       joined.Offsets.push_back(static_cast<Index>(joined.Vertices.size()));
+      if (members)
+      {
+        members->push_back(std::move(ofRing));
+      }
     }
   }
   if (joined.Vertices.empty())
   {
-    throw Error("The " + lines.Name + "'s " + LineName(lines, pieces.front().Line) +
+    throw Error("The " + lines.Name + "'s " + NameOf(lines, pieces.front().Line) +
       " makes a ring of only two points, and so do all others; a ring has at least three.");
   }
   return joined;

@@ -57,6 +57,9 @@ public:
    */
   bool IsInside(const Point2& a, const Point2& b, const Point2& c) const;
 
+  /** The rings' edges, by their numbers in EdgesOf(), that the ray from this point to the left meets. */
+  std::vector<Index> EdgesMet(const Point2& a, const Point2& b, const Point2& c) const;
+
 private:
   std::vector<Ends> Edges;
   CellGrid ByHeight; ///< the edges, all at x = 0
@@ -79,6 +82,9 @@ struct BoundaryLines
  */
 void TakePoints(const PointView& points, BoundaryLines& lines);
 
+/** What messages call a line: "line (cell 3)". */
+std::string NameOf(const BoundaryLines& lines, Index line);
+
 /**
  * Joins lines to rings. A line is a ring if it returns to its first point (the same id or the same
  * x,y). Other lines are chained where their ends meet; where more than two meet, so that the rings
@@ -86,11 +92,13 @@ void TakePoints(const PointView& points, BoundaryLines& lines);
  * lines that are the same ring, from whatever point and in whatever direction, the first counts.
  * Linear, plus a sort of the edges of closed lines, and of the lines that end at the same place.
  * @param[out] repeated  a warning of rings that are there more than once; else empty
+ * @param[out] members   the lines of each ring, also those that repeat it
  * @return rings of numbers of the lines' points; consecutive points differ in x,y
  * @throws Error naming the line and the point: a point not finite; an end that cannot be joined; a
  *         ring of fewer than three points; no line at all, or only lines that cancel out
  */
-Rings JoinLines(const BoundaryLines& lines, Message* repeated = nullptr);
+Rings JoinLines(const BoundaryLines& lines, Message* repeated = nullptr,
+  std::vector<std::vector<Index>>* members = nullptr);
 
 } // namespace elevation
 

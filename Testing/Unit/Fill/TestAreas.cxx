@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -62,6 +64,33 @@ Mesh Lake()
     "########" });
 }
 
+/** The level that areas give to the only hole of a surface, or the two lines that differ. */
+std::string LevelOf(
+  const Mesh& mesh, const std::vector<Ring>& rings, const std::vector<double>& levels)
+{
+  const Holes holes = FindHoles(mesh);
+  const Areas areas(Polygons(rings), levels);
+  EXPECT_TRUE(areas.HaveLevels());
+  try
+  {
+    const AreaLevel level = areas.LevelOf(mesh, holes, 0);
+    EXPECT_EQ(level.Without != None, std::isnan(level.Height));
+    return level.Without == None ? ToText(level.Height) : areas.NameOfRing(level.Without);
+  }
+  catch (const CodedError& error)
+  {
+    EXPECT_EQ(error.AsMessage().GetCode(), "LevelsDiffer");
+    std::string values;
+    for (const Message::Value& value : error.AsMessage().GetValues())
+    {
+      values += (values.empty() ? "" : ", ") + value.second;
+    }
+    return values;
+  }
+}
+
+constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
+
 /** What is filled of a hole on the left, from 1 to 2, and one on the right, from 4 to 7. */
 std::string Filled(const std::vector<Ring>& rings, FillOptions options)
 {
@@ -112,6 +141,80 @@ TEST(Areas, AreBoundedByTheEvenOddRule)
   EXPECT_TRUE(
     Touches(lake, { Square(-10, -10, 30), Square(-2, -2, 14), Square(-1, -1, 12) }));
   EXPECT_TRUE(Touches(lake, { Square(-10, -10, 30), Square(2, 2, 0.5) })) << "the edge counts";
+}
+
+TEST(Areas, GiveTheirLevelToAHoleThatTheyTouchInAnyWay)
+{
+  const Mesh lake = Lake();
+  const Ring away = Square(20, 20, 5);
+  for (const Ring& ring : { Square(-1, -1, 20), Square(1.5, 1.5, 0.5), Square(0.2, 0.2, 1.1),
+         Square(2.5, 2.5, 3), Square(0, 2.5, 1), Square(3, 3, 2), Square(1, 1, 6) })
+  {
+    EXPECT_EQ(LevelOf(lake, { ring, away }, { 5.5, 7.0 }), "5.5");
+    EXPECT_EQ(LevelOf(lake, { away, ring }, { 7.0, 5.5 }), "5.5");
+  }
+}
+
+TEST(Areas, HaveTheLevelOfTheirOuterRing)
+{
+  const Mesh lake = Lake();
+  const Ring all = Square(-10, -10, 40), inner = Square(2, 2, 0.5);
+  EXPECT_EQ(LevelOf(lake, { inner, all }, { 7.0, 5.0 }), "5") << "an island's ring in the hole";
+  EXPECT_EQ(LevelOf(lake, { inner, all }, { Unknown, 5.0 }), "5");
+  EXPECT_EQ(LevelOf(lake, { all, Square(-5, -5, 20), Square(-1, -1, 12) }, { 1.0, 2.0, 3.0 }), "3")
+    << "an area in an island";
+  // The hole touches the island's ring from within the island.
+  EXPECT_EQ(LevelOf(lake, { all, Square(1, 1, 6) }, { 5.0, 7.0 }), "5");
+  EXPECT_EQ(LevelOf(lake, { all, Square(-2, -2, 14), Square(4, 0.5, 1) }, { 5.0, 7.0, 9.0 }), "9")
+    << "not the area around the island";
+}
+
+TEST(Areas, WithACommonEdgeHaveTheirOwnLevels)
+{
+  const Mesh lake = Lake();
+  const Ring left = Square(-10, 1, 10), right = Square(0, 1, 10);
+  for (const bool isTurned : { false, true })
+  {
+    Ring one = left, other = right;
+    if (isTurned)
+    {
+      std::reverse(one.begin(), one.end());
+      std::reverse(other.begin() + 1, other.end());
+    }
+    EXPECT_EQ(LevelOf(lake, { one, other }, { 5.0, 7.0 }), "7");
+    EXPECT_EQ(LevelOf(lake, { other, one }, { 7.0, 5.0 }), "7");
+  }
+}
+
+TEST(Areas, OfDifferentLevelsAtAHoleAreNamed)
+{
+  const Mesh lake = Lake();
+  const Ring lower = Square(1.5, 1.5, 0.5), upper = Square(1.5, 5.5, 0.5),
+             none = Square(5, 1.5, 0.5);
+  EXPECT_EQ(LevelOf(lake, { lower, upper }, { 5.0, 7.25 }),
+    "the polygon (cell 0), 5, the polygon (cell 1), 7.25");
+  EXPECT_EQ(LevelOf(lake, { lower, none, upper }, { 5.0, Unknown, 5.0 }), "5");
+  EXPECT_EQ(LevelOf(lake, { none }, { Unknown }), "the polygon (cell 0)");
+  EXPECT_EQ(LevelOf(lake, { Square(-9, -9, 30), lower, none, upper }, { Unknown, 5.0, 6.0, 7.0 }),
+    "the polygon (cell 0)")
+    << "islands have no level";
+  EXPECT_EQ(LevelOf(lake, { Square(1.5, 1.5, 2), Square(2.5, 2.5, 2) }, { 5.0, 6.0 }),
+    "the polygon (cell 0), 5, the polygon (cell 1), 6")
+    << "rings that cross";
+  // The same ring twice, or of two lines.
+  EXPECT_EQ(LevelOf(lake, { lower, none, lower }, { 5.0, Unknown, 6.0 }),
+    "the polygon (cell 0), 5, the polygon (cell 2), 6");
+  BoundaryLines halves =
+    Polygons({ { { 2, 2 }, { 3, 2 }, { 3, 3 } }, { { 3, 3 }, { 2, 3 }, { 2, 2 } } });
+  halves.IsPolygon = { 0, 0 };
+  const Holes holes = FindHoles(lake);
+  EXPECT_EQ(Areas(halves, { 5.0, Unknown }).LevelOf(lake, holes, 0).Height, 5.0);
+  EXPECT_EQ(MessageFrom([&] {
+    Areas(halves, { 5.0, 6.0 }).LevelOf(lake, holes, 0);
+  }),
+    "It touches areas with different levels: that of the line (cell 0) is 5, that of the line "
+    "(cell "
+    "1) is 6. Give both the same in LevelArrayName, or leave one out.");
 }
 
 TEST(Areas, ChooseWhatIsFilledOrKeptOpen)
@@ -182,7 +285,7 @@ TEST(Areas, AreRefusedByTheNameOfTheirInput)
   EXPECT_EQ(refusal(open).find("The area input is not closed: line (cell 0) ends at point 0"), 0u)
     << refusal(open);
   Message repeated;
-  Areas(Polygons({ Square(0, 0, 1), Square(0, 0, 1) }), &repeated);
+  Areas(Polygons({ Square(0, 0, 1), Square(0, 0, 1) }), {}, &repeated);
   EXPECT_EQ(repeated.Words(),
     "Rings of the area input that are there more than once (1 more, the first of them the polygon "
     "(cell 1)) count once.");

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 
 using namespace elevation;
 using testing_surfaces::Draw;
@@ -50,6 +51,36 @@ TEST(Level, IsATenthPercentileOfTheRimAlone)
     EXPECT_TRUE(std::isnan(run.Patches.StandardErrors[i]));
     EXPECT_TRUE(std::isnan(run.Patches.HalfIntervals[i]));
   }
+}
+
+TEST(Level, IsThatOfTheAreasWhichHaveOne)
+{
+  BoundaryLines lines;
+  for (const Point2& p : { Point2{ 0, 0 }, Point2{ 9, 0 }, Point2{ 9, 9 } })
+  {
+    lines.Lines.Vertices.push_back(static_cast<Index>(lines.Points.Places.size()));
+    lines.Points.Places.push_back(p);
+  }
+  lines.Lines.Offsets.push_back(3);
+  lines.IsPolygon = { 1 };
+  lines.Cells = { 0 };
+  FillOptions options;                                     // whatever the method
+  const auto height = [](const Point2& p) { return p.X; }; // of the rim 1 to 7
+  for (const double level : { 4.5, 40.0 })
+  {
+    options.Chosen = std::make_shared<Areas>(lines, std::vector<double>{ level });
+    const Outcome run = Fill(Draw(Lake), options, height);
+    const WaterLevel& water = run.Patches.Reports[0].Water;
+    EXPECT_EQ(water.Height, level);
+    EXPECT_EQ(water.RimAbove, 7.0 - level) << "below 0 if all of the rim is below the level";
+    EXPECT_EQ(water.RimBelow, level - 1.0);
+    EXPECT_EQ(run.Patches.Points[2], level);
+  }
+  options.Chosen =
+    std::make_shared<Areas>(lines, std::vector<double>{ std::numeric_limits<double>::quiet_NaN() });
+  EXPECT_TRUE(std::isnan(Fill(Draw(Lake), options, height).Patches.Reports[0].Water.Height));
+  options.Method = Interpolation::Level;
+  EXPECT_EQ(Fill(Draw(Lake), options, height).Patches.Reports[0].Water.Height, 1.0);
 }
 
 TEST(Level, LeavesOutWhatIsNotFiniteAndHasNoneWithoutFiniteElevations)
