@@ -244,7 +244,7 @@ class Choice:
         if not any(named.values()):
             return False
         missing = [axis for axis in self.axes if not named[axis]]
-        free, are_likely = self.free_columns(sum(named.values(), []), len(missing)) if missing else ([], True)
+        free, are_likely = self.free_columns(sum(named.values(), []), missing) if missing else ([], True)
         known = ", ".join(f"{a} = {self.called(c[0])}" for a, c in named.items() if c)
         why = f"the names give {known}, but not {' and '.join(missing)}"
         if len(free) < len(missing):
@@ -272,8 +272,9 @@ class Choice:
         named, ranks = {}, {}
         for axis in self.axes:
             found = [i for i, m in enumerate(self.meanings) if m.axis == axis]
-            # Words of a height are an error, those of a time, which a traveltime may be called, are no height.
-            named[axis] = [i for i in found if i in self.numeric] or [i for i in found if self.meanings[i].rank != 4]
+            # Next to x and y, words of a time, which a traveltime may be called, are no height.
+            times = [i for i in found if self.meanings[i].rank == 4 and all(named.values())]
+            named[axis] = [i for i in found if i in self.numeric] or [i for i in found if i not in times]
             ranks[axis] = {self.meanings[i].rank for i in named[axis]}
         alike = ranks["x"] & ranks["y"]
         for axis, found in named.items():
@@ -288,15 +289,16 @@ class Choice:
         x, y = self.meanings[x], self.meanings[y]
         return bool(x.axis and y.axis) and x.beside == y.beside and abs(x.rank - y.rank) < 2
 
-    def free_columns(self, taken, count):
+    def free_columns(self, taken, missing):
         """Columns for axes that have no name of their own, and whether they are likely."""
+        most = HIGHEST if missing == ["z"] else math.inf
         free = [i for i in self.numeric if i not in taken and not self.meanings[i].axis]
         for roles in (("",), ("a measure", "a code")):
             others = [i for i in free if self.meanings[i].role in roles]
             if others:
                 is_other = self.times(others)
-                likely = [i for i in others if i not in is_other and not self.is_id(i) and self.high[i] < HIGHEST]
-                return (likely, roles == ("",)) if len(likely) >= count else (others, False)
+                likely = [i for i in others if i not in is_other and not self.is_id(i) and self.high[i] < most]
+                return (likely, roles == ("",)) if len(likely) >= len(missing) else (others, False)
         return [], False
 
     def look_at_names(self, missing):
