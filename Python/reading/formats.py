@@ -149,7 +149,7 @@ def is_gxf(head, path):
 def is_tekal(head, path):
     """Text of Delft3D: of each line a name, which names no columns, the counts of rows and columns, rows."""
     found = re.match(rb"(?:\*[^\n]*\n)*(?!DSAA|\s*[-+.\d])([^\n]{1,99})\n\s*([1-9]\d*)\s+([23])\s*\n", head)
-    if not found or known_names(found[1].decode("latin-1").split()):
+    if not found or known_names(found[1].decode("latin-1").split()) > 2:  # as "x y"
         return False
     with open(path, "rb") as stream:
         stream.seek(found.end())
@@ -295,7 +295,7 @@ FOREIGN = tuple(
         (rb"[^,\n]*,\s*\d{1,2}-[a-z]{3}-\d{2}[^\n]*\n\s*0,\s*-?\d+\.\d+,",
          "is a Surpac string file, with y before x: awk -F, '$1 + 0 > 0 {print $3, $2, $4}' {path} > points.txt takes x, "
          "y and z out of it"),
-        (rb"\s*\*?11\d{4}[+-]|CO,Nikon RAW|\s*\x02?00[NT]MS|(--[^\n]*\s+)*(JB,NM[^\n]*\s+MO|SP,PN|OC,OP|LS,HI)|"
+        (rb"\s*\*?11\d{4}[+-]|CO,Nikon RAW|\s*\x02?\s*00[NT]MS|(--[^\n]*\s+)*(JB,NM[^\n]*\s+MO|SP,PN|OC,OP|LS,HI)|"
          rb"\x02_'|S[DS] {6}\d|\s*0001 +[A-Z.]+\s*\n\s*0002 |(\d\d?=[^\n]*\n){4}|\{\d+ [^\n{}]*\}",
          "is a raw file of a total station (Leica GSI, Nikon, Sokkia, Topcon, Trimble, Zeiss): export x, y and z as text "
          "from the instrument or its program"),
