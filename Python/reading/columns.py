@@ -330,8 +330,9 @@ class Choice:
         if len(numbers) < count < self.width:
             are = "is" if len(numbers) == 1 else "are"
             self.ask([], f"{count} columns of numbers are needed, and there {are} {len(numbers)}")
-        if len(usable) < count and self.names and all(self.names):
-            others = self.listed([i for i in numbers if i not in usable])
+        others = [i for i in numbers if i not in usable]
+        if others and len(usable) < count and self.names and all(self.names):
+            others = self.listed(others)
             self.ask([numbers[:count]], f"{self.none_is_named()}, and {others} may be something else by the names")
         if self.width == count:
             self.in_their_order()
