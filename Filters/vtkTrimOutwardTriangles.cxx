@@ -138,7 +138,7 @@ elevation::TrimCounts TrimBlock(elevation::TrimOptions options, elevation::Block
   elevation::BoundaryLines lines;
   if (isGiven)
   {
-    lines = elevation::ToBoundaryLines(given, reading);
+    lines = elevation::ToBoundaryLines(given, reading, "boundary", elevation::NeedsZ(options));
   }
   options.Monitor = stages.Next();
   Trimmed trimmed = elevation::Trim(triangles.View, given ? &lines : nullptr, options);

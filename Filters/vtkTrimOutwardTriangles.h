@@ -184,7 +184,8 @@ public:
    *   beside the relief.
    * - OWN_ELEVATIONS: as STRAIGHT, but a point of the mesh with the x,y of a point of the boundary
    *   gets the z that it has in input 1: a surveyed shore. Of several points of the boundary with
-   *   the same x,y the first counts. Other point data stay.
+   *   the same x,y the first counts. Other point data stay. A point without z (NaN), which is none
+   *   otherwise, is an error then.
    *
    * Not used without a boundary, with RecoverBoundary off (but OWN_ELEVATIONS gives its z then,
    * too), and by INWARD_NORMAL, for which edges are straight: it looks at triangles of three
@@ -290,7 +291,7 @@ public:
    * which are "Words": NothingToTrim, InvalidThreads, InvalidPrecision, FoldsInSingle,
    * OriginalIdsReplaced, InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut,
    * BoundaryLeavesOutAll, RingsRepeated, BoundaryEnclosesNothing (reasons: NothingInRing,
-   * NothingBetweenRings, BoundaryElsewhere), StripsInLines, TooManyPointsInLines,
+   * NothingBetweenRings, BoundaryElsewhere), NoZOfBoundary, StripsInLines, TooManyPointsInLines,
    * NoSuchPointOfLine, ArraysLeftOut, OnOneRank (with a reason: NormalsNeedAll, PartsDoNotFit),
    * RankWaits, NotEnoughMemory, Stopped.
    */

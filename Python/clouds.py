@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonCore import vtkBitArray, vtkDataArray, vtkPoints, vtkSt
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
-from .messages import counted
+from .messages import ElevationSurfaceError, counted
 from .names import argument, option
 from .progress import no_progress
 from .ranks import extremes
@@ -340,6 +340,25 @@ def line_parts(data):
                 parts.append(numpy.vstack((part, part[:1])) if kind == "polygon" else part)
             first += 1
     return names, parts
+
+
+def check_ids(data, name):
+    """Raises ElevationSurfaceError for a line or polygon of vtkPolyData with a point that there is not.
+
+    name  of the property
+    """
+    first, count = data.GetNumberOfVerts(), data.GetNumberOfPoints()
+    for cells, kind in ((data.GetLines(), "line"), (data.GetPolys(), "polygon")):
+        ids, ends = (vtk_to_numpy(a) for a in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
+        wrong = numpy.flatnonzero((ids < 0) | (ids >= count))
+        if len(wrong):
+            cell = first + int(numpy.searchsorted(ends, wrong[0], "right")) - 1
+            raise ElevationSurfaceError(
+                f"{argument(name)}: point {ids[wrong[0]]} of {kind} (cell {cell}) does not exist; there are "
+                f"{counted(count, 'point')}",
+                name,
+            )
+        first += cells.GetNumberOfCells()
 
 
 def line_cells(data):

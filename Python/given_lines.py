@@ -5,12 +5,13 @@
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import coordinates_of, crs_of, make_points, line_parts, set_crs
+from .clouds import bare_lines, coordinates_of, crs_of, line_parts, make_points, set_crs
 from .draping import draped
 from .gdal_common import check_system, is_near, moving, name_of, same_system
 from .mending import mended
-from .messages import FileError
-from .names import option
+from .messages import ElevationSurfaceError, FileError, counted
+from .names import argument, option
+from .properties import BOUNDARY_EDGES
 from .ranks import extremes
 
 RINGS = ("boundary", "fill_only", "keep_open")  # lines that are closed
@@ -30,6 +31,7 @@ def fitted(cloud, lines, names, given, strict=False, ranks=None):
     Raises ElevationSurfaceError.
     """
     lines, notes = dict(lines), []
+    check_z(lines, names, given)
     for name in [name for name in RINGS if name in lines]:  # while places are still those of its file
         lines[name], more = mended(lines[name], names[name], strict, name)
         notes = notes + more
@@ -40,6 +42,20 @@ def fitted(cloud, lines, names, given, strict=False, ranks=None):
         lines["faults"], more = draped(cloud, lines["faults"], names["faults"], given, strict, ranks)
         notes += more
     return lines, notes
+
+
+def check_z(lines, names, given):
+    """Refuses a boundary without z where the surface is to have it. Arguments as of fitted()."""
+    if BOUNDARY_EDGES[given.get("boundary_edges", 0)] != "own-elevations" or "boundary" not in lines:
+        return
+    without = bare_lines(lines["boundary"])
+    if without.any():
+        first = line_parts(lines["boundary"])[0][int(numpy.argmax(without))]
+        raise ElevationSurfaceError(
+            f"{names['boundary']}: {numpy.count_nonzero(without):,} of {counted(len(without), 'line')} have no z "
+            f"(first: {first}), which {argument('boundary_edges')} own-elevations would give to the surface",
+            "boundary",
+        )
 
 
 def in_system(data, name, cloud, points_name, strict, ranks=None):

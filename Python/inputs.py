@@ -20,6 +20,7 @@ from .blocks import parts_of
 from .clouds import (
     Cloud,
     ReadOptions,
+    check_ids,
     coordinates_of,
     crs_of,
     grid_of,
@@ -275,4 +276,6 @@ def lines_of(data, what):
     parts = [part.data for part in parts_of(data)]
     if not parts or not all(isinstance(part, vtkPolyData) for part in parts):
         raise ElevationSurfaceError(f"{what}: lines or polygons (vtkPolyData) are needed", what)
+    for part in parts:
+        check_ids(part, what)
     return joined(parts)

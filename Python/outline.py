@@ -222,17 +222,22 @@ def is_sound(rings):
 
 
 def trial(rings, are_edges=False):
-    """Triangulates the points of rings, with these as edges or without, and trims along them.
+    """Triangulates the points of rings in x,y, with these as edges or without, and trims along them.
 
     Returns (errors of the filters, how often rings cross, the number of triangles).
     """
+    xyz = vtk_to_numpy(rings.GetPoints().GetData()).astype("f8")
+    xyz[:, 2] = 0.0  # z may be missing (NaN)
+    flat = rings.NewInstance()
+    flat.ShallowCopy(rings)
+    flat.SetPoints(make_points(xyz).GetPoints())
     mesh = vtkGridDelaunay2D()
-    mesh.SetInputData(rings)
+    mesh.SetInputData(flat)
     if are_edges:
-        mesh.SetSourceData(rings)
+        mesh.SetSourceData(flat)
     trim = vtkTrimOutwardTriangles()
     trim.SetInputConnection(mesh.GetOutputPort())
-    trim.SetBoundaryData(rings)
+    trim.SetBoundaryData(flat)
     steps = (mesh, mesh.GetExecutive(), trim, trim.GetExecutive())
     with Messages(*steps) as messages:
         trim.Update()

@@ -23,7 +23,7 @@ from . import reading
 from .clouds import Cloud, corner_flags, faults_note, heights_of, make_points, set_crs, slices
 from .description import DESCRIBED
 from .draping import check_given_z
-from .given_lines import in_system
+from .given_lines import check_z, in_system
 from .holes import BridgedVoids, hole_report
 from .lattice import lattice_of
 from .mending import mended
@@ -298,6 +298,7 @@ class Pieces:
     def read_lines(self):
         """({name: rings}, notes on them, faults), before points are read."""
         options, rings, notes, faults = self.options, self.run.read_rings(), [], None
+        check_z(rings, self.run.line_files(), options.properties)
         for name, data in rings.items():
             rings[name], more = mended(data, getattr(options, name), options.strict, name)
             notes = notes + more

@@ -17,9 +17,9 @@ PROPERTIES = {
     and (one.setter or one.step == "faults")
     and one.words["takes"] != "lines"
 }
-COLOURS, DUPLICATES, FAULTS_Z, INTERPOLATIONS, LATTICE_MODES, METHODS = (
+BOUNDARY_EDGES, COLOURS, DUPLICATES, FAULTS_Z, INTERPOLATIONS, LATTICE_MODES, METHODS = (
     DESCRIBED[name].choices
-    for name in ("colours", "duplicates", "faults_z", "interpolation", "lattice_mode", "method")
+    for name in ("boundary_edges", "colours", "duplicates", "faults_z", "interpolation", "lattice_mode", "method")
 )
 FEWER = ("maximum_number_of_points", "maximum_elevation_error")  # what makes a surface of few points
 

@@ -10,7 +10,7 @@ from typing import Optional
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.util.vtkConstants import VTK_DOUBLE
-from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdTypeArray
+from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from .clouds import coordinates_of, corner_flags, crs_of, make_points, slices
@@ -71,39 +71,29 @@ class Heights:
             delaunay.SetInputData(used_alone(surface))
             delaunay.Update()
             self.natural = query_of("the surface", delaunay.GetOutput())
-        self.elevations = coordinates_of(surface)[:, 2].astype("f8")
         filled = holes_of(surface)
-        errors = surface.GetPointData().GetArray("FilledError") if (filled >= 0).any() else None
-        self.errors = None if errors is None else vtk_to_numpy(errors)
-        self.values = [self.elevations] if self.errors is None else [self.elevations, self.errors]
+        self.errors = surface.GetPointData().GetArray("FilledError") if (filled >= 0).any() else None
 
     def at(self, xy, progress=no_progress):
         """(elevations, errors or None) at (n, 2) places, NaN outside."""
-        layers = [numpy.empty(len(xy)) for _ in self.values]
+        layers = [numpy.empty(len(xy)) for _ in range(1 if self.errors is None else 2)]
         for part in slices(len(xy), MOST_AT_ONCE):
             places = numpy.ascontiguousarray(xy[part], dtype="f8")
-            found = weighted(self.linear, False, places, self.values)
+            found = interpolated(self.linear, False, places, self.errors)
             if self.natural:
                 inside = ~numpy.isnan(found[0])
-                found[0][inside] = weighted(self.natural, True, places[inside], [self.elevations])[0]
+                found[0][inside] = interpolated(self.natural, True, places[inside])[0]
             for layer, values in zip(layers, found):
                 layer[part] = values
             progress(part.stop / len(xy))
         return layers[0], layers[1] if len(layers) > 1 else None
 
 
-def weighted(query, are_natural, places, of_points):
-    """[(n,)] of each of several values of points, interpolated at places; NaN where no triangle is."""
-    offsets, points, weights = vtkIdTypeArray(), vtkIdTypeArray(), vtkDoubleArray()
-    raise_error("places", query.FindWeights(numpy_to_vtk(places), are_natural, offsets, points, weights))
-    offsets, points, weights = (vtk_to_numpy(array) for array in (offsets, points, weights))
-    found = numpy.diff(offsets) > 0
-    results = [numpy.full(len(places), numpy.nan) for _ in of_points]
-    for result, values in zip(results, of_points) if found.any() else ():
-        # What is not known does not count where its weight is 0.
-        products = numpy.where(weights == 0.0, 0.0, weights * values[points])
-        result[found] = numpy.add.reduceat(products, offsets[:-1][found])
-    return results
+def interpolated(query, are_natural, places, values=None):
+    """[(n,)] elevations at places, NaN where no triangle is, and values of points, a vtkDataArray or None."""
+    elevations, others = vtkDoubleArray(), vtkDoubleArray()
+    raise_error("places", query.Interpolate(numpy_to_vtk(places), are_natural, values, elevations, others))
+    return [vtk_to_numpy(array) for array in (elevations, others)[: 1 if values is None else 2]]
 
 
 def used_alone(surface):

@@ -20,7 +20,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkRectilinearGrid,
 )
 
-from .clouds import Cloud, coordinates_of, make_lines, make_points
+from .clouds import Cloud, check_ids, coordinates_of, make_lines, make_points
 from .description import KINDS, listing, view_angles
 from .given_lines import RINGS, fitted
 from .several_heights import check_heights, heights_on_ranks
@@ -109,6 +109,7 @@ def as_lines(lines: Lines, what: str, are_rings: bool) -> vtkPolyData:
     not.
     """
     if isinstance(lines, vtkPolyData):
+        check_ids(lines, what)
         return lines
     if isinstance(lines, (str, os.PathLike)):
         reader = "read_boundary" if are_rings else "read_faults"

@@ -102,20 +102,8 @@ std::vector<double> SurfaceAt(const PointView& points, DelaunayOptions options,
   }
   mesh.Triangles.assign(made.Triangles.begin(), made.Triangles.end());
   const PlaceFinder finder(mesh, threads, stages.Next());
-  const PlaceWeights found = finder.Find(places, false, threads, stages.Next());
-  std::vector<double> elevations(places.size(), std::nan(""));
-  for (std::size_t i = 0; i < places.size(); ++i)
-  {
-    if (found.Offsets[i] < found.Offsets[i + 1])
-    {
-      elevations[i] = 0.0;
-    }
-    for (std::size_t k = found.Offsets[i]; k < found.Offsets[i + 1]; ++k)
-    {
-      elevations[i] += found.Weights[k] * points.Elevation(found.Vertices[k]);
-    }
-  }
-  return elevations;
+  return ValuesAt(finder.Find(places, false, threads, stages.Next()),
+    [&points](Index vertex) { return points.Elevation(vertex); });
 }
 
 /** Moves lines with points without z behind all others, which keep their order, as they do. */
@@ -154,26 +142,6 @@ bool HasPointsWithoutZ(vtkPolyData* lines)
     });
   });
   return has;
-}
-
-vtkSmartPointer<vtkPolyData> WithAnyZ(vtkPolyData* lines)
-{
-  if (!HasPointsWithoutZ(lines))
-  {
-    return lines;
-  }
-  auto level = vtkSmartPointer<vtkPolyData>::New();
-  level->ShallowCopy(lines);
-  vtkNew<vtkPoints> points;
-  points->DeepCopy(lines->GetPoints());
-  for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)
-  {
-    double p[3];
-    points->GetPoint(id, p);
-    points->SetPoint(id, p[0], p[1], std::isnan(p[2]) ? 0.0 : p[2]);
-  }
-  level->SetPoints(points);
-  return level;
 }
 
 vtkIdType TakeElevations(const PointView& points, const DelaunayOptions& options,

@@ -24,9 +24,6 @@ namespace elevation
 /** Whether any point of lines has x and y, but no z. */
 bool HasPointsWithoutZ(vtkPolyData* lines);
 
-/** Lines to drape, whose z does not count: those without z get 0. The lines themselves if all have one. */
-vtkSmartPointer<vtkPolyData> WithAnyZ(vtkPolyData* lines);
-
 /**
  * Gives elevations to the points of lines that have none: at the x,y of a line's point that has one,
  * that; else the surface's. Lines with such points come after all others, so that these count where

@@ -5,12 +5,12 @@
 #include "MeshConversion.h"
 
 #include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace elevation
 {
@@ -27,9 +27,13 @@ SurfaceQuery::SurfaceQuery(vtkPolyData* surface)
   }
 }
 
-void SurfaceQuery::FindWeights(vtkDataArray* places, bool areNatural, const Progress& progress,
-  vtkIdTypeArray* offsets, vtkIdTypeArray* vertices, vtkDoubleArray* weights)
+std::vector<std::vector<double>> SurfaceQuery::Interpolate(vtkDataArray* places, bool areNatural,
+  const std::vector<vtkDataArray*>& arrays, const Progress& progress)
 {
+  for (vtkDataArray* const array : arrays)
+  {
+    this->CheckCount(array);
+  }
   if (places->GetNumberOfComponents() != 2)
   {
     throw Error("Places need x and y, two components; the array has " +
@@ -53,26 +57,35 @@ void SurfaceQuery::FindWeights(vtkDataArray* places, bool areNatural, const Prog
   }
   const PlaceWeights found =
     this->Finder->Find(positions, areNatural, AvailableThreads(), stages.Next());
-  offsets->SetNumberOfValues(static_cast<vtkIdType>(found.Offsets.size()));
-  std::copy(found.Offsets.begin(), found.Offsets.end(), offsets->GetPointer(0));
-  vertices->SetNumberOfValues(static_cast<vtkIdType>(found.Vertices.size()));
-  std::copy(found.Vertices.begin(), found.Vertices.end(), vertices->GetPointer(0));
-  weights->SetNumberOfValues(static_cast<vtkIdType>(found.Weights.size()));
-  std::copy(found.Weights.begin(), found.Weights.end(), weights->GetPointer(0));
+  std::vector<std::vector<double>> lists;
+  lists.push_back(ValuesAt(found, [this](Index point) { return this->Elevations[point]; }));
+  for (vtkDataArray* const array : arrays)
+  {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    lists.push_back(ValuesAt(found,
+      [array, unknown](Index point) { return array ? array->GetComponent(point, 0) : unknown; }));
+  }
+  return lists;
+}
+
+void SurfaceQuery::CheckCount(vtkDataArray* values) const
+{
+  const vtkIdType count = static_cast<vtkIdType>(this->Elevations.size());
+  if (values && values->GetNumberOfTuples() != count)
+  {
+    throw Error("Values are needed for each of the " + std::to_string(count) +
+      " points; the array has " + std::to_string(values->GetNumberOfTuples()) + ".");
+  }
 }
 
 void SurfaceQuery::CompareWith(const SurfaceQuery* other, double level, vtkDataArray* values,
   const Progress& progress, vtkDoubleArray* result, vtkPolyData* map) const
 {
+  this->CheckCount(values);
   std::vector<double> own;
   for (vtkIdType i = 0; values && i < values->GetNumberOfTuples(); ++i)
   {
     own.push_back(values->GetComponent(i, 0));
-  }
-  if (values && own.size() != this->Elevations.size())
-  {
-    throw Error("Values are needed for each of the " + std::to_string(this->Elevations.size()) +
-      " points; the array has " + std::to_string(own.size()) + ".");
   }
   const ElevatedMesh first{ this->Surface, this->Elevations };
   std::unique_ptr<ElevatedMesh> second;

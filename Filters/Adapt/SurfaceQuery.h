@@ -27,13 +27,16 @@ public:
   explicit SurfaceQuery(vtkPolyData* surface);
 
   /**
-   * Of places, arrays of x and y, the vertices and weights of PlaceWeights.h.
-   * @param[out] offsets  one more than places: where those of each begin
-   * @throws Error if the array has other than two components, or natural neighbours are asked for in
-   *         triangles that are not a mesh; Aborted, std::bad_alloc
+   * The elevations at places, then the values of point arrays there, by the weights of
+   * PlaceWeights.h; NaN outside.
+   * @param[in] places  tuples of x and y
+   * @param[in] arrays  of numbers, one a point; of nullptr the values are NaN
+   * @throws Error if places have other than two components, an array has not a value for each point,
+   *         or natural neighbours are asked for in triangles that are not a mesh; Aborted,
+   *         std::bad_alloc
    */
-  void FindWeights(vtkDataArray* places, bool areNatural, const Progress& progress,
-    vtkIdTypeArray* offsets, vtkIdTypeArray* vertices, vtkDoubleArray* weights);
+  std::vector<std::vector<double>> Interpolate(vtkDataArray* places, bool areNatural,
+    const std::vector<vtkDataArray*>& arrays, const Progress& progress);
 
   /**
    * What lies between this surface and another one, or a level: see Overlay.h.
@@ -47,6 +50,8 @@ public:
     const Progress& progress, vtkDoubleArray* result, vtkPolyData* map) const;
 
 private:
+  void CheckCount(vtkDataArray* values) const;
+
   Mesh Surface;
   std::vector<double> Elevations;
   std::unique_ptr<PlaceFinder> Finder; ///< made when places are asked for first

@@ -52,7 +52,7 @@ void CheckOptions(const TrimOptions& options)
  * boundary inside of a large data set does not keep all of it.
  */
 BoundaryLines ToBoundaryLines(
-  vtkPolyData* boundary, const Progress& progress, const std::string& name)
+  vtkPolyData* boundary, const Progress& progress, const std::string& name, bool needsZ)
 {
   const DataSetPoints points = ViewPoints(boundary);
   BoundaryLines lines;
@@ -63,10 +63,15 @@ BoundaryLines ToBoundaryLines(
       const Index id = static_cast<Index>(line.Ids[i]);
       // Only points that lines use: others of the data set may be what they like.
       const Point2 p = points.View.At(id);
-      if (!std::isfinite(p.X) || !std::isfinite(p.Y) || !std::isfinite(points.View.Elevation(id)))
+      const double z = points.View.Elevation(id);
+      if (!std::isfinite(p.X) || !std::isfinite(p.Y) || std::isinf(z))
       {
         throw Error("Point " + std::to_string(id) + " of the " + Possessive(name) + " cell " +
           std::to_string(line.Cell) + " is not finite.");
+      }
+      if (needsZ && std::isnan(z))
+      {
+        throw MakeError<sentences::NoZOfBoundary>(id, Possessive(name), line.Cell);
       }
       lines.Lines.Vertices.push_back(id);
     }
@@ -89,8 +94,7 @@ vtkIdType SplitSurface(
   vtkNew<vtkPolyData> before;
   before->ShallowCopy(surface);
   const DataSetTriangles triangles = ViewTriangles(before);
-  const vtkSmartPointer<vtkPolyData> elevated = WithAnyZ(constraints);
-  const BoundaryLines lines = ToBoundaryLines(elevated, stages.Next(), "constraints");
+  const BoundaryLines lines = ToBoundaryLines(constraints, stages.Next(), "constraints");
   TrimOptions options;
   options.ReturnParents = false;
   options.NumberOfThreads = threads;
@@ -213,7 +217,7 @@ void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBounda
     marks->SetValue(point, 1);
   }
   data->AddArray(marks);
-  if (options.Edges != BoundaryEdges::OwnElevations)
+  if (!NeedsZ(options))
   {
     return;
   }

@@ -25,12 +25,18 @@ namespace elevation
 void CheckOptions(const TrimOptions& options);
 
 /**
- * Lines and polygons, and the points that they use.
+ * Lines and polygons, and the points that they use. z may be NaN, where it is not needed.
  * @param[in] name  what messages call them
- * @throws Error naming the cell
+ * @throws Error naming the cell and the point
  */
 BoundaryLines ToBoundaryLines(
-  vtkPolyData* boundary, const Progress& progress, const std::string& name = "boundary");
+  vtkPolyData* boundary, const Progress& progress, const std::string& name, bool needsZ = false);
+
+/** Whether the surface gets the z of the boundary. */
+inline bool NeedsZ(const TrimOptions& options)
+{
+  return options.Edges == BoundaryEdges::OwnElevations;
+}
 
 /**
  * Splits the triangles of a surface along lines, see SplitAlong(): its points, their data and its

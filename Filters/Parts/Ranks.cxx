@@ -31,6 +31,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace elevation
@@ -51,7 +52,9 @@ bool AreEqual(vtkPoints* one, vtkPoints* other)
     double p[3], q[3];
     one->GetPoint(i, p);
     other->GetPoint(i, q);
-    isEqual = std::equal(p, p + 3, q);
+    // A z that is missing (NaN) on both is the same.
+    isEqual = std::equal(
+      p, p + 3, q, [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); });
   }
   return isEqual;
 }

@@ -143,7 +143,7 @@ void TrimParts::Read(const Progress& progress)
     if (this->BoundaryData && part == this->Crew.FirstOwn())
     {
       CheckArrays(this->BoundaryData, "The boundary's");
-      this->Lines = ToBoundaryLines(this->BoundaryData, ofPart);
+      this->Lines = ToBoundaryLines(this->BoundaryData, ofPart, "boundary", NeedsZ(this->Options));
     }
     if (!isInFiles)
     {

@@ -9,7 +9,6 @@
 #include "vtkCellArrayIterator.h"
 #include "vtkCommunicator.h"
 #include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -29,38 +28,19 @@ namespace elevation
 namespace
 {
 constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
 // What vtkFillElevationHoles says of elevations.
 constexpr const char* FilledNames[] = { "FilledError", "FilledLow", "FilledHigh" };
 
-/** The values at places: those of vertices, by their weights; -infinity without any. */
-vtkSmartPointer<vtkDoubleArray> Weighted(vtkIdTypeArray* offsets, vtkIdTypeArray* vertices,
-  vtkDoubleArray* weights, const std::function<double(vtkIdType)>& valueOf)
-{
-  const vtkIdType count = offsets->GetNumberOfValues() - 1;
-  auto values = vtkSmartPointer<vtkDoubleArray>::New();
-  values->SetNumberOfValues(count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    const vtkIdType begin = offsets->GetValue(i), end = offsets->GetValue(i + 1);
-    double value = begin < end ? 0.0 : -Infinity;
-    for (vtkIdType k = begin; k < end; ++k)
-    {
-      // What is not known does not count where its weight is 0.
-      const double weight = weights->GetValue(k);
-      value += weight != 0.0 ? weight * valueOf(vertices->GetValue(k)) : 0.0;
-    }
-    values->SetValue(i, std::isnan(value) ? -Infinity : value); // as NaN has no order
-  }
-  return values;
-}
 } // namespace
 
 SampledSurface::SampledSurface(vtkPolyData* surface, vtkMultiProcessController* controller)
   : Surface(surface)
   , Controller(controller)
 {
-  // Largest of all: so low ends are turned over.
-  double ends[] = { -Infinity, -Infinity, -Infinity, -Infinity };
+  // Largest of all: so low ends are turned over. The last is whether there is a triangle.
+  double ends[] = { -Infinity, -Infinity, -Infinity, -Infinity,
+    surface->GetNumberOfPolys() > 0 ? 1.0 : 0.0 };
   const auto each = vtk::TakeSmartPointer(surface->GetPolys()->NewIterator());
   for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell())
   {
@@ -79,13 +59,16 @@ SampledSurface::SampledSurface(vtkPolyData* surface, vtkMultiProcessController* 
       }
     }
   }
-  this->TakeLargest(ends, 4);
+  this->TakeLargest(ends, 5);
   this->Extent.Low = { -ends[0], -ends[1] };
   this->Extent.High = { ends[2], ends[3] };
   if (!(this->Extent.Low.X < this->Extent.High.X && this->Extent.Low.Y < this->Extent.High.Y))
   {
-    throw Error("The input has no triangles, so there is no surface. Points alone are triangulated "
-                "first, by Reconstruct Elevation Surface.");
+    throw Error(ends[4] > 0.0
+        ? "The input has no triangle with an area in x,y, so there is no surface over x,y."
+        : "The input has no triangles, so there is no surface. Points alone are triangulated "
+          "first, "
+          "by Reconstruct Elevation Surface.");
   }
 }
 
@@ -146,27 +129,8 @@ vtkIdType SampledSurface::Sample(
   vtkDoubleArray* places, const Progress& progress, vtkPointData* values) const
 {
   const vtkIdType count = places->GetNumberOfTuples();
-  vtkNew<vtkIdTypeArray> offsets, vertices;
-  vtkNew<vtkDoubleArray> weights;
-  this->Agree([&] {
-    if (this->Surface->GetNumberOfPolys() > 0)
-    {
-      SurfaceQuery(this->Surface).FindWeights(places, false, progress, offsets, vertices, weights);
-    }
-    else
-    {
-      offsets->SetNumberOfValues(count + 1);
-      offsets->FillValue(0);
-    }
-  });
-  const auto add = [&](const char* name, const std::function<double(vtkIdType)>& valueOf) {
-    const auto found = Weighted(offsets, vertices, weights, valueOf);
-    this->TakeLargest(found->GetPointer(0), count);
-    std::replace(found->GetPointer(0), found->GetPointer(0) + count, -Infinity, std::nan(""));
-    found->SetName(name);
-    values->AddArray(found);
-    return found;
-  };
+  std::vector<const char*> names;    // of those that any rank has
+  std::vector<vtkDataArray*> arrays; // of this rank
   for (const char* const name : FilledNames)
   {
     vtkDataArray* const array = this->Surface->GetPointData()->GetArray(name);
@@ -174,15 +138,39 @@ vtkIdType SampledSurface::Sample(
     this->TakeLargest(&isThere, 1);
     if (isThere > 0.0)
     {
-      add(
-        name, [array](vtkIdType id) { return array ? array->GetComponent(id, 0) : std::nan(""); });
+      names.push_back(name);
+      arrays.push_back(array);
     }
   }
-  const auto elevations =
-    add(ElevationName, [this](vtkIdType id) { return this->Surface->GetPoint(id)[2]; });
+  // Elevations first.
+  std::vector<std::vector<double>> found;
+  this->Agree([&] {
+    found.assign(names.size() + 1, std::vector<double>(static_cast<std::size_t>(count), Unknown));
+    if (this->Surface->GetNumberOfPolys() > 0)
+    {
+      found = SurfaceQuery(this->Surface).Interpolate(places, false, arrays, progress);
+    }
+  });
+  const auto add = [&](const char* name, const std::vector<double>& own) {
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(name);
+    array->SetNumberOfValues(count);
+    double* const numbers = array->GetPointer(0);
+    // NaN has no order, so the least number stands for it.
+    std::replace_copy_if(
+      own.begin(), own.end(), numbers, [](double z) { return std::isnan(z); }, -Infinity);
+    this->TakeLargest(numbers, count);
+    std::replace(numbers, numbers + count, -Infinity, Unknown);
+    values->AddArray(array);
+    return count - std::count_if(numbers, numbers + count, [](double z) { return std::isnan(z); });
+  };
+  for (std::size_t i = 0; i < names.size(); ++i)
+  {
+    add(names[i], found[i + 1]);
+  }
+  const vtkIdType inside = add(ElevationName, found[0]);
   values->SetActiveScalars(ElevationName);
-  return std::count_if(elevations->GetPointer(0), elevations->GetPointer(0) + count,
-    [](double value) { return !std::isnan(value); });
+  return inside;
 }
 
 Progress ProgressOfSampling(vtkAlgorithm* filter)

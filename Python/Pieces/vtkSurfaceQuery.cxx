@@ -7,12 +7,13 @@
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
+#include <algorithm>
 #include <exception>
 #include <new>
+#include <vector>
 
 namespace
 {
@@ -59,11 +60,25 @@ std::string vtkSurfaceQuery::SetSurface(vtkPolyData* surface)
     [&](const auto&) { this->Query = std::make_unique<elevation::SurfaceQuery>(surface); });
 }
 
-std::string vtkSurfaceQuery::FindWeights(vtkDataArray* places, bool areNatural,
-  vtkIdTypeArray* offsets, vtkIdTypeArray* points, vtkDoubleArray* weights)
+std::string vtkSurfaceQuery::Interpolate(vtkDataArray* places, bool areNatural,
+  vtkDataArray* values, vtkDoubleArray* elevations, vtkDoubleArray* interpolated)
 {
+  const auto copy = [](const std::vector<double>& from, vtkDoubleArray* to) {
+    to->SetNumberOfValues(static_cast<vtkIdType>(from.size()));
+    std::copy(from.begin(), from.end(), to->GetPointer(0));
+  };
   return !this->Query ? NoSurface : this->Try([&](const auto& report) {
-    this->Query->FindWeights(places, areNatural, report, offsets, points, weights);
+    std::vector<vtkDataArray*> arrays;
+    if (values)
+    {
+      arrays.push_back(values);
+    }
+    const auto found = this->Query->Interpolate(places, areNatural, arrays, report);
+    copy(found[0], elevations);
+    if (values)
+    {
+      copy(found[1], interpolated);
+    }
   });
 }
 

@@ -28,7 +28,6 @@ class SurfaceQuery;
 VTK_ABI_NAMESPACE_BEGIN
 class vtkDataArray;
 class vtkDoubleArray;
-class vtkIdTypeArray;
 class vtkPolyData;
 
 class VTKELEVATIONSURFACEPIECES_EXPORT vtkSurfaceQuery : public vtkObject
@@ -45,13 +44,13 @@ public:
   std::string SetSurface(vtkPolyData* surface);
 
   /**
-   * Of which points the elevation at each place is made, and how much they count: those of place i
-   * are offsets[i] to offsets[i + 1] - 1 of points and weights, none where no triangle has it.
+   * The elevations at places, NaN where no triangle has them.
    * @param places      tuples of x and y
-   * @param areNatural  the natural neighbours of a Delaunay triangulation, not a triangle's corners
+   * @param areNatural  by the natural neighbours of a Delaunay triangulation, not a triangle's corners
+   * @param values      of points, that are interpolated in the same way; or None
    */
-  std::string FindWeights(vtkDataArray* places, bool areNatural, vtkIdTypeArray* offsets,
-    vtkIdTypeArray* points, vtkDoubleArray* weights);
+  std::string Interpolate(vtkDataArray* places, bool areNatural, vtkDataArray* values,
+    vtkDoubleArray* elevations, vtkDoubleArray* interpolated);
 
   /**
    * What lies between this surface and another one. For each triangle a tuple: its area; the area

@@ -6,6 +6,7 @@ Every reader returns a Cloud or vtkPolyData. Every problem is a FileError whose 
 the user.
 """
 
+import contextlib
 import os
 from typing import Any, Union
 
@@ -203,4 +204,10 @@ def text_faults(path, progress):
 
 
 def text_boundary(path, progress):
-    return text_lines(path, read_table(path, 2, progress), "a boundary point")
+    """x and y; and z, where three columns are read as the same x and y with a z."""
+    table = read_table(path, 2, progress)
+    with contextlib.suppress(FileError):
+        with_z = read_table(path, 3)
+        if numpy.array_equal(with_z[0][:, :2], table[0], equal_nan=True):
+            table = with_z
+    return text_lines(path, table, "a boundary point")

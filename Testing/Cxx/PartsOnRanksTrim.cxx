@@ -75,7 +75,8 @@ std::vector<Corners> TrimmedAtOnce(
   points.Double = cloud.front().data();
   points.Count = static_cast<Index>(cloud.size());
   const Triangulation whole = Triangulate(points, DelaunayOptions());
-  const BoundaryLines lines = boundary ? ToBoundaryLines(boundary, Progress()) : BoundaryLines();
+  const BoundaryLines lines =
+    boundary ? ToBoundaryLines(boundary, Progress(), "boundary") : BoundaryLines();
   TriangleList list;
   list.Points = points;
   list.Corners = whole.Triangles.data();

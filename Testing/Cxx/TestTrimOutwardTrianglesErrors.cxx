@@ -19,6 +19,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <string>
 
 namespace
@@ -86,7 +87,8 @@ void TestErrors()
   vertices->InsertNextCell({ 0 });
   vertices->InsertNextCell({ 1, 2 });
   mixed->SetVerts(vertices);
-  mixed->GetPoints()->SetPoint(4, 3, 5, std::nan(""));
+  const double infinite = std::numeric_limits<double>::infinity();
+  mixed->GetPoints()->SetPoint(4, 3, 5, infinite);
   ExpectError(mesh, mixed, true, "Point 4 of the boundary's cell 3 is not finite");
   vtkNew<vtkCellArray> polygon;
   polygon->InsertNextCell({ 3, 81, 5 });
@@ -100,7 +102,7 @@ void TestErrors()
   mixed->SetLines(notClosed);
   ExpectError(mesh, mixed, true, "line (cell 3) ends at point 3 (1, 4)");
   auto heights = MakeRings({ { { 0, 0 }, { 7, 2 }, { 7, 0 } } });
-  heights->GetPoints()->SetPoint(1, 7, 2, std::nan(""));
+  heights->GetPoints()->SetPoint(1, 7, infinite, 1.0);
   ExpectError(mesh, heights, true, "Point 1 of the boundary's cell 0 is not finite");
 
   // Data that do not fit: of the mesh, of its cells, of the boundary.

@@ -116,9 +116,17 @@ for closed in (False, True):
 # ---- what is wrong -------------------------------------------------------------------------------
 
 alone = data_source(polyline(*corners))
+wall = data_source(polyline((0, 0, 0), (1, 1, 0), (0.5, 0.5, 9), closed=True))
+meridian = data_source(polyline((5, 0, 0), (5, 1, 0), (5, 2, 7), closed=True))
+wrong = polyline(*corners)
+wrong.GetLines().ReplaceCellAtId(0, 3, [0, 1, 7])
 for source, words in (
     (simple.ElevationGrid(Input=alone), "The input has no triangles"),
     (simple.ElevationProfile(Input=alone), "The input has no triangles"),
+    (simple.ElevationGrid(Input=meridian), "The input has no triangle with an area in x,y"),
+    (simple.ElevationProfile(Input=meridian), "The input has no triangle with an area in x,y"),
+    (simple.ElevationProfile(Input=wall), "Cell 0"),
+    (simple.ElevationProfile(Input=surface, Line=data_source(wrong)), "Point 7 of the line does not exist; there are 3 points."),
     (simple.ElevationGrid(Input=surface, Dimensions=[1, 7]), "Dimensions are 1 and 7; they must be 2 or more"),
     (simple.ElevationGrid(Input=surface, Dimensions=[2**30, 2**30]), "250000000 nodes at most"),
     (simple.ElevationProfile(Input=surface, Resolution=0), "Resolution is 0; it must be 1 to 10000000"),

@@ -16,7 +16,8 @@ from vtkelevationsurface import reading, reconstruct, vtkGridDelaunay2D
 from vtkelevationsurface.clouds import Cloud, bare_lines, make_lines, make_points, line_parts
 from vtkelevationsurface.draping import Surface, draped
 from vtkelevationsurface.mending import length_of, mended
-from vtkelevationsurface.messages import ElevationSurfaceError
+from vtkelevationsurface.algorithms import ReconstructElevationSurface
+from vtkelevationsurface.messages import ElevationSurfaceError, Messages
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 gdal.UseExceptions()
@@ -229,6 +230,51 @@ class Crossings(unittest.TestCase):
                 reconstruct(SHEET, boundary=self.BOW)
             ring = circle(5.5, 5.5, 4.0, 100)[:-1]
             self.assertEqual(len(quietly(SHEET, boundary=make_lines([ring]))[1]), 1)
+
+
+class OfArraysAndVTK(unittest.TestCase):
+    def test_z_of_a_boundary_may_be_missing(self):
+        cloud = numpy.random.RandomState(4).rand(400, 3) * (30, 30, 2)
+        ring = numpy.array([(5.0, 5), (25, 5), (25, 25), (15, 18), (5, 25)])
+        eight = numpy.array([(5.0, 5), (25, 25), (25, 5), (5, 25)])  # is mended
+        for corners in (ring, eight):
+            some = numpy.column_stack((corners, [9.0, numpy.nan, 3.0, numpy.nan, 1.0][: len(corners)]))
+            for edges in ("follow-surface", "straight"):
+                surfaces = []
+                for rings in (corners, some, numpy.column_stack((corners, numpy.full(len(corners), numpy.nan)))):
+                    with warnings.catch_warnings():
+                        warnings.simplefilter("ignore")
+                        surfaces.append(reconstruct(cloud, boundary=rings, boundary_edges=edges).to_numpy()[0])
+                numpy.testing.assert_array_equal(surfaces[0], surfaces[1])
+                numpy.testing.assert_array_equal(surfaces[0], surfaces[2])
+        some = numpy.column_stack((ring, [9.0, 8.0, numpy.nan, 3.0, 1.0]))
+        with self.assertRaisesRegex(ElevationSurfaceError, "Point 2 of the boundary's cell 0 has no z .*BoundaryEdges"):
+            reconstruct(cloud, boundary=some, boundary_edges="own-elevations")
+
+    def test_own_elevations_of_a_boundary_without_z_are_refused(self):
+        cloud = numpy.random.RandomState(4).rand(400, 3) * (30, 30, 2)
+        ring = numpy.array([(5.0, 5), (25, 5), (25, 25), (5, 25)])
+        for rings in (ring, numpy.column_stack((ring, numpy.full(4, numpy.nan)))):
+            with self.assertRaisesRegex(ElevationSurfaceError, r"^the boundary: 1 of 1 line have no z \(first: the line\), "
+                                        "which boundary_edges own-elevations would give"):
+                reconstruct(cloud, boundary=rings, boundary_edges="own-elevations")
+
+    def test_a_point_of_a_line_that_does_not_exist_is_named_with_the_line(self):
+        cloud = numpy.random.RandomState(4).rand(100, 3) * (30, 30, 2)
+        for name in ("boundary", "faults", "fill_only", "keep_open"):
+            for number in (8, -1, 2**31 - 1):
+                lines = make_lines([numpy.array([(5.0, 5, 1), (25, 5, 1), (25, 25, 1), (5, 25, 1), (5, 5, 1)])] * 2)
+                lines.GetLines().ReplaceCellAtId(1, 5, [4, 5, 6, number, 4])
+                words = r"^%s: point %d of line \(cell 1\) does not exist; there are 8 points$" % (name, number)
+                with self.assertRaisesRegex(ElevationSurfaceError, words):
+                    reconstruct(cloud, **{name: lines})
+                entry = ReconstructElevationSurface()
+                entry.SetInputDataObject(0, make_points(cloud))
+                entry.SetInputDataObject(("boundary", "faults", "fill_only", "keep_open").index(name) + 1, lines)
+                with Messages(entry) as messages:
+                    entry.Update()
+                (error,) = messages.errors
+                self.assertRegex(str(error), r"%s: point -?\d+ of line \(cell 1\) does not exist" % name.title().replace("_", " "))
 
 
 class Shoreline(Program):

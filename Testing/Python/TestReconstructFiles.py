@@ -443,6 +443,16 @@ class Boundary(InFolder):
         line = data.GetCell(1).GetPointIds()
         self.assertEqual(line.GetId(0), line.GetId(line.GetNumberOfIds() - 1))
 
+    def test_a_third_column_of_text_is_z(self):
+        for rows, z in (
+            ("0 0 7\n10 0 8\n10 10 9\n0 0 7\n", [7, 8, 9]),
+            ("0 0 7\n10 0 nan\n10 10 9\n0 0 7\n", [7, numpy.nan, 9]),
+            ("0 0 a\n10 0 b\n10 10 c\n0 0 a\n", [0, 0, 0]),
+            ("0 0\n10 0\n10 10\n0 0\n", [0, 0, 0]),
+        ):
+            data = reading.read_boundary(self.file("b.txt", rows))
+            numpy.testing.assert_array_equal([data.GetPoint(i)[2] for i in range(3)], z)
+
     def test_rings_are_named_by_their_lines(self):
         data = reading.read_boundary(self.file("b.txt", self.RING + "\n2 2\n4 2\n4 4\n"))
         names, parts = line_parts(data)

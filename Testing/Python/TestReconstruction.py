@@ -23,6 +23,7 @@ from vtkelevationsurface import (
     read,
     reconstruct,
 )
+from vtkelevationsurface.clouds import add_array, make_lines
 from vtkelevationsurface.inputs import nodes_of
 from vtkelevationsurface.picture.signs import add_scalar_bar, round_text
 from vtkelevationsurface.properties import PROPERTIES
@@ -199,18 +200,21 @@ class Properties(unittest.TestCase):
             "maximum_expected_points": (900, "fill", "GetMaximumNumberOfExpectedPoints", 900),
             "spacing": (0.5, "fill", "GetSpacing", 0.5),
             "interpolation": ("thin plate", "fill", "GetInterpolation", 2),
+            "level_attribute": ("water", "fill", "GetLevelArrayName", "water"),
             "confidence_level": (0.8, "fill", "GetConfidenceLevel", 0.8),
             "interpolate_point_data": (False, "fill", "GetInterpolatePointData", 0),
             "threads": (1, "fill", "GetNumberOfThreads", 1),
         }
+        lake = make_lines([numpy.array([(1.0, 1, 0), (2, 1, 0), (2, 2, 0), (1, 1, 0)])])
+        add_array(lake, "water", [7.0], "Cell")
+        needs = {"data_dependent_edges": {"maximum_elevation_error": 0.1}, "level_attribute": {"fill_only": lake}}
         described = {name for name, one in PROPERTIES.items() if one.setter}
         # Done by none of them; for areas alone, see TestLevelHoles.
         others = {"remove_unused_points", "level_attribute"}
         self.assertEqual(set(given) | others, described)
         for name, (value, step, getter, expected) in given.items():
             with self.subTest(name=name):
-                needed = {"maximum_elevation_error": 0.1} if name == "data_dependent_edges" else {}
-                result = reconstruct(SHEET, **{name: value}, **needed)
+                result = reconstruct(SHEET, **{name: value}, **needs.get(name, {}))
                 self.assertEqual(getattr(getattr(result, step), getter)(), expected)
 
     def test_misspelt_names_and_wrong_values_raise(self):

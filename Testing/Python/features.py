@@ -71,6 +71,7 @@ composite: partitions             |                            | points + partit
 Trim
 boundary given                    |                            | coast                        | s  s  s  s  s  s  s
 boundary on one rank only         |                            | coast + on one               | s  s  s  s  s  s  s
+boundary, some points without z   |                            | coast + no z                 | s  s  s  s  s  s  s
 boundary with lakes and an island |                            | coast and lakes              | s  s  s  s  s  s  s
 exact test                        | OutwardTest=0              | coast                        | s  s  s  s  s  s  s
 inward-normal test                | OutwardTest=1              | coast                        | s  s  g  g  r  r  r

@@ -275,6 +275,11 @@ def unit(vectors):
 
 
 INTEGERS = ("i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8")
+def with_some_z(ring):
+    """(n, 3): every third point has no z."""
+    return numpy.column_stack((ring, numpy.where(numpy.arange(len(ring)) % 3, 5.0, numpy.nan)))
+
+
 CHANGES = {
     "float": of_floats,
     "float array": adding(Single=lambda n, r: numpy.sin(n).astype("f4")),
@@ -289,6 +294,7 @@ CHANGES = {
     "normals": adding("Normals", Normal=lambda n, r: unit(r.random((len(n), 3)) - (0.5, 0.5, -2.0))),
     "copies": lambda case: vars(case).update(copies=True),
     "on one": lambda case: vars(case).update(on_one=True),
+    "no z": lambda case: vars(case).update(rings=[with_some_z(ring) for ring in case.rings]),
     "areas": lambda case: vars(case).update(areas=areas_of(case.rings)),
     "multiblock": lambda case: vars(case).update(composite=vtkMultiBlockDataSet),
     "partitions": lambda case: vars(case).update(composite=vtkPartitionedDataSet),

@@ -152,6 +152,9 @@ ELEVATION_SENTENCE(LengthAndNumber,
 /** @} */
 
 /** @name Of trimming @{ */
+ELEVATION_SENTENCE(NoZOfBoundary,
+  "Point {point} of the {owner} cell {cell} has no z (NaN), which the surface gets there with "
+  "{property:BoundaryEdges} OwnElevations.");
 ELEVATION_SENTENCE(NothingToTrim,
   "The input has no triangles, so there is nothing to trim. Points alone are triangulated first, "
   "by vtkGridDelaunay2D.");

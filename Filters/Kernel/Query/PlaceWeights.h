@@ -35,6 +35,7 @@
 #include "Kernel/Mesh/Mesh.h"
 #include "TriangleTree.h"
 
+#include <limits>
 #include <vector>
 
 namespace elevation
@@ -47,6 +48,27 @@ struct PlaceWeights
   std::vector<Index> Vertices;
   std::vector<double> Weights;
 };
+
+/**
+ * The values at places: the sums of those of vertices, valueOf(vertex), by their weights; NaN without
+ * any. What is not known (NaN) does not count where its weight is 0, as at vertices and on edges.
+ */
+template <typename ValueOf>
+std::vector<double> ValuesAt(const PlaceWeights& found, const ValueOf& valueOf)
+{
+  std::vector<double> values(found.Offsets.size() - 1, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    const std::size_t begin = found.Offsets[i], end = found.Offsets[i + 1];
+    double sum = 0.0;
+    for (std::size_t k = begin; k < end; ++k)
+    {
+      sum += found.Weights[k] != 0.0 ? found.Weights[k] * valueOf(found.Vertices[k]) : 0.0;
+    }
+    values[i] = begin < end ? sum : values[i];
+  }
+  return values;
+}
 
 /** Finds the weights of places in a mesh, which must outlive it. */
 class PlaceFinder
