@@ -237,7 +237,7 @@ def table_clouds(tables, options, ranks):
     head = numpy.arange(min(count, SAMPLE))
     some = numpy.unique(numpy.linspace(0, count - 1, min(count, SAMPLE)).astype("i8"))
     rows = together(ranks, lambda: rows_at(head)) + together(ranks, lambda: rows_at(some))
-    choice = Choice("input", rows, len(head), Layout(None), (), names, len(names), options.columns, 3, None)
+    choice = Choice("input", rows, len(head), Layout(None), names, names, len(names), options.columns, 3, None)
     clouds = []
     for table, columns, begin in zip(tables, every, begins.tolist()):
         chosen = [numbers_of(columns[names[i]], names[i], begin) for i in choice.indices]

@@ -327,12 +327,11 @@ class Choice:
         count = self.needed
         numbers = [i for i in self.numeric if len(self.finite[i])]
         usable = [i for i in numbers if not self.meanings[i].role and not self.meanings[i].axis]
-        if len(numbers) < count < self.width:
+        if len(numbers) < count != self.width:
             are = "is" if len(numbers) == 1 else "are"
             self.ask([], f"{count} columns of numbers are needed, and there {are} {len(numbers)}")
-        others = [i for i in numbers if i not in usable]
-        if others and len(usable) < count and self.names and all(self.names):
-            others = self.listed(others)
+        if len(usable) < count <= len(numbers) and self.names and all(self.names):
+            others = self.listed([i for i in numbers if i not in usable])
             self.ask([numbers[:count]], f"{self.none_is_named()}, and {others} may be something else by the names")
         if self.width == count:
             self.in_their_order()
