@@ -25,17 +25,6 @@ function (es_skip_test name label)
   set_tests_properties("${name}" PROPERTIES LABELS "${label}" SKIP_REGULAR_EXPRESSION "SKIPPED ")
 endfunction ()
 
-# es_slots_of_ranks(<variable> <ranks>): how many of ctest's slots a test takes. Where ctest has one more
-# than there are cores (Utilities/test), no test runs beside one on as many ranks as there are cores: an
-# exchange of ranks waits for each of them to get a core.
-function (es_slots_of_ranks variable ranks)
-  set(slots 1)
-  if (ranks GREATER 1)
-    math(EXPR slots "${ranks} + 1")
-  endif ()
-  set("${variable}" "${slots}" PARENT_SCOPE)
-endfunction ()
-
 # es_find_mpirun(<variable>)
 # What starts a program on several ranks, up to the option for their number; empty if it was not found.
 # The ranks outlive an mpirun that is killed, so it ends by itself before a test's time-out of 1200 s.

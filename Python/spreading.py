@@ -255,7 +255,8 @@ def gather_surface(ranks, result):
         result.surface.GetFieldData().RemoveArray(name)
     set_counts(result.surface, (result.delaunay, result.trim, result.fill))
     if result.removes_unused:
-        result.surface = without_unused(None, result.surface, result.number_of_points - 1)
+        used = used_points(None, result.surface)
+        result.surface = without_unused(None, result.surface, used, result.number_of_points - 1)
 
 
 def joined_by_ids(ranks, parts):
