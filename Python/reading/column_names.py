@@ -3,6 +3,7 @@
 """What the name of a column means: an axis, or something else, in nine languages and words of others."""
 
 import dataclasses
+import functools
 import re
 import unicodedata
 
@@ -41,6 +42,7 @@ class Meaning:
     beside: tuple = ()  # the words next to the name of the axis
 
 
+@functools.lru_cache(maxsize=10_000)
 def meaning(name):
     """The Meaning of a column's name; empty where it is not known."""
     outside, inside = in_brackets(name)

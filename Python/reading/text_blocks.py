@@ -84,6 +84,8 @@ def plain(data):
 def encoding_of(block):
     """The encoding in which most words of a header mean something, of text that is not UTF-8."""
     head = b" ".join(line for line in block.split(b"\n", 20)[:20] if not re.search(rb"\d[.,]\d", line))
+    if head.isascii():
+        return ENCODINGS[0]  # it reads the same in all of them
     texts = {encoding: head.decode(encoding, "replace") for encoding in ENCODINGS}
     return max(texts, key=lambda encoding: known_names(re.split(r"[\s,;|]+", texts[encoding])))
 
