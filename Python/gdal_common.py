@@ -27,8 +27,14 @@ SAME_PLACES = [
 ]
 
 
+# What its Python raises: RuntimeError, or another where it cannot quote bytes of the file.
+GDAL_ERRORS = (RuntimeError, SystemError, UnicodeDecodeError)
+
+
 def one_line(error):
-    return " ".join(str(error).split())
+    """The words of an error of GDAL, for a message."""
+    words = "" if isinstance(error, (SystemError, UnicodeDecodeError)) else str(error)
+    return " ".join(words.split()) or "GDAL gives no reason that can be quoted"
 
 
 def gdal_module():
@@ -47,9 +53,9 @@ class quiet:
         gdal = gdal_module()
         warnings = []
 
-        def note(kind, _number, message):
+        def note(kind=None, _number=0, message=""):  # of bytes that it cannot quote, GDAL passes nothing
             if kind == gdal.CE_Warning:
-                warnings.append(one_line(message))
+                warnings.append(" ".join(message.split()))
 
         gdal.PushErrorHandler(note)
         return warnings
@@ -79,8 +85,8 @@ def kind_of(path, what):
     with quiet():
         try:
             driver = gdal.IdentifyDriverEx(path, flags, drivers(what))
-        except RuntimeError as error:  # some drivers look further than at the beginning
-            raise FileError(f"{path}: is cut off or damaged: {error}") from None
+        except GDAL_ERRORS as error:  # some drivers look further than at the beginning
+            raise FileError(f"{path}: is cut off or damaged: {one_line(error)}") from None
         kind = driver.ShortName if driver else None
         if what == "vectors" and kind in ("GPKG", "SQLite"):
             # These hold rasters too.

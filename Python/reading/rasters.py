@@ -10,7 +10,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
 from ..clouds import Cloud, Frame, ReadOptions, node_frame, grid_of, make_points, pixels_of
 from .column_names import z_direction
 from .formats import HEAD, is_saga_header, count_numbers
-from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
+from ..gdal_common import GDAL_ERRORS, choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError, Reason
 from ..names import option
 from ..paths import suffix_of
@@ -74,7 +74,7 @@ def open_raster(path, options):
         return data, notes if len(variables) > 1 else []
     except FileError:
         raise
-    except RuntimeError as error:
+    except GDAL_ERRORS as error:
         raise FileError(f"{path}: cannot be read: {one_line(error)}") from None
 
 
@@ -274,7 +274,7 @@ def blocks(path, data, band, no_data):
             pixels = band.ReadAsArray(*window)
             mask = None if all_valid else band.GetMaskBand().ReadAsArray(*window)
             opaque = alpha.ReadAsArray(*window) if alpha else None
-        except RuntimeError as error:
+        except GDAL_ERRORS as error:
             where = f"{path}, band {band.GetBand()}, rows from {first + 1}"
             raise FileError(f"{where}: cannot be read: {one_line(error)}") from None
         if numpy.iscomplexobj(pixels):

@@ -10,7 +10,7 @@ import numpy
 from ..clouds import Cloud, add_array, make_lines, make_points, set_crs
 from .column_names import meaning
 from .formats import HEAD, is_table_with_geometry
-from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
+from ..gdal_common import GDAL_ERRORS, choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError, Reason
 from ..names import option
 from ..progress import items_with_progress, no_progress, share
@@ -44,7 +44,7 @@ def open_file(path):
     gdal.SetConfigOption("GPX_ELE_AS_25D", "YES")
     try:
         return gdal.OpenEx(path, gdal.OF_VECTOR | gdal.OF_VERBOSE_ERROR, [kind], settings)
-    except RuntimeError as error:
+    except GDAL_ERRORS as error:
         raise FileError(f"{path}: is cut off or damaged: {one_line(error)}") from None
 
 
@@ -115,7 +115,7 @@ class Layer:
                 self.add(number, feature, names)
             # Where this format is cut off, newer GDALs end without a word.
             announced = layer.GetFeatureCount() if kind == "FlatGeobuf" else 0
-        except RuntimeError as error:
+        except GDAL_ERRORS as error:
             raise FileError(f"{path}: is cut off or damaged: {one_line(error)}") from None
         if announced > count:
             raise FileError(

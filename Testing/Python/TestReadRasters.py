@@ -395,6 +395,11 @@ class Dem(InFolder):
         self.assertNotIn(105.0, coordinates(reading.read(path, no_data=105.0))[:, 2])
 
 
+VRT = b"""<VRTDataset rasterXSize="2" rasterYSize="2"><GeoTransform>0,1,0,0,0,-1</GeoTransform>
+<VRTRasterBand dataType="Byte" band="1"><SimpleSource><SourceFilename relativeToVRT="1">%s</SourceFilename>
+<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>"""
+
+
 class Damage(InFolder):
     def content(self, **more):
         raster(self.path("whole.tif"), z=numpy.arange(6000.0).reshape(60, 100), **more)
@@ -424,6 +429,10 @@ class Damage(InFolder):
             ("band 1", "b.dem", dem[: 2048 + 150]),
             ("", "a.nc", b"CDF\1" + b"\0" * 40),
             ("cannot be read", "a.vrt", '<VRTDataset rasterXSize="2" rasterYSize="2"></VRT'),
+            # GDAL cannot quote these bytes, or gives no reason.
+            ("band 1, rows from 1: cannot be read: ", "a.vrt", VRT % b"caf\xe9.tif"),
+            ("cannot be read: GDAL gives no reason that can be quoted", "a.vrt",
+             (VRT % b"a.tif").replace(b"Byte", b"By\xe9e")),
             ("", "a.img", b"EHFA_HEADER_TAG\0" + b"\1" * 50),
         ):
             with self.subTest(name=name, words=words, size=len(content)):

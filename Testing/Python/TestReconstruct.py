@@ -130,7 +130,8 @@ class Report(Program):
         self.assertEqual(holes["open_edge_length_is"], "1.5 diagonals of the grid's cells")
         self.assertEqual(holes["by_status"], {"replaced": 1})
         self.assertEqual((holes["filled"], holes["inserted_points"]), (1, 4))
-        for words in ("1 found, 1 filled", "1 of them were bridged", "--open-edge-length"):
+        for words in ("1 found, 1 filled", "1 of them were bridged", "gaps wider than 2.121 are filled "
+                      "(1.5 diagonals of the grid's cells); see --open-edge-length"):
             self.assertIn(words, self.output)
         # Over a limit, the void is still bridged, so it is not a hole.
         holes = self.report(name, "--maximum-hole-size", "1")["holes"]
@@ -160,6 +161,7 @@ class Report(Program):
         self.assertGreater(holes["open_edge_length"], 1.6)
         self.assertLess(holes["open_edge_length"], 2.6)
         self.assertIn("along lines", holes["open_edge_length_is"])
+        self.assertRegex(self.output, r"gaps wider than [12]\.\d+ are filled \(.*along lines.*\); see")
         self.assertGreater(holes["by_status"]["replaced"], 0)
         self.assertGreater(holes["inserted_points"], len(rows))
         self.assertLess(holes["inserted_points"], 15 * len(rows))
