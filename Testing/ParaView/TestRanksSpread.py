@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Points and triangles that are spread over ranks give what they give on one rank: the surface, its
-arrays, counts and messages. Run by mpirun with pvbatch --symmetric, as TestRanks.py is.
+arrays, counts and messages. And the tests of Testing/Python, with the package that the plugin brings: ranks
+exchange as those of python3 do. Run by mpirun with pvbatch --symmetric, as TestRanks.py is.
 """
 import resource
 
@@ -18,6 +19,9 @@ from meshes import array_of
 from on_ranks import COUNT, LAST, RANK, check, check_equal, end, gather
 
 start()
+import TestExchanges  # noqa: E402  (the plugin brings the package)
+import TestSpreadChain  # noqa: E402
+
 EMPTY = vtkPolyData()
 random = numpy.random.default_rng(11)
 XYZ = random.uniform(0.0, 30.0, (600, 3))
@@ -272,4 +276,4 @@ for make, data in ((simple.GridDelaunay2D, cloud(spreads["slices"][RANK])), (sim
         check_equal([output.GetNumberOfPoints() for output in outputs], [0] * len(outputs),
                     "points after a stop")
 
-end("spread points and triangles")
+end("; ".join(["spread points and triangles", TestExchanges.main(), TestSpreadChain.main()]))
