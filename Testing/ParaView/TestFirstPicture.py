@@ -43,7 +43,8 @@ def forget():
     """Takes away what is shown, and its colours. The new session has the same server: else, as by
     simple.ResetSession(), paraview.simple would look for all classes of ParaView again, for a second."""
     servermanager.ProxyManager().UnRegisterProxies()
-    simple._initializeSession(servermanager.ActiveConnection)
+    # Where it stands differs by version.
+    simple.ResetSession.__globals__["_initializeSession"](servermanager.ActiveConnection)
     return simple.CreateRenderView()
 
 
