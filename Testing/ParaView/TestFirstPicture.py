@@ -48,6 +48,11 @@ def forget():
     return simple.CreateRenderView()
 
 
+def label(text, value):
+    """A number as the scalar bar shows it, by a format of C or, from ParaView 6.1 on, of C++."""
+    return text.format(value) if "{" in text else text % value
+
+
 OBLIQUE = [numpy.sin(numpy.radians(first_view.BEARING)) * numpy.cos(numpy.radians(first_view.HEIGHT)),
            numpy.cos(numpy.radians(first_view.BEARING)) * numpy.cos(numpy.radians(first_view.HEIGHT)),
            numpy.sin(numpy.radians(first_view.HEIGHT))]
@@ -69,7 +74,7 @@ check_equal((list(shown.Scale), list(shown.ColorArrayName)), ([1, 1, factor], ["
             "look of the surface")
 shown.SetScalarBarVisibility(view, True)
 bar = simple.GetScalarBar(shown.LookupTable, view)
-check_equal([bar.LabelFormat % 104.04, bar.RangeLabelFormat % 104.04], ["104.0", "104.0"],
+check_equal([label(bar.LabelFormat, 104.04), label(bar.RangeLabelFormat, 104.04)], ["104.0", "104.0"],
             "numbers of the scalar bar")
 check_equal(bar.AutomaticLabelFormat, 0, "the format of the scalar bar is used")
 
@@ -99,7 +104,7 @@ reader = simple.ElevationPoints(FileName=written("sea.xyz", hills(2000.0, -2100.
 shown = simple.Show(reader, view)
 check_equal(stops_of(shown), list(first_view.SEA), "colours of points below the sea")
 check(information(reader, "VerticalExaggeration") < 1, "relief higher than the map is wide is lowered")
-check_equal(simple.GetScalarBar(shown.LookupTable, view).RangeLabelFormat % -2100.0, "-2100",
+check_equal(label(simple.GetScalarBar(shown.LookupTable, view).RangeLabelFormat, -2100.0), "-2100",
             "numbers of a large range")
 line = numpy.column_stack((numpy.arange(9.0), numpy.zeros(9), numpy.arange(9.0)))
 reader = simple.ElevationPoints(FileName=written("line.xyz", line))
