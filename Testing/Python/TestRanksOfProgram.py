@@ -203,6 +203,26 @@ class OnRanks(Program):
         self.file("a.txt", "0 0 1\n9 0 2\n4 7 3\n5 2 4\n3 3 5\n")
         self.check_same(3, "a.txt", "--no-trim", "--no-fill")
 
+    def test_heights_and_volumes_are_those_of_one_rank(self):
+        self.file("a.txt", cloud(1500))
+        self.file("b.txt", cloud(900).replace(" 5", " 6"))
+        self.file("p.csv", "x,y\n50,40\n10,10\n500,1\n51.3,38.2\n70,20.5\n")
+        self.assertEqual(self.call("b.txt", "--no-picture", "-o", "b.vtp").returncode, 0)
+        given = set(os.listdir(self.folder))
+        for options in (
+            ("--at", "p.csv"), ("--at", "p.csv", "--method", "natural-neighbor"),
+            ("--volume", "b.vtp"), ("--volume", "2.5", "--at", "p.csv"),
+        ):
+            made = []
+            for ranks in (0, 2, 4):
+                lines, report = self.report_of(ranks, ["a.txt", "--no-picture", *options])
+                results = {}
+                for name in sorted(set(os.listdir(self.folder)) - given - {"a_surface.vtp"}):
+                    path = self.path(name)
+                    results[name] = open(path, "rb").read() if name.endswith("csv") else vtk_files.run_vtk_reader(path)
+                    os.remove(path)
+                made.append((lines, report, results))
+            print(made)
     def test_mpirun_with_one_rank(self):
         self.file("a.txt", cloud(300))
         self.check_same(1, "a.txt")
