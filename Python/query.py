@@ -3,7 +3,6 @@
 """What a surface answers: its height at places, and the volume between it and another one."""
 
 import dataclasses
-import itertools
 import math
 import os
 from typing import Optional
@@ -157,7 +156,7 @@ def volume_between(result, other, map_too=False, progress=no_progress):
     theirs = surface and query_of(name, surface)
     difference = vtkPolyData() if map_too else None
     sums, error = compare(result.surface, own, theirs, other.level, difference)
-    area, common, above, below = (exact_sum(column) for column in sums.T[:4])
+    area, common, above, below = (math.fsum(column) for column in sums.T[:4])
     other_area = area_of(surface) if theirs else common
     if theirs and common <= SLIVER * min(area, other_area):
         boxes = [
@@ -212,12 +211,6 @@ def filled_alone(surface):
     return filled
 
 
-def exact_sum(values):
-    """The sum of doubles, rounded once."""
-    # As lists: numbers of numpy would be made one by one, which takes three times as long.
-    return math.fsum(itertools.chain.from_iterable(values[part].tolist() for part in slices(len(values))))
-
-
 def holes_of(surface):
     """(m,) of the hole that each triangle fills, -1 of other ones, as vtkFillElevationHoles numbers them."""
     ids = surface.GetCellData().GetArray("HoleId")
@@ -231,7 +224,7 @@ def area_of(surface):
     xy = coordinates_of(surface)[:, :2].astype("f8")
     a, b, c = xy[vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3).T]
     u, v = b - a, c - a
-    return 0.5 * exact_sum(abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
+    return 0.5 * math.fsum(abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
 
 
 @dataclasses.dataclass(frozen=True)
