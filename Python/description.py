@@ -126,7 +126,7 @@ KINDS = {
         "[STEP|like FILE]", words="a number above 0, or like FILE, or nothing where the points are from a grid",
         make=pixels,
     ),
-    "surface or level": Kind("FILE|LEVEL", words="the file of a surface, or a level, a finite number", make=file_or_number),
+    "surface or level": Kind("FILE|LEVEL", words="the file of a surface, or a finite level", make=file_or_number),
     "elevation": Kind("VALUE", "string", "an elevation", float, unit="units of z"),
     "text": Kind("TEXT", words="text"),
     "name": Kind("NAME", words="a name", make=named),

@@ -278,8 +278,8 @@ class Files(Program):
         for options, words in (
             (("--at", "words.csv"), "words.csv: holds text, but no numbers. x and y are needed in columns of their own"),
             (("--at", "one.csv"), "one.csv: no line holds 2 numbers; the most is 1. x and y are needed"),
-            (("--volume", "nan"), "--volume takes the file of a surface, or a level, a finite number, not 'nan'"),
-            (("--volume", ""), "--volume takes the file of a surface, or a level, a finite number, not ''"),
+            (("--volume", "nan"), "--volume takes the file of a surface, or a finite level, not 'nan'"),
+            (("--volume", ""), "--volume takes the file of a surface, or a finite level, not ''"),
             (("--at", "missing.csv"), "missing.csv: no such file"),
             (("--volume", "ground.csv"), "ground.csv: has no triangles"),
             (("--volume", "missing.vtp"), "missing.vtp: no such file"),

@@ -79,10 +79,11 @@ struct QuickArea
   double Twice, Error;
 };
 
+/** Whether c is to the left of the line from a to b, or so far away that this is not a number. */
 bool IsLeft(const Point2& a, const Point2& b, const Point2& c)
 {
   const QuickArea area(a, b, c);
-  return area.IsUnsure() ? TwiceArea(a, b, c) > 0.0 : area.Twice > 0.0;
+  return !((area.IsUnsure() ? TwiceArea(a, b, c) : area.Twice) <= 0.0);
 }
 
 /** The corners to the right of the line from a to b, where TwiceArea() is below 0, as bits. */
