@@ -221,10 +221,11 @@ def holes_of(surface):
 
 def area_of(surface):
     """The area of a surface's triangles in x,y."""
-    xy = coordinates_of(surface)[:, :2].astype("f8")
-    a, b, c = xy[vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3).T]
-    u, v = b - a, c - a
-    return 0.5 * math.fsum(abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3).T.astype("i8")
+    xyz = coordinates_of(surface)
+    # x and y apart: numpy takes numbers faster than rows.
+    (xa, xb, xc), (ya, yb, yc) = (xyz[:, axis].astype("f8").take(corners) for axis in (0, 1))
+    return 0.5 * math.fsum(abs((xb - xa) * (yc - ya) - (yb - ya) * (xc - xa)))
 
 
 @dataclasses.dataclass(frozen=True)
