@@ -61,16 +61,16 @@ double TwiceArea(const Point2& a, const Point2& b, const Point2& c)
   return DifferenceOfProducts(b.X - a.X, c.Y - a.Y, b.Y - a.Y, c.X - a.X);
 }
 
-/** TwiceArea() in plain arithmetic, and what its error is below: most areas are needed for their sign. */
+/** TwiceArea() in plain arithmetic, and its error at most: mostly the sign is all that counts. */
 struct QuickArea
 {
   QuickArea(const Point2& a, const Point2& b, const Point2& c)
   {
     const double left = (b.X - a.X) * (c.Y - a.Y), right = (b.Y - a.Y) * (c.X - a.X);
     this->Twice = left - right;
-    // Two products and their difference are off by at most (2 + u) u of the sum, with u = 2^-53, from
-    // the area of the rounded differences, whose sign TwiceArea() has; what underflows is far below
-    // the second term.
+    // Two products and their difference are off by at most (2 + u) u of the sum, with u = 2^-53,
+    // from the area of the rounded differences, whose sign TwiceArea() has; what underflows is far
+    // below the second term.
     this->Error = 4.0 * 1.1102230246251565e-16 * (std::fabs(left) + std::fabs(right)) + 1e-290;
   }
   bool IsRight() const { return this->Twice < -this->Error; }
@@ -165,7 +165,7 @@ Integrals Integrate(const Polygon& polygon)
   return { sum.Area / 2.0, sum.Difference / 6.0, sum.Value / 6.0 };
 }
 
-/** The integral of the difference over the part of a polygon where that, times a sign, is not below 0. */
+/** The integral of the difference where that, times a sign, is not below 0. */
 double IntegralOf(const Polygon& polygon, double sign)
 {
   unsigned below = 0;
@@ -445,8 +445,8 @@ private:
   double Base = 0.0;
   OverlaidTriangle Result;
   DifferenceMap* Map = nullptr;
-  // Near some triangles of the first surface: all of the second, and their boxes; Hits are those near
-  // one.
+  // Near some triangles of the first surface: all of the second, and their boxes; Hits are those
+  // near one.
   std::vector<Neighbor> Found, Near;
   std::vector<std::uint64_t> Order; // their triangles, and places in Found
   std::vector<Index> Hits;
