@@ -31,11 +31,21 @@ def pixels(text):
 
 
 def file_or_number(text):
-    """A finite number if it is one, else the name of a file."""
+    """A number if it is one, else the name of a file. Raises ValueError where it is neither."""
     try:
-        return float(text) if math.isfinite(float(text)) else text
+        number = float(text)
     except ValueError:
-        return text
+        return named(text)
+    if not math.isfinite(number):
+        raise ValueError
+    return number
+
+
+def named(text):
+    """Text that names something. Raises ValueError where it is none."""
+    if not isinstance(text, str) or not text.strip():
+        raise ValueError
+    return text
 
 
 @dataclasses.dataclass(frozen=True)
@@ -116,10 +126,10 @@ KINDS = {
         "[STEP|like FILE]", words="a number above 0, or like FILE, or nothing where the points are from a grid",
         make=pixels,
     ),
-    "surface or level": Kind("FILE|LEVEL", words="the file of a surface, or a level", make=file_or_number),
+    "surface or level": Kind("FILE|LEVEL", words="the file of a surface, or a finite level", make=file_or_number),
     "elevation": Kind("VALUE", "string", "an elevation", float, unit="units of z"),
     "text": Kind("TEXT", words="text"),
-    "name": Kind("NAME", words="a name"),
+    "name": Kind("NAME", words="a name", make=named),
     "column": Kind("COLUMN", words="a column"),
     "columns": Kind("X,Y,Z", words="three columns by name or number from 1, as x,y,z or 1,2,3"),
     "classes": Kind("N,N", words="numbers from 0 to 255, as 2,8"),

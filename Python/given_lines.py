@@ -5,11 +5,11 @@
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import bare_lines, coordinates_of, crs_of, line_parts, make_points, set_crs
+from .clouds import WITHOUT_Z, bare_lines, coordinates_of, crs_of, line_parts, make_points, set_crs
 from .draping import draped
 from .gdal_common import check_system, is_near, moving, name_of, same_system
 from .mending import mended
-from .messages import ElevationSurfaceError, FileError, counted
+from .messages import ElevationSurfaceError, FileError, counted, did_you_mean
 from .names import argument, option
 from .properties import BOUNDARY_EDGES
 from .ranks import extremes
@@ -32,6 +32,7 @@ def fitted(cloud, lines, names, given, strict=False, ranks=None):
     """
     lines, notes = dict(lines), []
     check_z(lines, names, given)
+    check_levels(lines, names, given)
     for name in [name for name in RINGS if name in lines]:  # while places are still those of its file
         lines[name], more = mended(lines[name], names[name], strict, name)
         notes = notes + more
@@ -55,6 +56,24 @@ def check_z(lines, names, given):
             f"{names['boundary']}: {numpy.count_nonzero(without):,} of {counted(len(without), 'line')} have no z "
             f"(first: {first}), which {argument('boundary_edges')} own-elevations would give to the surface",
             "boundary",
+        )
+
+
+def check_levels(lines, names, given):
+    """Refuses areas without the attribute that is to be their level. Arguments as of fitted()."""
+    name = given.get("level_attribute")
+    if name is None or "fill_only" not in lines:
+        return
+    attributes = lines["fill_only"].GetCellData()
+    arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
+    known = [one.GetName() for one in arrays if one and one.GetNumberOfComponents() == 1]
+    known = [one for one in known if one and one != WITHOUT_Z]
+    if name not in known:
+        there = f"those of numbers are {', '.join(known)}" if known else "none is of numbers"
+        raise ElevationSurfaceError(
+            f"{names['fill_only']}: has no attribute {name} of numbers, which {argument('level_attribute')} "
+            f"names; {there}{did_you_mean(name, known)}",
+            "fill_only",
         )
 
 

@@ -25,7 +25,7 @@ from .description import KINDS, listing, view_angles
 from .given_lines import RINGS, fitted
 from .several_heights import check_heights, heights_on_ranks
 from .holes import BridgedVoids, hole_counts
-from .messages import ElevationSurfaceError, ElevationSurfaceWarning
+from .messages import ElevationSurfaceError, ElevationSurfaceWarning, counted
 from .names import argument
 from .open_edge_length import length_to_open
 from .paths import check_suffix
@@ -114,6 +114,8 @@ def as_lines(lines: Lines, what: str, are_rings: bool) -> vtkPolyData:
     if isinstance(lines, (str, os.PathLike)):
         reader = "read_boundary" if are_rings else "read_faults"
         raise TypeError(f"{what}: a file's name; use {reader}({os.fspath(lines)!r})")
+    if hasattr(lines, "__len__") and len(lines) == 0:
+        raise ValueError(f"{what}: is empty; leave it out, or give None, where there is none")
     try:
         is_one = numpy.ndim(lines[0]) == 1
     except (TypeError, IndexError, KeyError, ValueError):
@@ -123,10 +125,10 @@ def as_lines(lines: Lines, what: str, are_rings: bool) -> vtkPolyData:
         line = array_of(line, what, (2, 3))
         if line.shape[1] == 2:
             line = numpy.column_stack((line, numpy.full(len(line), numpy.nan)))
-        if are_rings and (line[0, :2] != line[-1, :2]).any():
+        if are_rings and (len(line) == 1 or (line[0, :2] != line[-1, :2]).any()):
             line = numpy.vstack((line, line[:1]))
         if are_rings and len(line) < 4:
-            raise ValueError(f"{what}: a ring has {len(line) - 1} points; 3 are needed")
+            raise ValueError(f"{what}: a ring has {counted(len(line) - 1, 'point')}; 3 are needed")
         parts.append(line)
     names = ["the line"] if is_one else [f"line {i} of the list" for i in range(len(parts))]
     return make_lines(parts, names)

@@ -9,17 +9,22 @@
 #include "vtkCellArrayIterator.h"
 #include "vtkCommunicator.h"
 #include "vtkDoubleArray.h"
+#include "vtkInformation.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <new>
+#include <string>
 #include <vector>
 
 namespace elevation
@@ -32,11 +37,18 @@ constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
 // What vtkFillElevationHoles says of elevations.
 constexpr const char* FilledNames[] = { "FilledError", "FilledLow", "FilledHigh" };
 
+/** Of all ranks that make a piece each; nullptr where this one makes the whole. */
+vtkMultiProcessController* ControllerOf(vtkInformation* request)
+{
+  const int pieces = request->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES());
+  return pieces > 1 ? vtkMultiProcessController::GetGlobalController() : nullptr;
+}
+
 } // namespace
 
-SampledSurface::SampledSurface(vtkPolyData* surface, vtkMultiProcessController* controller)
+SampledSurface::SampledSurface(vtkPolyData* surface, vtkInformation* request)
   : Surface(surface)
-  , Controller(controller)
+  , Controller(ControllerOf(request))
 {
   // Largest of all: so low ends are turned over. The last is whether there is a triangle.
   double ends[] = { -Infinity, -Infinity, -Infinity, -Infinity,
@@ -72,6 +84,12 @@ SampledSurface::SampledSurface(vtkPolyData* surface, vtkMultiProcessController* 
   }
 }
 
+bool IsFirstRank(vtkInformation* request)
+{
+  vtkMultiProcessController* const controller = ControllerOf(request);
+  return !controller || controller->GetLocalProcessId() == 0;
+}
+
 bool SampledSurface::IsAlone() const
 {
   return !this->Controller || this->Controller->GetNumberOfProcesses() < 2;
@@ -79,49 +97,106 @@ bool SampledSurface::IsAlone() const
 
 void SampledSurface::TakeLargest(double* values, vtkIdType count) const
 {
-  if (!this->IsAlone() && count > 0)
+  if (this->IsAlone())
   {
-    std::vector<double> largest(static_cast<std::size_t>(count));
-    this->Controller->AllReduce(values, largest.data(), count, vtkCommunicator::MAX_OP);
-    std::copy(largest.begin(), largest.end(), values);
+    return;
+  }
+  std::array<double, 4096> largest;
+  for (vtkIdType done = 0; done < count;)
+  {
+    const vtkIdType some = std::min(count - done, static_cast<vtkIdType>(largest.size()));
+    this->Controller->AllReduce(values + done, largest.data(), some, vtkCommunicator::MAX_OP);
+    std::copy_n(largest.begin(), some, values + done);
+    done += some;
   }
 }
 
 void SampledSurface::Agree(const std::function<void()>& work) const
 {
-  std::exception_ptr failure;
+  std::string words;
+  bool hasFailed = true;
   try
   {
     work();
+    hasFailed = false;
   }
-  catch (...)
+  catch (const Aborted&)
   {
-    failure = std::current_exception();
+    // without words
   }
-  double hasFailed = failure ? 1.0 : 0.0;
-  this->TakeLargest(&hasFailed, 1);
-  if (failure)
+  catch (const std::bad_alloc&)
   {
-    std::rethrow_exception(failure);
+    words = "There is not enough memory.";
   }
-  if (hasFailed > 0.0)
+  catch (const std::exception& failure)
   {
-    throw Error("Another rank (process) has failed, and reports why.");
+    words = failure.what();
   }
+  const int own = this->IsAlone() ? 0 : this->Controller->GetLocalProcessId();
+  const int first = this->FirstOf(hasFailed);
+  if (first == None)
+  {
+    return;
+  }
+  if (!this->IsAlone())
+  {
+    words = own > 0 && !words.empty() ? "On rank " + std::to_string(own) + ": " + words : words;
+    vtkIdType length = static_cast<vtkIdType>(words.size());
+    this->Controller->Broadcast(&length, 1, first);
+    words.resize(static_cast<std::size_t>(length));
+    this->Controller->Broadcast(words.data(), length, first);
+  }
+  if (words.empty())
+  {
+    throw Aborted();
+  }
+  throw Error(words);
 }
 
-void SampledSurface::Share(vtkDoubleArray* numbers) const
+int SampledSurface::FirstOf(bool isOne) const
+{
+  const int own = this->IsAlone() ? 0 : this->Controller->GetLocalProcessId();
+  double lowest = isOne ? -own : -Infinity; // the largest
+  this->TakeLargest(&lowest, 1);
+  return lowest > -Infinity ? static_cast<int>(-lowest) : None;
+}
+
+void SampledSurface::JoinLines(vtkDoubleArray* corners) const
 {
   if (this->IsAlone())
   {
     return;
   }
-  const int own = this->Controller->GetLocalProcessId();
-  double first = numbers->GetNumberOfValues() > 0 ? -own : -Infinity; // the largest is of the first
-  this->TakeLargest(&first, 1);
-  if (first > -Infinity)
+  const double length = static_cast<double>(corners->GetNumberOfTuples());
+  std::vector<double> lengths(static_cast<std::size_t>(this->Controller->GetNumberOfProcesses()));
+  this->Controller->AllGather(&length, lengths.data(), 1);
+  vtkNew<vtkDoubleArray> all;
+  all->SetNumberOfComponents(3);
+  this->Controller->AllGatherV(corners, all);
+  using Tuple = std::array<double, 3>;
+  std::vector<std::vector<Tuple>> parts; // of each rank, no two the same
+  vtkIdType next = 0;
+  for (const double count : lengths)
   {
-    this->Controller->Broadcast(numbers, static_cast<int>(-first));
+    std::vector<Tuple> part(static_cast<std::size_t>(count));
+    for (Tuple& corner : part)
+    {
+      all->GetTypedTuple(next++, corner.data());
+    }
+    if (std::find(parts.begin(), parts.end(), part) == parts.end())
+    {
+      parts.push_back(part);
+    }
+  }
+  corners->Reset();
+  double lines = 0.0;
+  for (const std::vector<Tuple>& part : parts)
+  {
+    for (const Tuple& corner : part)
+    {
+      corners->InsertNextTuple3(corner[0], corner[1], lines + corner[2]);
+    }
+    lines += part.empty() ? 0.0 : part.back()[2] + 1.0;
   }
 }
 
@@ -142,23 +217,28 @@ vtkIdType SampledSurface::Sample(
       arrays.push_back(array);
     }
   }
-  // Elevations first.
+  // Elevations first. All memory is taken here, as what fails later would leave the others waiting.
   std::vector<std::vector<double>> found;
+  std::vector<vtkSmartPointer<vtkDoubleArray>> made;
   this->Agree([&] {
     found.assign(names.size() + 1, std::vector<double>(static_cast<std::size_t>(count), Unknown));
     if (this->Surface->GetNumberOfPolys() > 0)
     {
       found = SurfaceQuery(this->Surface).Interpolate(places, false, arrays, progress);
     }
+    for (const std::vector<double>& own : found)
+    {
+      made.push_back(vtkSmartPointer<vtkDoubleArray>::New());
+      made.back()->SetNumberOfValues(count);
+      // NaN has no order, so the least number stands for it.
+      std::replace_copy_if(
+        own.begin(), own.end(), made.back()->GetPointer(0), [](double z) { return std::isnan(z); },
+        -Infinity);
+    }
   });
-  const auto add = [&](const char* name, const std::vector<double>& own) {
-    vtkNew<vtkDoubleArray> array;
+  const auto add = [&](const char* name, vtkDoubleArray* array) {
     array->SetName(name);
-    array->SetNumberOfValues(count);
     double* const numbers = array->GetPointer(0);
-    // NaN has no order, so the least number stands for it.
-    std::replace_copy_if(
-      own.begin(), own.end(), numbers, [](double z) { return std::isnan(z); }, -Infinity);
     this->TakeLargest(numbers, count);
     std::replace(numbers, numbers + count, -Infinity, Unknown);
     values->AddArray(array);
@@ -166,9 +246,9 @@ vtkIdType SampledSurface::Sample(
   };
   for (std::size_t i = 0; i < names.size(); ++i)
   {
-    add(names[i], found[i + 1]);
+    add(names[i], made[i + 1]);
   }
-  const vtkIdType inside = add(ElevationName, found[0]);
+  const vtkIdType inside = add(ElevationName, made[0]);
   values->SetActiveScalars(ElevationName);
   return inside;
 }

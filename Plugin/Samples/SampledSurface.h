@@ -18,6 +18,7 @@
 
 class vtkAlgorithm;
 class vtkDoubleArray;
+class vtkInformation;
 class vtkMultiProcessController;
 class vtkPointData;
 class vtkPolyData;
@@ -32,11 +33,11 @@ class SampledSurface
 {
 public:
   /**
-   * @param[in] surface     this rank's part; triangles
-   * @param[in] controller  of all ranks, or nullptr
+   * @param[in] surface  this rank's part; triangles
+   * @param[in] request  of the output: the ranks work together where it asks for pieces
    * @throws Error on all ranks if there is no triangle on any
    */
-  SampledSurface(vtkPolyData* surface, vtkMultiProcessController* controller);
+  SampledSurface(vtkPolyData* surface, vtkInformation* request);
 
   /** The bounds in x and y of the points that triangles use, of all ranks. */
   const Box& Bounds() const { return this->Extent; }
@@ -45,21 +46,27 @@ public:
    * Adds the array Elevation, and those of filled elevations that the surface has: NaN outside.
    * @param[in] places  tuples of x and y, the same on all ranks
    * @return at how many places there is a surface
-   * @throws std::exception on all ranks or on none
+   * @throws Error, Aborted as Agree()
    */
   vtkIdType Sample(vtkDoubleArray* places, const Progress& progress, vtkPointData* values) const;
 
   /**
    * Does something on all ranks, which must not wait for each other meanwhile.
-   * @throws std::exception on all ranks if it does so on one
+   * @throws Error on all ranks if it throws on one: the words of the first of these, which name it;
+   *         Aborted on all if it is on the first
    */
   void Agree(const std::function<void()>& work) const;
 
-  /** Hands the numbers of the first rank that has any to all. */
-  void Share(vtkDoubleArray* numbers) const;
+  /**
+   * Hands the lines of all ranks to each. What several ranks have as a whole counts once.
+   * @param[in,out] corners  tuples of x, y and the number of the line, from 0
+   */
+  void JoinLines(vtkDoubleArray* corners) const;
 
 private:
   bool IsAlone() const;
+  /** The first rank that is one, or None. */
+  int FirstOf(bool isOne) const;
   /** The largest of all ranks, number by number. */
   void TakeLargest(double* values, vtkIdType count) const;
 
@@ -67,6 +74,9 @@ private:
   vtkMultiProcessController* const Controller;
   Box Extent;
 };
+
+/** Whether this rank speaks for all that work on the request of an output. */
+bool IsFirstRank(vtkInformation* request);
 
 /** Progress and abort of a filter of the plugin. */
 Progress ProgressOfSampling(vtkAlgorithm* filter);

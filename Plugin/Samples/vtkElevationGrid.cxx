@@ -9,7 +9,6 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -87,16 +86,19 @@ int vtkElevationGrid::RequestData(
   vtkImageData* const output = vtkImageData::GetData(outputVector);
   output->Initialize();
   const int columns = this->Dimensions[0], rows = this->Dimensions[1];
+  vtkInformation* const request = outputVector->GetInformationObject(0);
   if (columns < 2 || rows < 2 || static_cast<vtkIdType>(columns) * rows > MostNodes)
   {
-    vtkErrorMacro(<< "Dimensions are " << columns << " and " << rows
-                  << "; they must be 2 or more each, and " << MostNodes << " nodes at most.");
+    if (elevation::IsFirstRank(request))
+    {
+      vtkErrorMacro(<< "Dimensions are " << columns << " and " << rows
+                    << "; they must be 2 or more each, and " << MostNodes << " nodes at most.");
+    }
     return 1;
   }
   try
   {
-    const elevation::SampledSurface surface(
-      vtkPolyData::GetData(inputVector[0]), vtkMultiProcessController::GetGlobalController());
+    const elevation::SampledSurface surface(vtkPolyData::GetData(inputVector[0]), request);
     const elevation::Box& bounds = surface.Bounds();
     const double dx = (bounds.High.X - bounds.Low.X) / (columns - 1);
     const double dy = (bounds.High.Y - bounds.Low.Y) / (rows - 1);
@@ -116,15 +118,20 @@ int vtkElevationGrid::RequestData(
     output->SetOrigin(bounds.Low.X, bounds.Low.Y, 0.0);
     output->SetSpacing(dx, dy, 1.0);
     surface.Sample(places, elevation::ProgressOfSampling(this), output->GetPointData());
-    HideOutside(output);
-    // Of several ranks each has all nodes then, and passes on its part.
-    output->Crop(outputVector->GetInformationObject(0)->Get(
-      vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()));
+    surface.Agree([&] {
+      HideOutside(output);
+      // Of several ranks each has all nodes, and passes on its part.
+      output->Crop(request->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()));
+    });
+  }
+  catch (const elevation::Aborted&)
+  {
+    output->Initialize();
   }
   catch (const std::exception& failure)
   {
     output->Initialize();
-    if (this->GetAbortExecute() == 0)
+    if (elevation::IsFirstRank(request))
     {
       vtkErrorMacro(<< failure.what());
     }

@@ -7,7 +7,8 @@
  * Input: vtkPolyData with triangles, one elevation for each x,y. Output: a flat vtkImageData whose
  * nodes cover the bounds of the triangles, with the point array Elevation, linear in each triangle;
  * and FilledError, FilledLow and FilledHigh where the surface has them. Nodes outside of the
- * surface have NaN, and are hidden, as are the cells at them.
+ * surface have NaN, and are hidden, as are the cells at them. Where pieces are asked for, all ranks
+ * work together: the surface may be on any.
  *
  * Private to the ParaView plugin. vtkResampleToImage samples in space, so it finds the surface at
  * no node.

@@ -16,7 +16,6 @@
 #include "vtkIdList.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -203,16 +202,19 @@ int vtkElevationProfile::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkPolyData* const output = vtkPolyData::GetData(outputVector);
+  vtkInformation* const request = outputVector->GetInformationObject(0);
   if (this->Resolution < 1 || this->Resolution > MostSteps)
   {
-    vtkErrorMacro(<< "Resolution is " << this->Resolution << "; it must be 1 to " << MostSteps
-                  << ".");
+    if (elevation::IsFirstRank(request))
+    {
+      vtkErrorMacro(<< "Resolution is " << this->Resolution << "; it must be 1 to " << MostSteps
+                    << ".");
+    }
     return 1;
   }
   try
   {
-    vtkMultiProcessController* const controller = vtkMultiProcessController::GetGlobalController();
-    const elevation::SampledSurface surface(vtkPolyData::GetData(inputVector[0]), controller);
+    const elevation::SampledSurface surface(vtkPolyData::GetData(inputVector[0]), request);
     const elevation::Box& bounds = surface.Bounds();
     vtkNew<vtkDoubleArray> corners;
     corners->SetNumberOfComponents(3);
@@ -230,11 +232,11 @@ int vtkElevationProfile::RequestData(
         corners->InsertNextTuple3(this->Point2[0], this->Point2[1], 0.0);
       }
     });
-    surface.Share(corners);
+    surface.JoinLines(corners);
     surface.Agree([&] { SampleLines(corners, this->Resolution, samples); });
     const vtkIdType found =
       surface.Sample(samples.Places, elevation::ProgressOfSampling(this), output->GetPointData());
-    if (controller && controller->GetLocalProcessId() > 0)
+    if (!elevation::IsFirstRank(request))
     {
       output->Initialize(); // the first rank has it
       return 1;
@@ -249,10 +251,14 @@ int vtkElevationProfile::RequestData(
                       << bounds.High.Y << ".");
     }
   }
+  catch (const elevation::Aborted&)
+  {
+    output->Initialize();
+  }
   catch (const std::exception& failure)
   {
     output->Initialize();
-    if (this->GetAbortExecute() == 0)
+    if (elevation::IsFirstRank(request))
     {
       vtkErrorMacro(<< failure.what());
     }

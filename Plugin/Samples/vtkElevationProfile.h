@@ -12,6 +12,9 @@
  * NaN outside of the surface; vtkValidPointMask, 0 there. (These names are those of VTK's probes.)
  * Points outside have the lowest elevation of the others as their z.
  *
+ * Where pieces are asked for, all ranks work together: surface and lines may be on any, and the
+ * first has the output.
+ *
  * Private to the ParaView plugin. vtkProbeLineFilter samples in space, so it finds the surface
  * nowhere.
  */

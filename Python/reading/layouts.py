@@ -80,6 +80,7 @@ def find_layout(path, lines, needed):
 
     best = max(LAYOUTS, key=rows_and_numbers)
     has_rows = rows_and_numbers(best)[0] > 0
+    are_needed = f"{'x, y and z' if needed == 3 else 'x and y'} are needed in columns of their own"
     for pattern, most, words in NO_NUMBERS:
         if sum(bool(re.search(pattern, line)) for line in sample) > (most if has_rows else 0.0) * len(sample):
             raise FileError(f"{path}: {words}")
@@ -89,10 +90,9 @@ def find_layout(path, lines, needed):
     if 2 * len(touching) > len(sample):
         raise FileError(f"{path}: {are_touching(touching[0])}")
     if not any(re.search(r"\d", line) for line in sample):
-        raise FileError(f"{path}: holds text, but no numbers")
+        raise FileError(f"{path}: holds text, but no numbers. {are_needed}")
     raise FileError(
-        f"{path}: no line holds {needed} numbers; the most is {max(map(max, counts.values()))}. "
-        f"{'x, y and z' if needed == 3 else 'x and y'} are needed in columns of their own"
+        f"{path}: no line holds {needed} numbers; the most is {max(map(max, counts.values()))}. {are_needed}"
     )
 
 

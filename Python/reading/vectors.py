@@ -156,13 +156,15 @@ class Layer:
         """Takes z from an attribute where the geometry has none. Returns notes.
 
         columns    None, or three names of which the third is the attribute
-        is_needed  False: where several attributes could be z, none is
+        is_needed  False: where several attributes could be z, or one that holds words, none is
         """
         name = self.height_attribute(columns, is_needed)
         has_z = bool(numpy.nan_to_num(self.coordinates()[:, 2]).any())
         if name is None or has_z and not columns and not self.flat:
             return [] if name is None or not has_z else [f"z from the geometry, not from {name}"]
         values = self.numbers(name)
+        if values is None and not is_needed:
+            return []
         if values is None:
             bad = next(v for v in self.fields[name] if not is_number(v))
             raise FileError(f"{self.path}: '{bad}' in attribute {name} is not a number")
@@ -232,7 +234,7 @@ def read_layer(path, wanted, columns, progress, as_lines=False, needs_z=True):
 
 def read_flat_points(path, progress=no_progress):
     """((n, 2) points, and vertices of lines and polygons; the reference system or None): no z is needed."""
-    layer, _, crs = read_layer(path, None, None, progress)
+    layer, _, crs = read_layer(path, None, None, progress, needs_z=False)
     return numpy.concatenate([p[:-1, :2] if kind == "ring" else p[:, :2] for kind, p in layer.parts]), crs
 
 
@@ -288,7 +290,8 @@ def read_lines(path, singular, progress):
         raise FileError(f"{path}: holds no line and no polygon that could be {singular}")
     data = make_lines(parts, names)
     for name, values in layer.fields.items():
-        if any(isinstance(value, (int, float)) for value in values) and layer.numbers(name) is not None:
+        # Numbers that a file has as text are numbers, too.
+        if any(isinstance(value, (int, float, str)) for value in values) and layer.numbers(name) is not None:
             add_array(data, name, layer.numbers(name)[features], "Cell")
     if crs:
         set_crs(data, crs)

@@ -15,9 +15,10 @@ split = sys.argv.index("--server")
 SERVER = sys.argv[split + 1:]
 sys.argv = sys.argv[:split]
 
+import numpy  # noqa: E402
 from paraview import simple  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkOutputWindow  # noqa: E402
-from plugin_testing import FAILURES, check, check_equal, fetch, information, start  # noqa: E402
+from plugin_testing import FAILURES, array, check, check_equal, fetch, information, points, start  # noqa: E402
 
 ATTEMPTS = 3
 # pvpython has made itself a rank, which mpirun must not see.
@@ -99,8 +100,26 @@ if server:
         check_equal(cells(surface), cells(simple.GridDelaunay2D(Input=together)), "triangles on two ranks and on one")
         filled = simple.FillElevationHoles(Input=simple.TrimOutwardTriangles(Input=surface))
         check(cells(filled) > 1000, "triangles after the chain of filters")
+        gathered = simple.AggregateDataset(Input=filled)
+        gathered.NumberOfTargetProcesses = 1
+        grids = [simple.ElevationGrid(Input=data, Dimensions=[40, 30]) for data in (filled, gathered)]
+        contours = [fetch(simple.Contour(Input=grid, ContourBy=["POINTS", "Elevation"], Isosurfaces=[0.4]))
+                    for grid in grids]  # of an image on several ranks the client gets the first part alone
+        for grid in grids:
+            check_equal(grid.GetDataInformation().GetExtent(), (0, 39, 0, 29, 0, 0), "the grid of a surface on two ranks")
+        places = [points(lines)[numpy.isfinite(points(lines)).all(axis=1)] for lines in contours]  # not at hidden nodes
+        mine, expected = (numpy.unique(some.round(6), axis=0) for some in places)
+        check(len(expected) > 50 and numpy.array_equal(mine, expected), "contour lines of the grid")
+        mine, expected = (fetch(simple.ElevationProfile(Input=data)) for data in (filled, gathered))
+        check_equal(mine.GetNumberOfPoints(), 1001, "points of a profile of a surface on two ranks")
+        mine, expected = (array(data.GetPointData(), "Elevation") for data in (mine, expected))
+        check(numpy.isfinite(expected).sum() > 500, "the profile meets the surface")
+        check(numpy.allclose(mine, expected, rtol=0, atol=1e-12, equal_nan=True), "elevations of the profile")
         olinda = simple.ElevationPoints(FileName=os.path.join(data, "olinda_land.xyz"))
         check_equal(cells(olinda), 10266, "points of a file that the server reads")
+        for make in (simple.ElevationGrid, simple.ElevationProfile):
+            errors = errors_at_client(make(Input=olinda))
+            check(len(errors) == 1 and "has no triangles" in errors[0], "points alone are an error: %s" % errors)
         whole = simple.ReconstructElevationSurface(Input=olinda)
         check(cells(whole) > 20000, "triangles of the whole chain")
         check("10,266 read" in information(whole, "Report"), "the report is in the client's panel")

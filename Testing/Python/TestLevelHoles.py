@@ -191,8 +191,9 @@ class OfProgram(Program):
                       " ".join(done.stdout.split()))
         for arguments, code, words in (
             (["--level-attribute", "water", "--strict"], 1, "was not filled. It touches areas with different levels"),
-            (["--level-attribute", "deep"], 1, '--level-attribute is "deep", but the areas have no cell array of '
-             "single numbers with this name; there are WithoutZ, water."),
+            (["--level-attribute", "deep"], 1, "lakes.geojson: has no attribute deep of numbers, which "
+             "--level-attribute names; those of numbers are water"),
+            (["--level-attribute", "Water"], 1, "are water; did you mean water?"),
         ):
             done = self.call(*few, *arguments)
             self.assertEqual((done.returncode, len(done.stderr.strip().splitlines())), (code, 1), done.stderr)
@@ -204,6 +205,21 @@ class OfProgram(Program):
             done = self.call(*arguments)
             self.assertEqual(done.returncode, 2)
             self.assertIn(words, done.stderr)
+
+    def test_takes_levels_that_a_file_has_as_text(self):
+        self.file("survey.xyz", "\n".join("%r %r %r" % tuple(row) for row in survey().tolist()))
+        few = ["survey.xyz", "--maximum-edge-length", "2", "--fill-only", "lakes.geojson", "--no-picture"]
+        # Words in an attribute that is called as z are none of an area.
+        self.geojson("lakes.geojson", LAKES, water=["90.5", "131"], elevation=["low", "high"])
+        done = self.call(*few, "--level-attribute", "water", "--report", "r.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        levels = [hole["level"] for hole in self.json("r.json")["holes"]["list"] if hole["level"]]
+        self.assertEqual(sorted(levels), [90.5, 131.0])
+        self.geojson("lakes.geojson", LAKES, name=["90.5", "deep"])
+        done = self.call(*few, "--level-attribute", "name")
+        self.assertEqual((done.returncode, len(done.stderr.strip().splitlines())), (1, 1), done.stderr)
+        self.assertIn("lakes.geojson: has no attribute name of numbers, which --level-attribute names; none is of",
+                      done.stderr)
 
     def test_fills_chosen_lakes_level_and_reports_by_how_much(self):
         self.file("survey.xyz", "\n".join("%r %r %r" % tuple(row) for row in survey().tolist()))
@@ -243,8 +259,13 @@ class Python(unittest.TestCase):
         self.assertEqual(levels, [90.0, 130.0])
         with self.assertRaisesRegex(ValueError, "^level_attribute is for the areas of fill_only, which are missing$"):
             reconstruct(survey(), level_attribute="water")
-        with self.assertRaisesRegex(ElevationSurfaceError, '"deep", but the areas have no cell array'):
-            reconstruct(survey(), maximum_edge_length=2.0, fill_only=areas, level_attribute="deep")
+        for ring, words in ((areas, "those of numbers are water"), (LAKES[0], "none is of numbers")):
+            words = "^fill_only: has no attribute deep of numbers, which level_attribute names; " + words + "$"
+            with self.assertRaisesRegex(ElevationSurfaceError, words):
+                reconstruct(survey(), maximum_edge_length=2.0, fill_only=ring, level_attribute="deep")
+        for wrong in (3, ""):
+            with self.assertRaisesRegex(ValueError, f"^level_attribute takes a name, not {wrong!r}$"):
+                reconstruct(survey(), fill_only=areas, level_attribute=wrong)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Heights of a surface at places, and volumes between surfaces."""
 
+import json
 import math
 import os
 import sys
@@ -156,7 +157,7 @@ class Volumes(unittest.TestCase):
 
     def test_wrong_others_are_named(self):
         result = surface_of(square(50))
-        with self.assertRaisesRegex(ElevationSurfaceError, "do not overlap: the other surface is from x 20 to 30"):
+        with self.assertRaisesRegex(ElevationSurfaceError, "do not overlap: the other surface is from x 20 to 30.*same coord"):
             result.volume_above(surface_of(square(50, 20.0, 30.0)))
         with self.assertRaisesRegex(ElevationSurfaceError, "has no triangles"):
             result.volume_above(vtkPolyData())
@@ -251,6 +252,16 @@ class Files(Program):
             numpy.testing.assert_allclose(z, found["deg.gpkg", ("--project",)], atol=3.0)
         numpy.testing.assert_allclose(found["utm.gpkg", ("--project",)], found["deg.gpkg", ("--project",)], atol=1e-5)
 
+    def test_places_need_no_elevation(self):
+        features = [
+            {"type": "Feature", "properties": {"z": "low", "elevation": 3.0, "height": 4.0},
+             "geometry": {"type": "Point", "coordinates": place}} for place in ([5.0, 5.0], [2.0, 3.0])
+        ]
+        crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::32632"}}
+        self.file("places.geojson", json.dumps({"type": "FeatureCollection", "crs": crs, "features": features}))
+        output, _ = self.run_on_ground("--at", "places.geojson")
+        self.assertIn("at 2 places of places.geojson, 0 outside", output)
+
     def test_volume_to_a_file_and_to_a_level(self):
         surface_of(square(500) - (0, 0, 1)).write(self.path("lower.vtp"))
         _, report = self.run_on_ground("--volume", "lower.vtp")
@@ -263,8 +274,12 @@ class Files(Program):
 
     def test_what_cannot_be_asked_is_one_line_and_nothing_is_written(self):
         self.file("words.csv", "no,numbers\n")
+        self.file("one.csv", "x\n1\n")
         for options, words in (
-            (("--at", "words.csv"), "words.csv: "),
+            (("--at", "words.csv"), "words.csv: holds text, but no numbers. x and y are needed in columns of their own"),
+            (("--at", "one.csv"), "one.csv: no line holds 2 numbers; the most is 1. x and y are needed"),
+            (("--volume", "nan"), "--volume takes the file of a surface, or a finite level, not 'nan'"),
+            (("--volume", ""), "--volume takes the file of a surface, or a finite level, not ''"),
             (("--at", "missing.csv"), "missing.csv: no such file"),
             (("--volume", "ground.csv"), "ground.csv: has no triangles"),
             (("--volume", "missing.vtp"), "missing.vtp: no such file"),
@@ -278,7 +293,7 @@ class Files(Program):
                 self.assertIn(done.returncode, (1, 2))
                 self.assertIn(words, done.stderr)
                 self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
-                self.assertEqual(sorted(os.listdir(self.folder)), ["ground.csv", "words.csv"])
+                self.assertEqual(sorted(os.listdir(self.folder)), ["ground.csv", "one.csv", "words.csv"])
 
 
 if __name__ == "__main__":

@@ -109,6 +109,13 @@ class OnRanks(Program):
         os.remove(self.path("s.vtp"))
         return (*lines_and_report, surface)
 
+    def result(self, name):
+        """What a table holds, or a mesh by places."""
+        if name.endswith(".csv"):
+            with open(self.path(name), encoding="utf-8") as stream:
+                return stream.read()
+        return triangles(vtk_files.run_vtk_reader(self.path(name)))
+
     def in_pieces(self, ranks, arguments):
         """(the report's lines, the JSON, the names of pieces, their triangles by places and by ids)"""
         lines_and_report = self.report_of(ranks, [*arguments, "--pieces", "6", "-o", "s.vtpd"])
@@ -203,6 +210,41 @@ class OnRanks(Program):
         self.file("a.txt", "0 0 1\n9 0 2\n4 7 3\n5 2 4\n3 3 5\n")
         self.check_same(3, "a.txt", "--no-trim", "--no-fill")
 
+    def test_heights_and_volumes_are_those_of_one_rank(self):
+        self.file("a.txt", cloud(1500))
+        self.file("b.txt", cloud(900))
+        self.file("p.csv", "x,y\n50,40\n10,10\n500,1\n51.3,38.2\n70,20.5\n")
+        self.file("far.txt", "0 300 1\n9 300 2\n4 307 3\n")
+        for name in ("b", "far"):
+            self.assertEqual(self.call(f"{name}.txt", "--no-picture", "-o", f"{name}.vtp").returncode, 0)
+        given = set(os.listdir(self.folder))
+        for options in (
+            ("--at", "p.csv", "--volume", "b.vtp"),
+            ("--at", "p.csv", "--method", "natural-neighbor", "--volume", "2.5"),
+        ):
+            made = {}
+            for ranks in (0, 2, 4):
+                words = self.report_of(ranks, ["a.txt", "--no-picture", *options])
+                names = sorted(set(os.listdir(self.folder)) - given - {"a_surface.vtp"})
+                made[ranks] = (*words, names, [self.result(name) for name in names])
+                for name in names:
+                    os.remove(self.path(name))
+            lines, report, names, results = made.pop(0)
+            with self.subTest(options=options):
+                self.assertEqual(len(names), options.count("--at") + options.count("--volume"))
+                for other_lines, other_report, *others in made.values():
+                    self.assertEqual(other_lines, lines)
+                    self.assertEqual(other_report, report)
+                    self.assertEqual(others[0], names)
+                    for mine, expected in zip(others[1], results):
+                        numpy.testing.assert_array_equal(mine, expected)
+        os.remove(self.path("a_surface.vtp"))
+        refused = self.again_on(2, "a.txt", "--no-picture", "--volume", "far.vtp")
+        said = [line for line in refused.stderr.splitlines() if "reconstruct:" in line]
+        self.assertEqual((refused.returncode, len(said), plain(refused.stdout)), (1, 1, []), refused.stderr)
+        self.assertIn("--volume: far.vtp and the surface do not overlap", said[0])
+        self.assertEqual(set(os.listdir(self.folder)), given)
+
     def test_mpirun_with_one_rank(self):
         self.file("a.txt", cloud(300))
         self.check_same(1, "a.txt")
@@ -296,6 +338,8 @@ class OnRanks(Program):
             ["nowhere.txt"],
             ["a.txt", "--foo"],
             ["a.txt", "--boundary", os.path.join(DATA, "aegean_sea_boundary.vtp")],
+            ["a.txt", "--at", "nowhere.csv"],
+            ["a.txt", "--volume", "a.txt"],
         ):
             with self.subTest(arguments=arguments):
                 alone, together = (self.again_on(ranks, *arguments) for ranks in (0, 2))

@@ -136,8 +136,13 @@ class Input(unittest.TestCase):
         hole = RING * 0.2 + 4
         result = reconstruct(SHEET, boundary=[RING, hole], fill=False)
         self.assertEqual(result.boundary.GetNumberOfLines(), 2)
-        with self.assertRaisesRegex(ValueError, "a ring has 2 points"):
-            reconstruct(SHEET, boundary=RING[:2])
+        for count, words in ((2, "2 points"), (1, "1 point")):
+            with self.assertRaisesRegex(ValueError, f"^boundary: a ring has {words}; 3 are needed$"):
+                reconstruct(SHEET, boundary=RING[:count])
+        for name in ("boundary", "faults", "fill_only", "keep_open"):
+            for empty in ([], numpy.zeros((0, 2))):
+                with self.assertRaisesRegex(ValueError, f"^{name}: is empty; leave it out"):
+                    reconstruct(SHEET, **{name: empty})
 
     def test_images_and_grids_are_rasters_of_their_scalars(self):
         image, grid = vtkImageData(), vtkRectilinearGrid()

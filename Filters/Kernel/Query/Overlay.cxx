@@ -8,7 +8,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
+#include <vector>
+
+// Where a processor may have the instruction for std::fma(), and the compiler must not count on it.
+#if defined(__GNUC__) && defined(__x86_64__) && !defined(__FMA__)
+#define ELEVATION_CHOOSES_FMA
+#define ELEVATION_APART [[gnu::noinline]]
+#else
+#define ELEVATION_APART
+#endif
 
 namespace elevation
 {
@@ -18,6 +28,8 @@ namespace
 
 // Triangles that a thread works on at a time: some milliseconds.
 constexpr Index AtOnce = 1024;
+// That are near each other, and look for those of the other surface together.
+constexpr Index Together = 4;
 
 /** A corner of a polygon, seen from the first corner of its triangle. */
 struct Corner
@@ -32,21 +44,16 @@ struct Corner
  * flat one, so that a line cuts off several corners that are not neighbours: of n corners half at
  * most, each of which gives way to two. From 3, four cuts make at most 4, 6, 9, 13.
  */
+constexpr int MostCorners = 13;
 struct Polygon
 {
-  Polygon() = default;
-  // Many are copied, so only the corners that there are.
-  Polygon(const Polygon& other)
-    : Count(other.Count)
-  {
-    std::copy_n(other.Corners.begin(), other.Count, this->Corners.begin());
-  }
-  Polygon& operator=(const Polygon&) = delete;
-
-  std::array<Corner, 13> Corners;
+  std::array<Corner, MostCorners> Corners;
   int Count = 0;
 
   void Add(const Corner& corner) { this->Corners[this->Count++] = corner; }
+  int Next(int corner) const { return corner + 1 == this->Count ? 0 : corner + 1; }
+  /** Corners as the bits of a number: all. */
+  unsigned All() const { return (1u << this->Count) - 1u; }
 };
 
 double TwiceArea(const Point2& a, const Point2& b, const Point2& c)
@@ -54,49 +61,96 @@ double TwiceArea(const Point2& a, const Point2& b, const Point2& c)
   return DifferenceOfProducts(b.X - a.X, c.Y - a.Y, b.Y - a.Y, c.X - a.X);
 }
 
-/** Cuts off a polygon where a function that is linear in the plane is below 0. */
-template <typename Function>
-void Cut(Polygon& polygon, const Function& function)
+/** TwiceArea() in plain arithmetic, and its error at most: mostly the sign is all that counts. */
+struct QuickArea
 {
-  std::array<double, 13> values;
-  int below = 0;
+  QuickArea(const Point2& a, const Point2& b, const Point2& c)
+  {
+    const double left = (b.X - a.X) * (c.Y - a.Y), right = (b.Y - a.Y) * (c.X - a.X);
+    this->Twice = left - right;
+    // Two products and their difference are off by at most (2 + u) u of the sum, with u = 2^-53,
+    // from the area of the rounded differences, whose sign TwiceArea() has; what underflows is far
+    // below the second term.
+    this->Error = 4.0 * 1.1102230246251565e-16 * (std::fabs(left) + std::fabs(right)) + 1e-290;
+  }
+  bool IsRight() const { return this->Twice < -this->Error; }
+  bool IsUnsure() const { return std::fabs(this->Twice) <= this->Error; }
+
+  double Twice, Error;
+};
+
+/** Whether c is to the left of the line from a to b, or so far away that this is not a number. */
+bool IsLeft(const Point2& a, const Point2& b, const Point2& c)
+{
+  const QuickArea area(a, b, c);
+  return !((area.IsUnsure() ? TwiceArea(a, b, c) : area.Twice) <= 0.0);
+}
+
+/** The corners to the right of the line from a to b, where TwiceArea() is below 0, as bits. */
+unsigned CornersRightOf(const Polygon& polygon, const Point2& a, const Point2& b)
+{
+  unsigned right = 0, unsure = 0;
   for (int i = 0; i < polygon.Count; ++i)
   {
-    values[i] = function(polygon.Corners[i]);
-    below += values[i] < 0.0;
+    const QuickArea area(a, b, polygon.Corners[i].At);
+    right |= static_cast<unsigned>(area.IsRight()) << i;
+    unsure |= static_cast<unsigned>(area.IsUnsure()) << i;
   }
-  // Of triangles that are near each other, most are cut by no edge, or away by the first.
-  if (below == 0 || below == polygon.Count)
+  for (int i = 0; unsure >> i != 0; ++i)
   {
-    polygon.Count = below == 0 ? polygon.Count : 0;
-    return;
+    const bool isRight = (unsure >> i & 1u) != 0 && TwiceArea(a, b, polygon.Corners[i].At) < 0.0;
+    right |= static_cast<unsigned>(isRight) << i;
   }
-  const Polygon whole = polygon;
-  polygon.Count = 0;
-  for (int i = 0; i < whole.Count; ++i)
+  return right;
+}
+
+/**
+ * Cuts off a polygon where a function that is linear in the plane is below 0.
+ * @param[in] below    the corners where it is, as bits: some, but not all
+ * @param[in] valueAt  valueAt(corner), asked for at ends of edges that are cut alone
+ * @param[out] rest    another polygon
+ */
+template <typename Function>
+void Cut(const Polygon& polygon, unsigned below, const Function& valueAt, Polygon& rest)
+{
+  const auto addBetween = [&](const Corner& a, const Corner& b) {
+    const double value = valueAt(a);
+    const double share = value / (value - valueAt(b));
+    rest.Add({ { a.At.X + share * (b.At.X - a.At.X), a.At.Y + share * (b.At.Y - a.At.Y) },
+      a.Difference + share * (b.Difference - a.Difference),
+      a.Value + share * (b.Value - a.Value) });
+  };
+  rest.Count = 0;
+  // The stretches that stay: mostly one.
+  const unsigned stay = polygon.All() & ~below;
+  const unsigned begins = stay & (below << 1 | below >> (polygon.Count - 1));
+  for (int begin = 0; begins >> begin != 0; ++begin)
   {
-    const int next = i + 1 == whole.Count ? 0 : i + 1;
-    const Corner& a = whole.Corners[i];
-    const Corner& b = whole.Corners[next];
-    if (values[i] >= 0.0)
+    if ((begins >> begin & 1u) == 0)
     {
-      polygon.Add(a);
+      continue;
     }
-    if ((values[i] < 0.0) != (values[next] < 0.0))
+    addBetween(polygon.Corners[begin == 0 ? polygon.Count - 1 : begin - 1], polygon.Corners[begin]);
+    int last = begin, next = begin;
+    do
     {
-      const double share = values[i] / (values[i] - values[next]);
-      polygon.Add({ { a.At.X + share * (b.At.X - a.At.X), a.At.Y + share * (b.At.Y - a.At.Y) },
-        a.Difference + share * (b.Difference - a.Difference),
-        a.Value + share * (b.Value - a.Value) });
-    }
+      rest.Add(polygon.Corners[next]);
+      last = next;
+      next = polygon.Next(next);
+    } while ((stay >> next & 1u) != 0);
+    addBetween(polygon.Corners[last], polygon.Corners[next]);
   }
 }
 
-/** The integral of a linear function over a polygon. */
-template <typename Function>
-double Integral(const Polygon& polygon, const Function& function)
+/** Of the linear functions on a polygon. */
+struct Integrals
 {
-  double sum = 0.0;
+  double Area, Difference, Value;
+};
+
+Integrals Integrate(const Polygon& polygon)
+{
+  Integrals sum{ 0.0, 0.0, 0.0 };
   const Corner& first = polygon.Corners[0];
   for (int i = 2; i < polygon.Count; ++i)
   {
@@ -104,28 +158,25 @@ double Integral(const Polygon& polygon, const Function& function)
     const Corner& b = polygon.Corners[i];
     // Rounding may leave a triangle without area a little of the wrong sign.
     const double area = std::max(0.0, TwiceArea(first.At, a.At, b.At));
-    sum += area * (function(first) + function(a) + function(b)) / 6.0;
+    sum.Area += area;
+    sum.Difference += area * (first.Difference + a.Difference + b.Difference);
+    sum.Value += area * (first.Value + a.Value + b.Value);
   }
-  return sum;
+  return { sum.Area / 2.0, sum.Difference / 6.0, sum.Value / 6.0 };
 }
 
-/** The same where the function is above 0. */
-template <typename Function>
-double IntegralAbove0(Polygon polygon, const Function& function)
+/** The integral of the difference where that, times a sign, is not below 0. */
+double IntegralOf(const Polygon& polygon, double sign)
 {
-  Cut(polygon, function);
-  return Integral(polygon, function);
-}
-
-/** The corners of a triangle, seen from an origin. */
-std::array<Point2, 3> CornersFrom(const Mesh& mesh, Index triangle, const Point2& origin)
-{
-  std::array<Point2, 3> corners = TriangleCorners(mesh, triangle);
-  for (Point2& p : corners)
+  unsigned below = 0;
+  for (int i = 0; i < polygon.Count; ++i)
   {
-    p = { p.X - origin.X, p.Y - origin.Y };
+    below |= static_cast<unsigned>(sign * polygon.Corners[i].Difference < 0.0) << i;
   }
-  return corners;
+  Polygon rest;
+  Cut(
+    polygon, below, [](const Corner& corner) { return corner.Difference; }, rest);
+  return Integrate(rest).Difference;
 }
 
 /** Overlays triangles of the first surface with those of the second. */
@@ -142,13 +193,75 @@ public:
   {
   }
 
-  OverlaidTriangle Overlay(Index triangle, DifferenceMap* map)
+  /** Triangles of the first surface that are near each other, by their numbers. */
+  void OverlayAll(const std::size_t* begin, const std::size_t* end, DifferenceMap* map,
+    std::vector<OverlaidTriangle>& results)
+  {
+    this->Map = map;
+    if (this->Second)
+    {
+      this->Gather(begin, end);
+    }
+    for (; begin != end; ++begin)
+    {
+      this->Overlay(static_cast<Index>(*begin));
+      results[*begin] = this->Result;
+    }
+  }
+
+private:
+  /** A triangle of the second surface. */
+  struct Neighbor
+  {
+    Index Triangle;
+    std::array<Point2, 3> At;
+    std::array<double, 3> Elevations;
+  };
+
+  /** Finds the triangles of the second surface that are near some of the first. */
+  void Gather(const std::size_t* begin, const std::size_t* end)
+  {
+    Box box;
+    for (; begin != end; ++begin)
+    {
+      box.Join(BoxOf(TriangleCorners(this->First.Surface, static_cast<Index>(*begin))));
+    }
+    // All corners are read before any is compared, so that no read waits for another.
+    this->Found.clear();
+    this->Tree->Visit(box, [this](Index other) {
+      const Mesh& mesh = this->Second->Surface;
+      const Index* const ids = mesh.Triangles.data() + 3 * static_cast<std::size_t>(other);
+      const std::vector<double>& z = this->Second->Elevations;
+      this->Found.push_back(
+        { other, TriangleCorners(mesh, other), { { z[ids[0]], z[ids[1]], z[ids[2]] } } });
+    });
+    this->Order.clear();
+    for (std::size_t i = 0; i < this->Found.size(); ++i)
+    {
+      if (BoxOf(this->Found[i].At).Intersects(box))
+      {
+        this->Order.push_back((static_cast<std::uint64_t>(this->Found[i].Triangle) << 32) + i);
+      }
+    }
+    // The order of sums must not depend on the tree.
+    std::sort(this->Order.begin(), this->Order.end());
+    this->Near.clear();
+    this->Boxes.clear();
+    for (const std::uint64_t each : this->Order)
+    {
+      this->Near.push_back(this->Found[static_cast<std::uint32_t>(each)]);
+      this->Boxes.push_back(BoxOf(this->Near.back().At));
+    }
+    this->Hits.resize(this->Near.size());
+  }
+
+  void Overlay(Index triangle)
   {
     const Mesh& mesh = this->First.Surface;
     const Index* const ids = mesh.Triangles.data() + 3 * static_cast<std::size_t>(triangle);
-    this->Origin = mesh.PointOf(ids[0]);
-    this->Map = map;
-    const std::array<Point2, 3> corners = CornersFrom(mesh, triangle, this->Origin);
+    const std::array<Point2, 3> places = TriangleCorners(mesh, triangle);
+    this->Origin = places[0];
+    const std::array<Point2, 3> corners = this->FromOrigin(places);
     // Elevations are measured from the first corner, as coordinates are.
     this->Base = this->Second ? this->First.Elevations[ids[0]] : this->Level;
     Polygon whole;
@@ -157,88 +270,157 @@ public:
       whole.Add({ corners[k], this->First.Elevations[ids[k]] - this->Base,
         this->Values.empty() ? 0.0 : this->Values[ids[k]] });
     }
-    this->Bounds = BoxOf(corners);
     this->Result = OverlaidTriangle();
     this->Result.Area = 0.5 * TwiceArea(corners[0], corners[1], corners[2]);
     if (!this->Second)
     {
       this->Add(whole);
-      return this->Result;
+      return;
     }
-    this->Near.clear();
-    this->Tree->Visit(
-      BoxOf(TriangleCorners(mesh, triangle)), [this](Index other) { this->Near.push_back(other); });
-    // The order of sums must not depend on the tree.
-    std::sort(this->Near.begin(), this->Near.end());
-    for (const Index other : this->Near)
+    // Without branches, as few are hit.
+    const Box box = BoxOf(places);
+    std::size_t hits = 0;
+    for (std::size_t i = 0; i < this->Boxes.size(); ++i)
     {
-      this->OverlayWith(whole, other);
+      const Box& other = this->Boxes[i];
+      this->Hits[hits] = static_cast<Index>(i);
+      hits += static_cast<std::size_t>((other.High.X >= box.Low.X) & (other.Low.X <= box.High.X) &
+        (other.High.Y >= box.Low.Y) & (other.Low.Y <= box.High.Y));
     }
-    return this->Result;
+#ifdef ELEVATION_CHOOSES_FMA
+    static const bool hasFMA = __builtin_cpu_supports("fma") != 0;
+    if (hasFMA)
+    {
+      this->OverlayByFMA(whole, hits);
+      return;
+    }
+#endif
+    this->OverlayWith(whole, hits);
   }
 
-private:
-  void OverlayWith(const Polygon& whole, Index other)
+#ifdef ELEVATION_CHOOSES_FMA
+  /** The same as OverlayWith(), faster: std::fma() is an instruction, not a call. */
+  [[gnu::target("fma"), gnu::flatten]] void OverlayByFMA(const Polygon& whole, std::size_t hits)
   {
-    const Mesh& mesh = this->Second->Surface;
-    const std::array<Point2, 3> corners = CornersFrom(mesh, other, this->Origin);
-    if (!BoxOf(corners).Intersects(this->Bounds))
+    this->OverlayWith(whole, hits);
+  }
+#endif
+
+  void OverlayWith(const Polygon& whole, std::size_t hits)
+  {
+    const std::array<Point2, 3> corners{ { whole.Corners[0].At, whole.Corners[1].At,
+      whole.Corners[2].At } };
+    for (std::size_t i = 0; i < hits; ++i)
     {
-      return;
+      const Neighbor& other = this->Near[this->Hits[i]];
+      const std::array<Point2, 3> at = this->FromOrigin(other.At);
+      if (!IsApart(corners, at))
+      {
+        this->OverlayWith(whole, at, other.Elevations);
+      }
     }
-    Polygon part = whole;
-    for (int k = 0; k < 3 && part.Count > 2; ++k)
+  }
+
+  std::array<Point2, 3> FromOrigin(std::array<Point2, 3> places) const
+  {
+    for (Point2& p : places)
     {
-      Cut(part, [&](const Corner& corner) {
-        return TwiceArea(corners[k], corners[(k + 1) % 3], corner.At);
-      });
+      p = { p.X - this->Origin.X, p.Y - this->Origin.Y };
     }
-    if (part.Count < 3)
+    return places;
+  }
+
+  /** Whether an edge of a triangle has no corner of another one on its left. */
+  static bool IsApart(const std::array<Point2, 3>& own, const std::array<Point2, 3>& other)
+  {
+    for (int k = 0; k < 3; ++k)
     {
-      return;
+      const Point2 &a = own[k], &b = own[k == 2 ? 0 : k + 1];
+      if (!IsLeft(a, b, other[0]) && !IsLeft(a, b, other[1]) && !IsLeft(a, b, other[2]))
+      {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void OverlayWith(const Polygon& whole, const std::array<Point2, 3>& corners,
+    const std::array<double, 3>& elevations)
+  {
+    Polygon parts[4];
+    Polygon* last = &parts[3];
+    for (int k = 0; k < 3; ++k)
+    {
+      last->Add(whole.Corners[k]);
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      const Point2 &a = corners[k], &b = corners[k == 2 ? 0 : k + 1];
+      const unsigned right = CornersRightOf(*last, a, b);
+      if (right == last->All())
+      {
+        return;
+      }
+      if (right != 0)
+      {
+        Cut(
+          *last, right, [&](const Corner& corner) { return TwiceArea(a, b, corner.At); }, parts[k]);
+        last = &parts[k];
+      }
     }
     const double whole2 = TwiceArea(corners[0], corners[1], corners[2]);
     if (!(whole2 > 0.0))
     {
       return; // its area is below the smallest number
     }
-    const Index* const ids = mesh.Triangles.data() + 3 * static_cast<std::size_t>(other);
-    for (int i = 0; i < part.Count; ++i)
+    for (int i = 0; i < last->Count; ++i)
     {
-      Corner& corner = part.Corners[i];
+      Corner& corner = last->Corners[i];
       // The second surface there, by areas: a mean of its corners, so flat triangles lose nothing.
       double shares[3], elevation = 0.0;
       for (int k = 1; k < 3; ++k)
       {
-        const double area = TwiceArea(corners[(k + 1) % 3], corners[(k + 2) % 3], corner.At);
+        const double area = TwiceArea(corners[k == 2 ? 0 : 2], corners[k == 2 ? 1 : 0], corner.At);
         shares[k] = std::min(std::max(area / whole2, 0.0), 1.0);
       }
       shares[0] = 1.0 - shares[1] - shares[2];
       for (int k = 0; k < 3; ++k)
       {
-        elevation += shares[k] * (this->Second->Elevations[ids[k]] - this->Base);
+        elevation += shares[k] * (elevations[k] - this->Base);
       }
       corner.Difference -= elevation;
     }
-    this->Add(part);
+    this->Add(*last);
   }
 
   /** A polygon on which the difference is linear. */
   void Add(const Polygon& polygon)
   {
-    const auto difference = [](const Corner& corner) { return corner.Difference; };
-    const auto minus = [](const Corner& corner) { return -corner.Difference; };
-    this->Result.Common += Integral(polygon, [](const Corner&) { return 1.0; });
-    this->Result.Above += IntegralAbove0(polygon, difference);
-    this->Result.Below += IntegralAbove0(polygon, minus);
-    this->Result.Weighted += Integral(polygon, [](const Corner& corner) { return corner.Value; });
+    const Integrals whole = Integrate(polygon);
+    this->Result.Common += whole.Area;
+    this->Result.Weighted += whole.Value;
+    bool isAbove = false, isBelow = false;
+    for (int i = 0; i < polygon.Count; ++i)
+    {
+      isAbove |= polygon.Corners[i].Difference > 0.0;
+      isBelow |= polygon.Corners[i].Difference < 0.0;
+    }
+    if (isAbove && isBelow)
+    {
+      this->Result.Above += IntegralOf(polygon, 1.0);
+      this->Result.Below -= IntegralOf(polygon, -1.0);
+    }
+    else
+    {
+      (isBelow ? this->Result.Below : this->Result.Above) += std::fabs(whole.Difference);
+    }
     if (this->Map)
     {
       this->Draw(polygon);
     }
   }
 
-  void Draw(const Polygon& polygon)
+  ELEVATION_APART void Draw(const Polygon& polygon)
   {
     const Index first = static_cast<Index>(this->Map->Points.size() / 3);
     for (int i = 0; i < polygon.Count; ++i)
@@ -258,14 +440,17 @@ private:
   const double Level;
   const std::vector<double>& Values;
   const TriangleTree* Tree;
-  // Of the triangle that is overlaid: its first corner, its extent from there, what elevations are
-  // measured from.
+  // Of the triangle that is overlaid: its first corner, and what elevations are measured from.
   Point2 Origin{ 0.0, 0.0 };
-  Box Bounds;
   double Base = 0.0;
   OverlaidTriangle Result;
   DifferenceMap* Map = nullptr;
-  std::vector<Index> Near;
+  // Near some triangles of the first surface: all of the second, and their boxes; Hits are those
+  // near one.
+  std::vector<Neighbor> Found, Near;
+  std::vector<std::uint64_t> Order; // their triangles, and places in Found
+  std::vector<Index> Hits;
+  std::vector<Box> Boxes;
 };
 
 /** Puts the maps of all tasks together. */
@@ -320,10 +505,11 @@ std::vector<OverlaidTriangle> Overlay(const ElevatedMesh& first, const ElevatedM
   std::vector<DifferenceMap> maps(map ? tasks : 0);
   ForEachTask(tasks, threads, stages.Next(), [&](Index task) {
     Overlaying overlaying(first, second, level, values, tree.get());
-    for (Index i = task * AtOnce; i < std::min(count, (task + 1) * AtOnce); ++i)
+    const Index last = std::min(count, (task + 1) * AtOnce);
+    for (Index i = task * AtOnce; i < last; i += Together)
     {
-      const Index t = static_cast<Index>(order[i]);
-      result[t] = overlaying.Overlay(t, map ? &maps[task] : nullptr);
+      overlaying.OverlayAll(order.data() + i, order.data() + std::min(last, i + Together),
+        map ? &maps[task] : nullptr, result);
     }
   });
   if (map)

@@ -13,7 +13,9 @@
  *         \../             values of one sign: nothing cancels.
  *
  * Exact but for rounding: coordinates are measured from a corner of each triangle, so that large ones
- * lose little. The result does not depend on the number of threads.
+ * lose little. On which side of an edge a corner lies is exact for these coordinates, mostly by
+ * plain arithmetic; only where an edge is cut, areas are computed in full. Triangles that only
+ * touch add nothing. The result does not depend on the number of threads.
  * Cost: n log n in the triangles, linear in the pairs of them whose boxes overlap.
  */
 #ifndef elevation_Query_Overlay_h

@@ -14,10 +14,8 @@
 
 #include "Kernel/Base/Base.h"
 
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <utility>
+#include <numeric>
 #include <vector>
 
 namespace elevation
@@ -29,21 +27,23 @@ inline std::vector<std::size_t> OrderByTiles(const std::vector<Point2>& places)
   constexpr double placesInTile = 8.0;
   const Box box = BoxOf(places);
   const double side = std::sqrt(static_cast<double>(places.size()) / placesInTile);
-  const auto tile = [side](double value, double low, double high) -> std::uint64_t {
+  const std::size_t width = static_cast<std::size_t>(side) + 1;
+  const auto tile = [side](double value, double low, double high) {
     const double part = (value - low) / (high - low);
-    return part >= 0.0 && part <= 1.0 ? static_cast<std::uint64_t>(part * side) : 0; // NaN as well
+    return part >= 0.0 && part <= 1.0 ? static_cast<std::size_t>(part * side) : 0; // NaN as well
   };
-  std::vector<std::pair<std::uint64_t, std::size_t>> tiles(places.size());
+  std::vector<std::size_t> tiles(places.size()), ends(width * width + 1, 0), order(places.size());
   for (std::size_t i = 0; i < places.size(); ++i)
   {
     const Point2& at = places[i];
-    const std::uint64_t row = tile(at.Y, box.Low.Y, box.High.Y);
-    tiles[i] = { (row << 32) + tile(at.X, box.Low.X, box.High.X), i };
+    tiles[i] = tile(at.Y, box.Low.Y, box.High.Y) * width + tile(at.X, box.Low.X, box.High.X);
+    ++ends[tiles[i] + 1];
   }
-  std::sort(tiles.begin(), tiles.end());
-  std::vector<std::size_t> order(places.size());
-  std::transform(tiles.begin(), tiles.end(), order.begin(),
-    [](const std::pair<std::uint64_t, std::size_t>& each) { return each.second; });
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    order[ends[tiles[i]]++] = i;
+  }
   return order;
 }
 

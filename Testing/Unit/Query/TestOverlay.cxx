@@ -142,6 +142,40 @@ TEST(Overlay, OfAConeIsAThirdOfItsPrism)
   EXPECT_NEAR(cut.Above, sum.Above / 8.0, 1e-10);
 }
 
+// All edges of one surface but its diagonals are edges of the other, so most corners lie on edges.
+TEST(Overlay, OfALatticeWithOtherDiagonalsIsExact)
+{
+  constexpr int size = 20;
+  for (const double origin : { 0.0, 5e6 })
+  {
+    Random random(16);
+    Terrain one;
+    for (int i = 0; i < (size + 1) * (size + 1); ++i)
+    {
+      one.Surface.Points.push_back({ origin + i % (size + 1), origin + i / (size + 1) });
+      one.Elevations.push_back(std::floor(12.0 * random.Unit()));
+    }
+    Terrain other = one;
+    double net = 0.0;
+    for (int row = 0; row < size; ++row)
+    {
+      for (int column = 0; column < size; ++column)
+      {
+        const int a = row * (size + 1) + column, b = a + 1, c = b + size + 1, d = c - 1;
+        one.Surface.Triangles.insert(one.Surface.Triangles.end(), { a, b, c, a, c, d });
+        other.Surface.Triangles.insert(other.Surface.Triangles.end(), { a, b, d, b, c, d });
+        const std::vector<double>& z = one.Elevations;
+        net += (z[a] + z[c] - z[b] - z[d]) / 6.0;
+      }
+    }
+    const OverlaidTriangle sum = Compare(one, other);
+    EXPECT_EQ(sum.Area, size * size);
+    EXPECT_EQ(sum.Common, size * size);
+    EXPECT_GT(sum.Below, 100.0);
+    EXPECT_NEAR(sum.Above - sum.Below, net, 1e-11);
+  }
+}
+
 TEST(Overlay, WeighsValuesOfTheFirstSurface)
 {
   const Terrain ground = MakeTerrain(300, 6, 0.0, 4.0, Hills);
