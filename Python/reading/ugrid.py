@@ -8,7 +8,7 @@ import re
 import numpy
 
 from ..clouds import Cloud, make_points
-from ..gdal_common import GDAL_ERRORS, choose_layer, gdal_module, one_line, quiet
+from ..gdal_common import choose_layer, gdal_module, one_line, quiet
 from ..messages import FileError, Reason
 from ..names import option
 from .column_names import z_direction, meaning
