@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -30,6 +29,8 @@ namespace
 constexpr Index AtOnce = 1024;
 // That are near each other, and look for those of the other surface together.
 constexpr Index Together = 4;
+// Triangles of the other surface that are looked at at a time.
+constexpr std::size_t BlockSize = 256;
 
 /** A corner of a polygon, seen from the first corner of its triangle. */
 struct Corner
@@ -79,29 +80,41 @@ struct QuickArea
   double Twice, Error;
 };
 
+/** The corners of a polygon to the right of a line, and on it, as bits. */
+struct Sides
+{
+  unsigned Right = 0;
+  unsigned On = 0;
+};
+
+/** By the sign of TwiceArea(a, b, corner); where that is no number, corners are to the left. */
+Sides SidesOf(const Polygon& polygon, const Point2& a, const Point2& b)
+{
+  Sides sides;
+  unsigned unsure = 0;
+  for (int i = 0; i < polygon.Count; ++i)
+  {
+    const QuickArea area(a, b, polygon.Corners[i].At);
+    sides.Right |= static_cast<unsigned>(area.IsRight()) << i;
+    unsure |= static_cast<unsigned>(area.IsUnsure()) << i;
+  }
+  for (int i = 0; unsure >> i != 0; ++i)
+  {
+    if ((unsure >> i & 1u) != 0)
+    {
+      const double area = TwiceArea(a, b, polygon.Corners[i].At);
+      sides.Right |= static_cast<unsigned>(area < 0.0) << i;
+      sides.On |= static_cast<unsigned>(area == 0.0) << i;
+    }
+  }
+  return sides;
+}
+
 /** Whether c is to the left of the line from a to b, or so far away that this is not a number. */
 bool IsLeft(const Point2& a, const Point2& b, const Point2& c)
 {
   const QuickArea area(a, b, c);
   return !((area.IsUnsure() ? TwiceArea(a, b, c) : area.Twice) <= 0.0);
-}
-
-/** The corners to the right of the line from a to b, where TwiceArea() is below 0, as bits. */
-unsigned CornersRightOf(const Polygon& polygon, const Point2& a, const Point2& b)
-{
-  unsigned right = 0, unsure = 0;
-  for (int i = 0; i < polygon.Count; ++i)
-  {
-    const QuickArea area(a, b, polygon.Corners[i].At);
-    right |= static_cast<unsigned>(area.IsRight()) << i;
-    unsure |= static_cast<unsigned>(area.IsUnsure()) << i;
-  }
-  for (int i = 0; unsure >> i != 0; ++i)
-  {
-    const bool isRight = (unsure >> i & 1u) != 0 && TwiceArea(a, b, polygon.Corners[i].At) < 0.0;
-    right |= static_cast<unsigned>(isRight) << i;
-  }
-  return right;
 }
 
 /**
@@ -179,6 +192,47 @@ double IntegralOf(const Polygon& polygon, double sign)
   return Integrate(rest).Difference;
 }
 
+/** A sum, and what its roundings have lost: parts may be a million times smaller than it. */
+class LongSum
+{
+public:
+  void Add(double value)
+  {
+    const double sum = this->Sum + value, added = sum - this->Sum;
+    this->Lost += (this->Sum - (sum - added)) + (value - added);
+    this->Sum = sum;
+  }
+  double Total() const { return std::isfinite(this->Lost) ? this->Sum + this->Lost : this->Sum; }
+
+private:
+  double Sum = 0.0, Lost = 0.0;
+};
+
+/** A triangle of the first surface while it is overlaid. */
+struct Overlaid
+{
+  Box Bounds;
+  Point2 Origin{ 0.0, 0.0 }; ///< its first corner, from which all places are measured
+  double Base = 0.0;         ///< what elevations are measured from
+  Polygon Whole;
+  double Area = 0.0;
+  LongSum Common, Above, Below, Weighted;
+
+  OverlaidTriangle Result() const
+  {
+    return { this->Area, this->Common.Total(), this->Above.Total(), this->Below.Total(),
+      this->Weighted.Total() };
+  }
+  std::array<Point2, 3> FromOrigin(std::array<Point2, 3> places) const
+  {
+    for (Point2& p : places)
+    {
+      p = { p.X - this->Origin.X, p.Y - this->Origin.Y };
+    }
+    return places;
+  }
+};
+
 /** Overlays triangles of the first surface with those of the second. */
 class Overlaying
 {
@@ -193,19 +247,33 @@ public:
   {
   }
 
-  /** Triangles of the first surface that are near each other, by their numbers. */
+  /** Triangles of the first surface by their numbers, mostly in groups that are near each other. */
   void OverlayAll(const std::size_t* begin, const std::size_t* end, DifferenceMap* map,
     std::vector<OverlaidTriangle>& results)
   {
     this->Map = map;
-    if (this->Second)
+    while (begin != end)
     {
-      this->Gather(begin, end);
-    }
-    for (; begin != end; ++begin)
-    {
-      this->Overlay(static_cast<Index>(*begin));
-      results[*begin] = this->Result;
+      Box box;
+      const std::size_t* const last = this->GroupFrom(begin, end, box);
+      for (const std::size_t* each = begin; each != last; ++each)
+      {
+        this->Group[each - begin] = this->Begun(static_cast<Index>(*each));
+      }
+      if (this->Second)
+      {
+        this->OverlayGroup(box, static_cast<int>(last - begin));
+      }
+      for (const std::size_t* each = begin; each != last; ++each)
+      {
+        Overlaid& own = this->Group[each - begin];
+        if (!this->Second)
+        {
+          this->Add(own, own.Whole);
+        }
+        results[*each] = own.Result();
+      }
+      begin = last;
     }
   }
 
@@ -213,77 +281,89 @@ private:
   /** A triangle of the second surface. */
   struct Neighbor
   {
-    Index Triangle;
     std::array<Point2, 3> At;
     std::array<double, 3> Elevations;
   };
 
-  /** Finds the triangles of the second surface that are near some of the first. */
-  void Gather(const std::size_t* begin, const std::size_t* end)
+  /** The end of a group, whose triangles fill their common box. */
+  const std::size_t* GroupFrom(const std::size_t* begin, const std::size_t* end, Box& box) const
   {
-    Box box;
-    for (; begin != end; ++begin)
+    double sizes = 0.0;
+    const std::size_t* each = begin;
+    for (; each != end && each - begin < Together; ++each)
     {
-      box.Join(BoxOf(TriangleCorners(this->First.Surface, static_cast<Index>(*begin))));
-    }
-    // All corners are read before any is compared, so that no read waits for another.
-    this->Found.clear();
-    this->Tree->Visit(box, [this](Index other) {
-      const Mesh& mesh = this->Second->Surface;
-      const Index* const ids = mesh.Triangles.data() + 3 * static_cast<std::size_t>(other);
-      const std::vector<double>& z = this->Second->Elevations;
-      this->Found.push_back(
-        { other, TriangleCorners(mesh, other), { { z[ids[0]], z[ids[1]], z[ids[2]] } } });
-    });
-    this->Order.clear();
-    for (std::size_t i = 0; i < this->Found.size(); ++i)
-    {
-      if (BoxOf(this->Found[i].At).Intersects(box))
+      const Box own = BoxOf(TriangleCorners(this->First.Surface, static_cast<Index>(*each)));
+      Box joint = box;
+      joint.Join(own);
+      sizes += own.Width() + own.Height();
+      if (each != begin && !(joint.Width() + joint.Height() <= 2.0 * sizes))
       {
-        this->Order.push_back((static_cast<std::uint64_t>(this->Found[i].Triangle) << 32) + i);
+        break;
       }
+      box = joint;
     }
-    // The order of sums must not depend on the tree.
-    std::sort(this->Order.begin(), this->Order.end());
-    this->Near.clear();
-    this->Boxes.clear();
-    for (const std::uint64_t each : this->Order)
-    {
-      this->Near.push_back(this->Found[static_cast<std::uint32_t>(each)]);
-      this->Boxes.push_back(BoxOf(this->Near.back().At));
-    }
-    this->Hits.resize(this->Near.size());
+    return each;
   }
 
-  void Overlay(Index triangle)
+  Overlaid Begun(Index triangle) const
   {
     const Mesh& mesh = this->First.Surface;
     const Index* const ids = mesh.Triangles.data() + 3 * static_cast<std::size_t>(triangle);
     const std::array<Point2, 3> places = TriangleCorners(mesh, triangle);
-    this->Origin = places[0];
-    const std::array<Point2, 3> corners = this->FromOrigin(places);
-    // Elevations are measured from the first corner, as coordinates are.
-    this->Base = this->Second ? this->First.Elevations[ids[0]] : this->Level;
-    Polygon whole;
+    Overlaid own;
+    own.Bounds = BoxOf(places);
+    own.Origin = places[0];
+    own.Base = this->Second ? this->First.Elevations[ids[0]] : this->Level;
+    const std::array<Point2, 3> corners = own.FromOrigin(places);
     for (int k = 0; k < 3; ++k)
     {
-      whole.Add({ corners[k], this->First.Elevations[ids[k]] - this->Base,
+      own.Whole.Add({ corners[k], this->First.Elevations[ids[k]] - own.Base,
         this->Values.empty() ? 0.0 : this->Values[ids[k]] });
     }
-    this->Result = OverlaidTriangle();
-    this->Result.Area = 0.5 * TwiceArea(corners[0], corners[1], corners[2]);
-    if (!this->Second)
+    own.Area = 0.5 * TwiceArea(corners[0], corners[1], corners[2]);
+    return own;
+  }
+
+  /** Overlays the first so many triangles of the group, which lie in a box, with all near them. */
+  void OverlayGroup(const Box& box, int count)
+  {
+    this->Near.clear();
+    this->Tree->Visit(box, [this](Index other) { this->Near.push_back(other); });
+    // The order of sums must not depend on the tree.
+    std::sort(this->Near.begin(), this->Near.end());
+    CountWork(this->Near.size());
+    const Mesh& mesh = this->Second->Surface;
+    const std::vector<double>& z = this->Second->Elevations;
+    for (std::size_t begin = 0; begin < this->Near.size(); begin += BlockSize)
     {
-      this->Add(whole);
-      return;
+      // All corners are read before any is compared, so that no read waits for another.
+      const std::size_t size = std::min(this->Near.size() - begin, BlockSize);
+      for (std::size_t i = 0; i < size; ++i)
+      {
+        const Index other = this->Near[begin + i];
+        const Index* const ids = mesh.Triangles.data() + 3 * static_cast<std::size_t>(other);
+        this->Block[i] = { TriangleCorners(mesh, other), { { z[ids[0]], z[ids[1]], z[ids[2]] } } };
+      }
+      for (std::size_t i = 0; i < size; ++i)
+      {
+        this->Boxes[i] = BoxOf(this->Block[i].At);
+      }
+      for (int i = 0; i < count; ++i)
+      {
+        this->OverlayWithBlock(this->Group[i], size);
+      }
     }
+  }
+
+  void OverlayWithBlock(Overlaid& own, std::size_t size)
+  {
     // Without branches, as few are hit.
-    const Box box = BoxOf(places);
+    const Box box = own.Bounds;
     std::size_t hits = 0;
-    for (std::size_t i = 0; i < this->Boxes.size(); ++i)
+    for (std::size_t i = 0; i < size; ++i)
     {
       const Box& other = this->Boxes[i];
-      this->Hits[hits] = static_cast<Index>(i);
+      this->Hits[hits] = i;
       hits += static_cast<std::size_t>((other.High.X >= box.Low.X) & (other.Low.X <= box.High.X) &
         (other.High.Y >= box.Low.Y) & (other.Low.Y <= box.High.Y));
     }
@@ -291,43 +371,34 @@ private:
     static const bool hasFMA = __builtin_cpu_supports("fma") != 0;
     if (hasFMA)
     {
-      this->OverlayByFMA(whole, hits);
+      this->OverlayByFMA(own, hits);
       return;
     }
 #endif
-    this->OverlayWith(whole, hits);
+    this->OverlayWithHits(own, hits);
   }
 
 #ifdef ELEVATION_CHOOSES_FMA
-  /** The same as OverlayWith(), faster: std::fma() is an instruction, not a call. */
-  [[gnu::target("fma"), gnu::flatten]] void OverlayByFMA(const Polygon& whole, std::size_t hits)
+  /** The same as OverlayWithHits(), faster: std::fma() is an instruction, not a call. */
+  [[gnu::target("fma"), gnu::flatten]] void OverlayByFMA(Overlaid& own, std::size_t hits)
   {
-    this->OverlayWith(whole, hits);
+    this->OverlayWithHits(own, hits);
   }
 #endif
 
-  void OverlayWith(const Polygon& whole, std::size_t hits)
+  void OverlayWithHits(Overlaid& own, std::size_t hits)
   {
-    const std::array<Point2, 3> corners{ { whole.Corners[0].At, whole.Corners[1].At,
-      whole.Corners[2].At } };
+    const std::array<Point2, 3> corners{ { own.Whole.Corners[0].At, own.Whole.Corners[1].At,
+      own.Whole.Corners[2].At } };
     for (std::size_t i = 0; i < hits; ++i)
     {
-      const Neighbor& other = this->Near[this->Hits[i]];
-      const std::array<Point2, 3> at = this->FromOrigin(other.At);
+      const Neighbor& other = this->Block[this->Hits[i]];
+      const std::array<Point2, 3> at = own.FromOrigin(other.At);
       if (!IsApart(corners, at))
       {
-        this->OverlayWith(whole, at, other.Elevations);
+        this->OverlayWith(own, at, other.Elevations);
       }
     }
-  }
-
-  std::array<Point2, 3> FromOrigin(std::array<Point2, 3> places) const
-  {
-    for (Point2& p : places)
-    {
-      p = { p.X - this->Origin.X, p.Y - this->Origin.Y };
-    }
-    return places;
   }
 
   /** Whether an edge of a triangle has no corner of another one on its left. */
@@ -344,27 +415,28 @@ private:
     return false;
   }
 
-  void OverlayWith(const Polygon& whole, const std::array<Point2, 3>& corners,
-    const std::array<double, 3>& elevations)
+  void OverlayWith(
+    Overlaid& own, const std::array<Point2, 3>& corners, const std::array<double, 3>& elevations)
   {
     Polygon parts[4];
     Polygon* last = &parts[3];
     for (int k = 0; k < 3; ++k)
     {
-      last->Add(whole.Corners[k]);
+      last->Add(own.Whole.Corners[k]);
     }
     for (int k = 0; k < 3; ++k)
     {
       const Point2 &a = corners[k], &b = corners[k == 2 ? 0 : k + 1];
-      const unsigned right = CornersRightOf(*last, a, b);
-      if (right == last->All())
+      const Sides sides = SidesOf(*last, a, b);
+      if ((sides.Right | sides.On) == last->All())
       {
         return;
       }
-      if (right != 0)
+      if (sides.Right != 0)
       {
         Cut(
-          *last, right, [&](const Corner& corner) { return TwiceArea(a, b, corner.At); }, parts[k]);
+          *last, sides.Right, [&](const Corner& corner) { return TwiceArea(a, b, corner.At); },
+          parts[k]);
         last = &parts[k];
       }
     }
@@ -386,19 +458,19 @@ private:
       shares[0] = 1.0 - shares[1] - shares[2];
       for (int k = 0; k < 3; ++k)
       {
-        elevation += shares[k] * (elevations[k] - this->Base);
+        elevation += shares[k] * (elevations[k] - own.Base);
       }
       corner.Difference -= elevation;
     }
-    this->Add(*last);
+    this->Add(own, *last);
   }
 
   /** A polygon on which the difference is linear. */
-  void Add(const Polygon& polygon)
+  void Add(Overlaid& own, const Polygon& polygon)
   {
     const Integrals whole = Integrate(polygon);
-    this->Result.Common += whole.Area;
-    this->Result.Weighted += whole.Value;
+    own.Common.Add(whole.Area);
+    own.Weighted.Add(whole.Value);
     bool isAbove = false, isBelow = false;
     for (int i = 0; i < polygon.Count; ++i)
     {
@@ -407,27 +479,27 @@ private:
     }
     if (isAbove && isBelow)
     {
-      this->Result.Above += IntegralOf(polygon, 1.0);
-      this->Result.Below -= IntegralOf(polygon, -1.0);
+      own.Above.Add(IntegralOf(polygon, 1.0));
+      own.Below.Add(-IntegralOf(polygon, -1.0));
     }
     else
     {
-      (isBelow ? this->Result.Below : this->Result.Above) += std::fabs(whole.Difference);
+      (isBelow ? own.Below : own.Above).Add(std::fabs(whole.Difference));
     }
     if (this->Map)
     {
-      this->Draw(polygon);
+      this->Draw(own.Origin, polygon);
     }
   }
 
-  ELEVATION_APART void Draw(const Polygon& polygon)
+  ELEVATION_APART void Draw(const Point2& origin, const Polygon& polygon)
   {
     const Index first = static_cast<Index>(this->Map->Points.size() / 3);
     for (int i = 0; i < polygon.Count; ++i)
     {
       const Corner& corner = polygon.Corners[i];
       this->Map->Points.insert(this->Map->Points.end(),
-        { this->Origin.X + corner.At.X, this->Origin.Y + corner.At.Y, corner.Difference });
+        { origin.X + corner.At.X, origin.Y + corner.At.Y, corner.Difference });
     }
     for (Index i = 2; i < polygon.Count; ++i)
     {
@@ -440,17 +512,13 @@ private:
   const double Level;
   const std::vector<double>& Values;
   const TriangleTree* Tree;
-  // Of the triangle that is overlaid: its first corner, and what elevations are measured from.
-  Point2 Origin{ 0.0, 0.0 };
-  double Base = 0.0;
-  OverlaidTriangle Result;
   DifferenceMap* Map = nullptr;
-  // Near some triangles of the first surface: all of the second, and their boxes; Hits are those
-  // near one.
-  std::vector<Neighbor> Found, Near;
-  std::vector<std::uint64_t> Order; // their triangles, and places in Found
-  std::vector<Index> Hits;
-  std::vector<Box> Boxes;
+  std::array<Overlaid, Together> Group;
+  std::vector<Index> Near; ///< triangles of the second surface near the group
+  // Some of them, their boxes, and those near one of the group.
+  std::array<Neighbor, BlockSize> Block;
+  std::array<Box, BlockSize> Boxes;
+  std::array<std::size_t, BlockSize> Hits;
 };
 
 /** Puts the maps of all tasks together. */
@@ -506,11 +574,8 @@ std::vector<OverlaidTriangle> Overlay(const ElevatedMesh& first, const ElevatedM
   ForEachTask(tasks, threads, stages.Next(), [&](Index task) {
     Overlaying overlaying(first, second, level, values, tree.get());
     const Index last = std::min(count, (task + 1) * AtOnce);
-    for (Index i = task * AtOnce; i < last; i += Together)
-    {
-      overlaying.OverlayAll(order.data() + i, order.data() + std::min(last, i + Together),
-        map ? &maps[task] : nullptr, result);
-    }
+    overlaying.OverlayAll(
+      order.data() + task * AtOnce, order.data() + last, map ? &maps[task] : nullptr, result);
   });
   if (map)
   {

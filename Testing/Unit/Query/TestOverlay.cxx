@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DelaunayMesh.h"
 #include "Kernel/Query/Query.h"
+#include "WorkOf.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 using namespace elevation;
 using namespace testing_surfaces;
@@ -87,6 +92,69 @@ TEST(Overlay, OfAShiftedSurfaceIsTheShiftTimesTheArea)
     const OverlaidTriangle same = Compare(ground, ground);
     EXPECT_NEAR(same.Above, 0.0, 1e-10);
     EXPECT_NEAR(same.Below, 0.0, 1e-10);
+  }
+}
+
+// Two triangles against many: what sums of parts lose must not add up.
+TEST(Overlay, OfLargeTrianglesOverManySmallOnesIsExactToRounding)
+{
+  const auto flat = [](double, double) { return 0.0; };
+  const auto raised = [](double, double) { return 1.0; };
+  const OverlaidTriangle sum =
+    Compare(MakeTerrain(0, 1, 0.0, 1.0, raised), MakeTerrain(150000, 2, 0.0, 1.0, flat));
+  EXPECT_NEAR(sum.Common, 1.0, 1e-14);
+  EXPECT_NEAR(sum.Above, 1.0, 1e-14);
+}
+
+// All are in one tile of TileOrder.h but for those of one point, and in any order.
+TEST(Overlay, TakesNoMoreWorkWhereMostOfTheExtentIsEmpty)
+{
+  const Terrain other = MakeTerrain(4000, 3, 0.0, 10.0, Hills);
+  Terrain own = MakeTerrain(4000, 4, 0.0, 10.0, Hills);
+  const Index count = own.Surface.NumberOfTriangles();
+  const std::vector<Index> corners(own.Surface.Triangles.begin(), own.Surface.Triangles.end());
+  std::vector<Index> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  Random random(5);
+  for (Index i = count; i > 1; --i)
+  {
+    std::swap(order[i - 1], order[random.Below(i)]);
+  }
+  for (Index i = 0; i < count; ++i)
+  {
+    std::copy_n(corners.begin() + 3 * order[i], 3, own.Surface.Triangles.begin() + 3 * i);
+  }
+  const auto work = [&]() { return testing_work::WorkOf([&]() { Compare(own, other); }); };
+  const std::size_t before = work();
+  own.Surface.Points[own.Surface.Triangles[0]] = { 1e6, 1e6 };
+  EXPECT_LT(work(), 3 * before);
+}
+
+TEST(Overlay, TrianglesThatOnlyTouchAreNotInTheMap)
+{
+  const auto flat = [](double, double) { return 0.0; };
+  const auto terrain = [&](std::vector<Point2> points) {
+    Terrain made{ Delaunay(points), {} };
+    for (const Point2& p : points)
+    {
+      made.Elevations.push_back(flat(p.X, p.Y));
+    }
+    return made;
+  };
+  const Terrain base = terrain({ { 0.0, 0.0 }, { 4.0, 0.0 }, { 2.0, 3.0 } });
+  // A corner on an edge, a common edge, a common corner, an edge along a part of another.
+  for (const Terrain& other : { terrain({ { 2.0, 0.0 }, { 1.0, -1.0 }, { 3.0, -1.0 } }),
+         terrain({ { 0.0, 0.0 }, { 4.0, 0.0 }, { 2.0, -3.0 } }),
+         terrain({ { 4.0, 0.0 }, { 6.0, 0.0 }, { 6.0, 1.0 } }),
+         terrain({ { 1.0, 0.0 }, { 3.0, 0.0 }, { 2.0, -3.0 } }) })
+  {
+    for (const bool isTurned : { false, true })
+    {
+      DifferenceMap map;
+      const ElevatedMesh second = (isTurned ? base : other).View();
+      Overlay((isTurned ? other : base).View(), &second, 0.0, {}, 1, Progress(), &map);
+      EXPECT_TRUE(map.Triangles.empty());
+    }
   }
 }
 
