@@ -47,8 +47,8 @@ class PictureError(ElevationSurfaceError):
 
 def did_you_mean(word, words):
     """"; did you mean x?" for the word of a list that is most like the given one, or ""."""
-    plain = {known.lstrip("-"): known for known in words}
-    near = difflib.get_close_matches(word.lstrip("-"), plain, 1, 0.6)
+    plain = {known.lstrip("-").lower(): known for known in words}
+    near = difflib.get_close_matches(word.lstrip("-").lower(), plain, 1, 0.6)
     return f"; did you mean {plain[near[0]]}?" if near else ""
 
 

@@ -114,7 +114,7 @@ def as_lines(lines: Lines, what: str, are_rings: bool) -> vtkPolyData:
     if isinstance(lines, (str, os.PathLike)):
         reader = "read_boundary" if are_rings else "read_faults"
         raise TypeError(f"{what}: a file's name; use {reader}({os.fspath(lines)!r})")
-    if hasattr(lines, "__len__") and len(lines) == 0:
+    if isinstance(lines, (list, tuple, numpy.ndarray)) and getattr(lines, "ndim", 1) and len(lines) == 0:
         raise ValueError(f"{what}: is empty; leave it out, or give None, where there is none")
     try:
         is_one = numpy.ndim(lines[0]) == 1

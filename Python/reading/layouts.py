@@ -80,7 +80,7 @@ def find_layout(path, lines, needed):
 
     best = max(LAYOUTS, key=rows_and_numbers)
     has_rows = rows_and_numbers(best)[0] > 0
-    are_needed = f"{'x, y and z' if needed == 3 else 'x and y'} are needed in columns of their own"
+    are_needed = f"Rows with {'x, y and z' if needed == 3 else 'x and y'} in columns of their own are needed"
     for pattern, most, words in NO_NUMBERS:
         if sum(bool(re.search(pattern, line)) for line in sample) > (most if has_rows else 0.0) * len(sample):
             raise FileError(f"{path}: {words}")

@@ -193,7 +193,7 @@ class OfProgram(Program):
             (["--level-attribute", "water", "--strict"], 1, "was not filled. It touches areas with different levels"),
             (["--level-attribute", "deep"], 1, "lakes.geojson: has no attribute deep of numbers, which "
              "--level-attribute names; those of numbers are water"),
-            (["--level-attribute", "Water"], 1, "are water; did you mean water?"),
+            (["--level-attribute", "WATER"], 1, "are water; did you mean water?"),
         ):
             done = self.call(*few, *arguments)
             self.assertEqual((done.returncode, len(done.stderr.strip().splitlines())), (code, 1), done.stderr)

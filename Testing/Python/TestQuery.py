@@ -276,8 +276,8 @@ class Files(Program):
         self.file("words.csv", "no,numbers\n")
         self.file("one.csv", "x\n1\n")
         for options, words in (
-            (("--at", "words.csv"), "words.csv: holds text, but no numbers. x and y are needed in columns of their own"),
-            (("--at", "one.csv"), "one.csv: no line holds 2 numbers; the most is 1. x and y are needed"),
+            (("--at", "words.csv"), "words.csv: holds text, but no numbers. Rows with x and y in columns of their own are needed"),
+            (("--at", "one.csv"), "one.csv: no line holds 2 numbers; the most is 1. Rows with x and y"),
             (("--volume", "nan"), "--volume takes the file of a surface, or a finite level, not 'nan'"),
             (("--volume", ""), "--volume takes the file of a surface, or a finite level, not ''"),
             (("--at", "missing.csv"), "missing.csv: no such file"),

@@ -143,6 +143,9 @@ class Input(unittest.TestCase):
             for empty in ([], numpy.zeros((0, 2))):
                 with self.assertRaisesRegex(ValueError, f"^{name}: is empty; leave it out"):
                     reconstruct(SHEET, **{name: empty})
+            for other in (numpy.array(3.0), {}, 3):
+                with self.assertRaisesRegex(TypeError, f"^{name}: vtkPolyData, an array, or a list of arrays"):
+                    reconstruct(SHEET, **{name: other})
 
     def test_images_and_grids_are_rasters_of_their_scalars(self):
         image, grid = vtkImageData(), vtkRectilinearGrid()
