@@ -75,11 +75,13 @@ def find_layout(path, lines, needed):
         raise FileError(f"{path}: holds no data, only blank or comment lines")
     counts = {layout: [layout.numbers(line) for line in sample] for layout in LAYOUTS}
 
-    def rows_and_numbers(layout):
-        return sum(count >= needed for count in counts[layout]), sum(counts[layout])
+    def merits(layout):
+        """Rows, numbers, and fewer words that are none: "1,5;2,5" is two numbers with decimal commas."""
+        rows = [line for line, count in zip(sample, counts[layout]) if count >= needed]
+        return len(rows), sum(counts[layout]), -sum(len(layout.words(line)) for line in rows)
 
-    best = max(LAYOUTS, key=rows_and_numbers)
-    has_rows = rows_and_numbers(best)[0] > 0
+    best = max(LAYOUTS, key=merits)
+    has_rows = merits(best)[0] > 0
     are_needed = f"Rows with {'x, y and z' if needed == 3 else 'x and y'} in columns of their own are needed"
     for pattern, most, words in NO_NUMBERS:
         if sum(bool(re.search(pattern, line)) for line in sample) > (most if has_rows else 0.0) * len(sample):

@@ -208,6 +208,13 @@ class Files(Program):
             rows = [line.split(",")[:2] for line in stream]
         self.assertEqual(rows[1:], [["2.0", "2.0"], ["8.0", "2.0"], ["8.0", "8.0"], ["2.0", "2.0"], ["3.0", "3.0"]])
 
+    def test_two_numbers_with_decimal_commas_are_a_place(self):
+        self.file("comma.csv", "x;y\n2,5;3,25\n8,125;2,0\n")
+        self.run_on_ground("--at", "comma.csv")
+        with open(self.path("ground_at.csv"), encoding="utf-8") as stream:
+            rows = [line.split(",")[:2] for line in stream]
+        self.assertEqual(rows[1:], [["2.5", "3.25"], ["8.125", "2.0"]])
+
     def test_places_need_no_z_and_are_reprojected(self):
         from osgeo import ogr, osr
 
