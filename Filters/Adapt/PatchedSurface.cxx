@@ -31,6 +31,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace elevation
 {
@@ -417,11 +418,12 @@ std::vector<double> LevelsOf(
     }
     throw MakeError<sentences::NoLevelArray>(name, isText ? ", which is text" : "", known);
   }
+  constexpr double largestFloat = std::numeric_limits<float>::max();
   for (Index line = 0; line < read.Lines.Count(); ++line)
   {
     levels.push_back(array->GetComponent(read.Cells[line], 0));
     const double size = std::fabs(levels.back());
-    if (size > (options.SinglePrecision ? VTK_FLOAT_MAX : VTK_DOUBLE_MAX))
+    if (size > (options.SinglePrecision ? largestFloat : std::numeric_limits<double>::max()))
     {
       throw MakeError<sentences::InfiniteLevel>(name, NameOf(read, line),
         std::isinf(size) ? std::string()
