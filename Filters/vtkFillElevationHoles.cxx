@@ -103,6 +103,8 @@ FillResult FillBlock(
   elevation::CheckOptions(options, openEdgeLength);
   elevation::CheckArrays(input);
   std::vector<elevation::Message> warnings;
+  const bool areFloat = elevation::HasFloatPoints(input);
+  options.SinglePrecision = options.SinglePrecision || areFloat;
   options.Chosen = elevation::ToAreas(block.Second, options, progress.Between(0.0, 0.0), warnings);
   const elevation::DataSetPoints points = elevation::ViewPoints(input);
   const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
@@ -124,7 +126,7 @@ FillResult FillBlock(
   }
   // New points are rounded before they are triangulated: rounding afterwards could turn triangles
   // over.
-  options.SinglePrecision = elevation::HasFloatPoints(input);
+  options.SinglePrecision = areFloat;
   if (vtkUnsignedCharArray* const marks = elevation::BoundaryMarksOf(input->GetPointData()))
   {
     options.OnBoundary.assign(
@@ -214,7 +216,8 @@ int vtkFillElevationHoles::RequestData(
   call.CleanedOutputs = this->RemoveUnusedPoints ? 1 : 0;
   call.Precision = this->OutputPointsPrecision;
   call.Sums = { &this->NumberOfHoles, &this->NumberOfFilledHoles };
-  const FillOptions options = elevation::OptionsOf(this);
+  FillOptions options = elevation::OptionsOf(this);
+  options.SinglePrecision = this->OutputPointsPrecision == vtkAlgorithm::SINGLE_PRECISION;
   const bool interpolates = this->InterpolatePointData != 0;
   const auto addCounts = [this](const FillResult& patches) {
     this->NumberOfHoles += patches.Found.Count();
@@ -225,10 +228,14 @@ int vtkFillElevationHoles::RequestData(
     FillResult patches;
     FillOptions chosen = options;
     std::vector<elevation::Message> warnings;
-    // The areas are the same on all ranks.
+    // The areas are the same on all ranks, and so is the precision that levels have to fit.
+    vtkPolyData* const part = vtkPolyData::SafeDownCast(block.Input);
+    const bool areDouble =
+      part && part->GetNumberOfPoints() > 0 && !elevation::HasFloatPoints(part);
+    chosen.SinglePrecision = options.SinglePrecision || !elevation::IsOnAny(ranks, areDouble);
     ranks.Agree([&] {
       chosen.Chosen =
-        elevation::ToAreas(block.Second, options, block.Progress.Between(0.0, 0.0), warnings);
+        elevation::ToAreas(block.Second, chosen, block.Progress.Between(0.0, 0.0), warnings);
     });
     if (!elevation::FillOnRanks(ranks, chosen, interpolates, this->OpenEdgeLength, block, patches))
     {

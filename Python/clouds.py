@@ -304,14 +304,19 @@ def make_lines(parts, names=None):
     data = make_points(numpy.concatenate(coordinates))
     data.SetLines(cells)
     if names is not None:
-        words = vtkStringArray()
-        words.SetName(LINE_NAMES)
-        for name in names:
-            words.InsertNextValue(name)
-        data.GetCellData().AddArray(words)
+        add_words(data, LINE_NAMES, names)
     if any(bare):
         mark_bare(data, bare)
     return data
+
+
+def add_words(data, name, values):
+    """Adds text, one for each cell, as array."""
+    words = vtkStringArray()
+    words.SetName(name)
+    for value in values:
+        words.InsertNextValue(value)
+    data.GetCellData().AddArray(words)
 
 
 def mark_bare(data, bare=None):

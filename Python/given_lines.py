@@ -4,8 +4,9 @@
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkStringArray
 
-from .clouds import WITHOUT_Z, bare_lines, coordinates_of, crs_of, line_parts, make_points, set_crs
+from .clouds import LINE_NAMES, WITHOUT_Z, bare_lines, coordinates_of, crs_of, line_parts, make_points, set_crs
 from .draping import draped
 from .gdal_common import check_system, is_near, moving, name_of, same_system
 from .mending import mended
@@ -13,6 +14,7 @@ from .messages import ElevationSurfaceError, FileError, counted, did_you_mean
 from .names import argument, option
 from .properties import BOUNDARY_EDGES
 from .ranks import extremes
+from .reading.vectors import is_number
 
 RINGS = ("boundary", "fill_only", "keep_open")  # lines that are closed
 
@@ -65,6 +67,15 @@ def check_levels(lines, names, given):
     if name is None or "fill_only" not in lines:
         return
     attributes = lines["fill_only"].GetCellData()
+    words = attributes.GetAbstractArray(name)
+    if isinstance(words, vtkStringArray) and name != LINE_NAMES:
+        values = [words.GetValue(i) for i in range(words.GetNumberOfValues())]
+        bad = next((value for value in values if value.strip() and not is_number(value)), None)
+        raise ElevationSurfaceError(
+            f"{names['fill_only']}: attribute {name}, which {argument('level_attribute')} names, is text"
+            + (f": '{bad}' is not a number; leave empty what has none" if bad else "; numbers are needed"),
+            "fill_only",
+        )
     arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
     known = [one.GetName() for one in arrays if one and one.GetNumberOfComponents() == 1]
     known = [one for one in known if one and one != WITHOUT_Z]

@@ -31,6 +31,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace elevation
 {
@@ -392,8 +393,10 @@ void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& o
 namespace
 {
 /** The levels of lines, by the cell array that the options name; none without a name. */
-std::vector<double> LevelsOf(vtkPolyData* lines, const BoundaryLines& read, const std::string& name)
+std::vector<double> LevelsOf(
+  vtkPolyData* lines, const BoundaryLines& read, const FillOptions& options)
 {
+  const std::string& name = options.LevelArray;
   std::vector<double> levels;
   if (name.empty())
   {
@@ -403,23 +406,29 @@ std::vector<double> LevelsOf(vtkPolyData* lines, const BoundaryLines& read, cons
   vtkDataArray* const array = data->GetArray(name.c_str());
   if (!array || array->GetNumberOfComponents() != 1)
   {
-    std::string others;
+    const bool isText = vtkStringArray::SafeDownCast(data->GetAbstractArray(name.c_str()));
+    std::string known;
     for (int i = 0; i < data->GetNumberOfArrays(); ++i)
     {
       vtkDataArray* const other = data->GetArray(i);
       if (other && other->GetName() && other->GetNumberOfComponents() == 1)
       {
-        others += (others.empty() ? "; there are " : ", ") + std::string(other->GetName());
+        known += (known.empty() ? "; there are " : ", ") + std::string(other->GetName());
       }
     }
-    throw MakeError<sentences::NoLevelArray>(name, others);
+    throw MakeError<sentences::NoLevelArray>(name, isText ? ", which is text" : "", known);
   }
+  constexpr double largestFloat = std::numeric_limits<float>::max();
   for (Index line = 0; line < read.Lines.Count(); ++line)
   {
     levels.push_back(array->GetComponent(read.Cells[line], 0));
-    if (std::isinf(levels.back()))
+    const double size = std::fabs(levels.back());
+    if (size > (options.SinglePrecision ? largestFloat : std::numeric_limits<double>::max()))
     {
-      throw MakeError<sentences::InfiniteLevel>(name, NameOf(read, line));
+      throw MakeError<sentences::InfiniteLevel>(name, NameOf(read, line),
+        std::isinf(size) ? std::string()
+                         : ": " + ToText(levels.back()) +
+            " is too large for the points of the surface, which are float");
     }
   }
   return levels;
@@ -440,8 +449,7 @@ std::shared_ptr<const Areas> ToAreas(vtkPolyData* lines, const FillOptions& opti
   CheckArrays(lines, std::string("The ") + AreaInputName + "'s");
   Message repeated;
   const BoundaryLines read = ToBoundaryLines(lines, progress, AreaInputName);
-  auto areas =
-    std::make_shared<const Areas>(read, LevelsOf(lines, read, options.LevelArray), &repeated);
+  auto areas = std::make_shared<const Areas>(read, LevelsOf(lines, read, options), &repeated);
   if (!repeated.IsEmpty())
   {
     warnings.push_back(repeated);
@@ -481,7 +489,10 @@ std::vector<Message> WarningsOf(const FillResult& patches, const FillOptions& op
   if (options.Chosen && holes.Count() > 0 && notChosen == (fillsOnly ? holes.Count() : 0))
   {
     warnings.push_back(MakeMessage<sentences::AreasTouchNoHole>(holes.Count(),
-      NameOf(options.Chosen->Extent()), fillsOnly ? "none is filled" : "none is kept open"));
+      NameOf(options.Chosen->Extent()), fillsOnly ? "none is filled" : "none is kept open",
+      options.Chosen->CountRings() > 1
+        ? " A place in two rings, as where they overlap, is in no area."
+        : ""));
   }
   Index withoutLevel = 0, ring = None;
   for (const HoleReport& report : patches.Reports)

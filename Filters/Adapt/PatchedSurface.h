@@ -55,6 +55,7 @@ constexpr const char* AreaInputName = "area input";
 /**
  * The areas that lines and polygons bound, with their levels if the options name these; nullptr:
  * none.
+ * @param[in] options  SinglePrecision: that of the output, whose points are to hold the levels
  * @param[out] warnings  one is added where rings are there more than once
  * @throws Error naming the cell, point or array, or that levels would not be used
  */

@@ -395,6 +395,7 @@ void ReconstructParts::Fill(const Progress& progress)
   std::vector<Message> warnings;
   this->Do(true, [&]() {
     this->AllRanks->Agree([&]() {
+      this->Set.Fill.SinglePrecision = this->Work->AreFloat();
       this->Set.Fill.Chosen =
         ToAreas(this->AreaLines, this->Set.Fill, progress.Between(0.0, 0.0), warnings);
     });

@@ -116,6 +116,9 @@ public:
     return this->Store->Part.LeftOut;
   } ///< as of SurfacePart
 
+  /** Whether the points of all parts are float. */
+  bool AreFloat() const { return this->Store->Part.PointType == VTK_FLOAT; }
+
   /** A part of this rank, with its unused points. From memory it can be taken once. */
   SurfacePart Take(int part, const Progress& progress);
 

@@ -7,7 +7,7 @@ import os
 
 import numpy
 
-from ..clouds import Cloud, add_array, make_lines, make_points, set_crs
+from ..clouds import LINE_NAMES, WITHOUT_Z, Cloud, add_array, add_words, make_lines, make_points, set_crs
 from .column_names import meaning
 from .formats import HEAD, is_table_with_geometry
 from ..gdal_common import GDAL_ERRORS, choose_layer, gdal_module, kind_of, one_line, quiet
@@ -211,6 +211,15 @@ def are_angles(layer):
     return (numpy.abs(layer.coordinates()[:, :2]) <= (540.0, 90.0)).all()
 
 
+def add_attribute(data, name, values):
+    """Adds a cell array: numbers, also those that a file has as text, where nothing is none (NaN); or text."""
+    values = [None if isinstance(value, str) and not value.strip() else value for value in values]
+    if all(is_number(value) for value in values):
+        add_array(data, name, numpy.array([numpy.nan if v is None else float(v) for v in values]), "Cell")
+    else:
+        add_words(data, name, ["" if value is None else str(value) for value in values])
+
+
 def read_layer(path, wanted, columns, progress, as_lines=False, needs_z=True):
     """(Layer with its elevations, notes, crs)."""
     with quiet():
@@ -275,8 +284,8 @@ def read_points(path, options):
 
 
 def read_lines(path, singular, progress):
-    """Lines and polygons with their holes, as vtkPolyData with lines and the field array CRS; attributes of
-    numbers become cell arrays."""
+    """Lines and polygons with their holes, as vtkPolyData with lines and the field array CRS; attributes become
+    cell arrays, those with a word of text."""
     layer, _, crs = read_layer(path, None, None, progress, as_lines=True, needs_z=singular != "a boundary")
     names, parts, features, count = [], [], [], collections.Counter()
     for feature, number, (kind, points) in zip(layer.ids, layer.features, layer.parts):
@@ -290,9 +299,9 @@ def read_lines(path, singular, progress):
         raise FileError(f"{path}: holds no line and no polygon that could be {singular}")
     data = make_lines(parts, names)
     for name, values in layer.fields.items():
-        # Numbers that a file has as text are numbers, too.
-        if any(isinstance(value, (int, float, str)) for value in values) and layer.numbers(name) is not None:
-            add_array(data, name, layer.numbers(name)[features], "Cell")
+        are_plain = all(value is None or isinstance(value, (int, float, str)) for value in values)
+        if are_plain and name not in (LINE_NAMES, WITHOUT_Z):
+            add_attribute(data, name, [values[number] for number in features])
     if crs:
         set_crs(data, crs)
     return data

@@ -13,7 +13,7 @@ from TestChosenHoles import CENTRES, LAKES, RADIUS, square, surface, survey
 from vtkelevationsurface import (
     ElevationSurfaceError, ElevationSurfaceWarning, read_boundary, reconstruct, vtkFillElevationHoles,
 )
-from vtkelevationsurface.clouds import add_array, make_lines
+from vtkelevationsurface.clouds import add_array, add_words, make_lines
 from vtkelevationsurface.given_lines import fitted
 from vtkelevationsurface.mending import mended
 from vtkelevationsurface.messages import Messages
@@ -126,10 +126,11 @@ class LevelsOfAreas(unittest.TestCase):
     def test_what_cannot_be_is_an_error_that_names_it(self):
         areas = with_levels(LAKES, [90.0, numpy.inf])
         add_array(areas, "pair", numpy.zeros((2, 2)), "Cell")
-        with_vertex = meshes.lines(numpy.zeros((1, 3)), [])
+        add_words(areas, "shore", ["90", "130"])
         for data, name, properties, code, words in (
-            (areas, "depth", {}, "NoLevelArray", '"depth", but the areas have no cell array of single numbers '
-             "with this name; there are water."),
+            (areas, "depth", {}, "NoLevelArray", '"depth", but the areas have no attribute of single numbers '
+             "(cell array) with this name; there are water."),
+            (areas, "shore", {}, "NoLevelArray", "with this name, which is text; there are water."),
             (areas, "pair", {}, "NoLevelArray", '"pair", but'),
             (meshes.rings(LAKES), "depth", {}, "NoLevelArray", "with this name."),
             (areas, "water", {}, "InfiniteLevel", "the line (cell 1) has an infinite level"),
@@ -143,6 +144,59 @@ class LevelsOfAreas(unittest.TestCase):
                 self.assertIn(words, str(error))
                 self.assertEqual(fill.GetOutput(0).GetNumberOfPoints(), 0)
         self.assertEqual(self.fill(areas, "")[2].errors, [])
+
+    def test_a_level_fits_in_the_points_of_the_surface(self):
+        areas = with_levels(LAKES, [90.0, -1e300])
+        fill = vtkFillElevationHoles()
+        fill.SetAreasData(areas)
+        fill.SetLevelArrayName("water")
+        double, single = surface(), meshes.cloud(meshes.points_of(surface()).astype("f4"))
+        single.SetPolys(double.GetPolys())
+        for data, precision, fits in ((double, 2, True), (double, 0, False), (single, 2, False), (single, 1, True)):
+            fill.SetInputData(data)
+            fill.SetOutputPointsPrecision(precision)
+            with Messages(fill) as messages:
+                fill.Update()
+            if fits:
+                self.assertEqual(messages.errors, [])
+                self.assertIn(-1e300, meshes.points_of(fill.GetOutput(0))[:, 2])
+                continue
+            (error,) = messages.errors
+            self.assertEqual(error.code, "InfiniteLevel")
+            self.assertIn('"water", in which the line (cell 1) has an infinite level: -1e+300 is too large for the '
+                          "points of the surface, which are float.", str(error))
+
+    def test_overlapping_lakes_with_aligned_shores_keep_their_levels(self):
+        boxes = [numpy.array([(x0, 3.0), (x1, 3.0), (x1, 21.0), (x0, 21.0)]) for x0, x1 in ((3.0, 25.0), (20.0, 37.0))]
+        for order in (slice(None), slice(None, None, -1)):
+            _, levels, messages = self.fill(with_levels(boxes[order], [90.0, 120.0][order]))
+            self.assertEqual((levels[0], levels[1], messages.warnings), (90.0, 120.0, []))
+
+    def test_a_river_that_leaves_a_lake_does_not_hide_its_level(self):
+        lake, river = square(*CENTRES[0], 7.0), numpy.array([(9.0, 9.0), (11, 9), (11, 25), (9, 25)])
+        pond = square(*CENTRES[0], 1.0)
+        for other in (river, pond):
+            for order in (slice(None), slice(None, None, -1)):
+                rings = [lake, other][order]
+                self.assertEqual(self.fill(with_levels(rings, [90.0, numpy.nan][order]))[1][0], 90.0)
+                fill, levels, messages = self.fill(with_levels(rings, [90.0, 91.0][order]))
+                self.assertTrue(numpy.isnan(levels[0]))
+                (warning,) = messages.warnings
+                self.assertIn("It touches areas with different levels", str(warning))
+                self.assertEqual(fill.GetNumberOfFilledHoles(), 0)
+
+    def test_levels_that_differ_are_written_with_the_digits_that_do(self):
+        for one, other, words in ((0.3, 0.1 + 0.2, "is 0.29999999999999999, that of the line (cell 1) is 0.30000000000000004"),
+                                  (123456789.1, 123456789.2, "is 123456789.1, that of the line (cell 1) is 123456789.2")):
+            _, _, messages = self.fill(with_levels(2 * LAKES[:1], [one, other]))
+            self.assertIn(words, " ".join(map(str, messages.warnings)))
+
+    def test_a_hole_in_two_rings_is_in_no_area_and_the_warning_says_so(self):
+        both = [square(*CENTRES[0], 7.0), square(12.0, 12.0, 7.0)]
+        for rings, is_said in ((both, True), ([square(500.0, 500.0, 2.0)], False)):
+            (warning,) = self.fill(meshes.rings(rings), "")[2].warnings
+            self.assertEqual(warning.code, "AreasTouchNoHole")
+            self.assertEqual("A place in two rings, as where they overlap, is in no area." in str(warning), is_said)
 
     def test_rings_that_are_mended_keep_their_attributes(self):
         eight = numpy.array([(0.0, 0, 0), (4, 4, 0), (4, 0, 0), (0, 4, 0), (0, 0, 0)])  # crosses itself
@@ -215,11 +269,27 @@ class OfProgram(Program):
         self.assertEqual(done.returncode, 0, done.stderr)
         levels = [hole["level"] for hole in self.json("r.json")["holes"]["list"] if hole["level"]]
         self.assertEqual(sorted(levels), [90.5, 131.0])
-        self.geojson("lakes.geojson", LAKES, name=["90.5", "deep"])
-        done = self.call(*few, "--level-attribute", "name")
-        self.assertEqual((done.returncode, len(done.stderr.strip().splitlines())), (1, 1), done.stderr)
-        self.assertIn("lakes.geojson: has no attribute name of numbers, which --level-attribute names; none is of",
-                      done.stderr)
+        self.geojson("lakes.geojson", LAKES, name=["90.5", "deep"], WithoutZ=[90.5, 131], LineNames=["a", "b"])
+        for name, words in (
+            ("name", "attribute name, which --level-attribute names, is text: 'deep' is not a number; leave empty "
+             "what has none"),
+            ("WithoutZ", "has no attribute WithoutZ of numbers, which --level-attribute names; none is of numbers"),
+            ("LineNames", "has no attribute LineNames of numbers, which"),
+        ):
+            done = self.call(*few, "--level-attribute", name)
+            self.assertEqual((done.returncode, len(done.stderr.strip().splitlines())), (1, 1), done.stderr)
+            self.assertIn("lakes.geojson: " + words, done.stderr)
+
+    def test_attributes_without_any_number_are_there(self):
+        self.file("survey.xyz", "\n".join("%r %r %r" % tuple(row) for row in survey().tolist()))
+        few = ["survey.xyz", "--maximum-edge-length", "2", "--fill-only", "lakes.geojson", "--no-picture"]
+        for values, levels in (([None, None], []), ([" ", "131"], [131.0])):
+            self.geojson("lakes.geojson", LAKES, water=values)
+            done = self.call(*few, "--level-attribute", "water", "--report", "r.json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"{2 - len(levels)} of the filled holes touch areas that have no number in", done.stdout)
+            found = [hole["level"] for hole in self.json("r.json")["holes"]["list"] if hole["level"]]
+            self.assertEqual(found, levels)
 
     def test_fills_chosen_lakes_level_and_reports_by_how_much(self):
         self.file("survey.xyz", "\n".join("%r %r %r" % tuple(row) for row in survey().tolist()))
@@ -263,6 +333,10 @@ class Python(unittest.TestCase):
             words = "^fill_only: has no attribute deep of numbers, which level_attribute names; " + words + "$"
             with self.assertRaisesRegex(ElevationSurfaceError, words):
                 reconstruct(survey(), maximum_edge_length=2.0, fill_only=ring, level_attribute="deep")
+        words = "^fill_only: attribute shore, which level_attribute names, is text; numbers are needed$"
+        add_words(areas, "shore", ["90", "130"])
+        with self.assertRaisesRegex(ElevationSurfaceError, words):
+            reconstruct(survey(), maximum_edge_length=2.0, fill_only=areas, level_attribute="shore")
         for wrong in (3, ""):
             with self.assertRaisesRegex(ValueError, f"^level_attribute takes a name, not {wrong!r}$"):
                 reconstruct(survey(), fill_only=areas, level_attribute=wrong)

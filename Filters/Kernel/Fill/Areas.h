@@ -14,16 +14,20 @@
  *     o-|---o  |
  *       '------'   Cost: linear in the edges of the hole and in what is near them.
  *
- * An area has the level of the ring that bounds it from outside. Rings in it, around islands, are
- * the inner bounds of the same area; a ring in an island is an area again:
+ * An area has the level of the ring that bounds it from outside, and those of rings in it, around
+ * islands: they are its inner bounds, and have the same level or none. A ring in an island bounds
+ * an area again. A hole that touches areas with several levels gets none of them.
  *
  *     o-----------------o
- *     | 5  o---------o  |   Levels of rings: 5, 7, 9. A hole that touches the ring with 7 touches
- *     |    |  o---o  |  |   the area between it and the outermost ring, whose level is 5. The
- *     |    |  | 9 |7 |  |   innermost area has 9.
+ *     | 5  o---------o  |   Levels of rings: 5, none, 9. A hole that touches the ring without one
+ *     |    |  o---o  |  |   touches the area between it and the outermost ring, whose level is 5.
+ *     |    |  | 9 |  |  |   The innermost area has 9.
  *     |    |  o---o  |  |
  *     |    o---------o  |
  *     o-----------------o
+ *
+ * A ring is in another one only if all of it is, with what it encloses. Where rings cross, each
+ * bounds the area from outside, so that a place in three of them has the levels of all three.
  */
 #ifndef elevation_Fill_Areas_h
 #define elevation_Fill_Areas_h
@@ -34,6 +38,7 @@
 
 #include <array>
 #include <limits>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,6 +52,8 @@ struct AreaLevel
   double Height = std::numeric_limits<double>::quiet_NaN(); ///< NaN: none of them has one
   Index Without = None;                                     ///< then the first of their rings
 };
+
+struct HoleLoops;
 
 class Areas
 {
@@ -73,15 +80,24 @@ public:
   /** What messages call the first line of a ring. */
   const std::string& NameOfRing(Index ring) const { return this->Levels[ring].front().second; }
 
+  Index CountRings() const { return this->Joined.Count(); }
+
   /** The box of all rings. */
   Box Extent() const;
 
 private:
+  using Pairs = std::set<std::pair<Index, Index>>;
+
   template <typename Visitor>
-  void VisitRings(const Mesh& mesh, const Holes& holes, Index hole, const Visitor& visit) const;
-  void FindOuters(const std::vector<Point2>& points);
+  void VisitMet(const HoleLoops& hole, const Visitor& visit) const;
+  template <typename Visitor>
+  void VisitEnclosed(const HoleLoops& hole, const Visitor& visit) const;
+  std::set<Index> RingsOf(const HoleLoops& hole) const;
+  Pairs FindApart(const std::vector<Point2>& points) const;
+  void FindAround(const std::vector<Point2>& points);
   std::vector<Index> RingsAround(const std::array<Point2, 3>& corner) const;
-  Index Innermost(const std::vector<Index>& rings) const;
+  bool IsIn(Index ring, Index other) const;
+  std::vector<Index> Innermost(std::vector<Index> rings) const;
 
   std::vector<std::vector<Index>> Members; ///< the lines of each ring
   Rings Joined;
@@ -92,8 +108,7 @@ private:
   RingLocator Inside;
   // For levels alone:
   std::vector<std::vector<std::pair<double, std::string>>> Levels; ///< of each ring, with its line
-  std::vector<Index> Depths; ///< how many rings are around each ring
-  std::vector<Index> Outers; ///< the ring that bounds the same area from outside
+  std::vector<std::vector<Index>> Around; ///< the rings that each ring is in, increasing
 };
 
 } // namespace elevation

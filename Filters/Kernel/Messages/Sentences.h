@@ -228,7 +228,7 @@ ELEVATION_SENTENCE(LinesDisagree,
   "lines stay as they are; what is filled between lines goes between them there.");
 ELEVATION_SENTENCE(AreasTouchNoHole,
   "None of the {holes} holes touches the areas, which are at {box}; so {outcome}. Are areas and "
-  "surface in the same coordinates?");
+  "surface in the same coordinates?{note}");
 ELEVATION_SENTENCE(LevelsMissing,
   "{holes} of the filled holes touch areas that have no number in {property:LevelArrayName} (NaN), "
   "the first being {area}, so {property:Interpolation} decides on their elevations.");
@@ -237,10 +237,10 @@ ELEVATION_SENTENCE(LevelsNotUsed,
   "needs "
   "areas, and {property:AreaMode} FillOnly.");
 ELEVATION_SENTENCE(NoLevelArray,
-  "{property:LevelArrayName} is \"{name}\", but the areas have no cell array of single numbers "
-  "with this name{others}.");
+  "{property:LevelArrayName} is \"{name}\", but the areas have no attribute of single "
+  "numbers (cell array) with this name{note}{others}.");
 ELEVATION_SENTENCE(InfiniteLevel,
-  "{property:LevelArrayName} is \"{name}\", in which the {line} has an infinite level.");
+  "{property:LevelArrayName} is \"{name}\", in which the {line} has an infinite level{note}.");
 ELEVATION_SENTENCE(BordersMeet,
   "At {places} places a point lies inside a border edge or on another point, the first at point "
   "{point}; there the surface is not connected, so that an enclosed region may not be a hole. "
