@@ -320,6 +320,19 @@ public:
 
   ///@{
   /**
+   * Whether new points are as dense as the surface around the hole, where the edges of its boundary
+   * are longer than those of the surface nearby, as where triangles bridge a part of a void. On:
+   * the distance of new points follows, at each edge, the shorter of its own length and the median
+   * length of edges up to three rings of vertices away. Off (default): its own length alone. It
+   * plays no part on a lattice, with a Spacing, or between survey lines (OpenEdgeLength).
+   */
+  vtkSetMacro(MatchDensity, bool);
+  vtkGetMacro(MatchDensity, bool);
+  vtkBooleanMacro(MatchDensity, bool);
+  ///@}
+
+  ///@{
+  /**
    * The probability with which the true z of a new point lies between the arrays FilledLow and
    * FilledHigh; at least 0.5 and below 1. Default: 0.9. Both arrays are found by the ranks of the
    * errors in trials, so that large errors, which are more frequent than in a normal distribution,
@@ -436,6 +449,7 @@ protected:
   bool FillCutOuts = false;
   vtkIdType MaximumNumberOfExpectedPoints = 0;
   double Spacing = 0.0;
+  bool MatchDensity = false;
   int Interpolation = ADAPTIVE;
   double ConfidenceLevel = 0.9;
   bool InterpolatePointData = true;

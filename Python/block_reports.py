@@ -59,16 +59,18 @@ def chosen_values(result):
 
 
 def spacing_of(result, holes):
-    """The distance of new points: as given, that of a lattice's nodes, or the mean of what each hole has
-    got, the mean length of its edges. 0: there are none."""
+    """The distance of new points: as given, that of a lattice's nodes, or that at which even triangles,
+    as many as the patches have, cover the holes. 0: there are none."""
     if not holes:
         return 0.0
     if result.fill.GetSpacing():
         return result.fill.GetSpacing()
     if result.lattice:
         return math.sqrt(math.prod(result.lattice["lengths"]))
-    points = sum(hole["inserted_points"] for hole in holes)
-    return sum(hole["inserted_points"] / points * hole["perimeter"] / hole["edges"] for hole in holes)
+    # Euler: a hole of n edges takes n - 2 triangles, and two for each point in it.
+    triangles = sum(hole["edges"] - 2 + 2 * hole["inserted_points"] for hole in holes)
+    area = math.fsum(hole["area"] for hole in holes)
+    return math.sqrt(4 / math.sqrt(3) * area / triangles)
 
 
 def failed_block_report(surface, error):

@@ -199,6 +199,7 @@ class Properties(unittest.TestCase):
             "maximum_hole_edges": (7, "fill", "GetMaximumHoleEdges", 7),
             "maximum_expected_points": (900, "fill", "GetMaximumNumberOfExpectedPoints", 900),
             "spacing": (0.5, "fill", "GetSpacing", 0.5),
+            "match_density": (False, "fill", "GetMatchDensity", 0),
             "interpolation": ("thin plate", "fill", "GetInterpolation", 2),
             "level_attribute": ("water", "fill", "GetLevelArrayName", "water"),
             "confidence_level": (0.8, "fill", "GetConfidenceLevel", 0.8),
@@ -216,6 +217,21 @@ class Properties(unittest.TestCase):
             with self.subTest(name=name):
                 result = reconstruct(SHEET, **{name: value}, **needs.get(name, {}))
                 self.assertEqual(getattr(getattr(result, step), getter)(), expected)
+
+    def test_new_points_are_as_dense_as_those_around_them(self):
+        random = numpy.random.default_rng(4)
+        xy = 60 * random.random((3600, 2))
+        is_lost = numpy.hypot(*(xy - 30).T) < 14
+        points = numpy.column_stack((xy, numpy.sin(xy[:, 0] / 7)))[~is_lost]
+        counts = {}
+        for name, given in (("chain", {}), ("on", {"match_density": True}), ("off", {"match_density": False})):
+            result = reconstruct(points, **given)
+            counts[name] = result.report["holes"]["inserted_points"]
+            self.assertEqual(result.fill.GetMatchDensity(), name != "off")
+        self.assertEqual(counts["chain"], counts["on"])
+        self.assertGreater(counts["on"], 0.6 * is_lost.sum())
+        self.assertLess(counts["on"], 1.2 * is_lost.sum())
+        self.assertLess(counts["off"], 0.3 * is_lost.sum())
 
     def test_misspelt_names_and_wrong_values_raise(self):
         with self.assertRaisesRegex(TypeError, "maximum_edge_lenght; did you mean maximum_edge_length"):

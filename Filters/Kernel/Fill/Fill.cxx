@@ -144,7 +144,7 @@ public:
     this->Range = this->Context.Elevations.IsEmpty()
       ? RangeOf(this->Surface, this->GivenHoles, this->Points, ranging)
       : this->Context.Elevations;
-    // On a lattice they are there already, for the plans.
+    // They may be there already, for the plans.
     const bool makesStars = this->AllWork > 0.0 && needsStars && !this->Stars;
     Stages later(stages.Next(), { makesStars ? 4.0 : 0.0, 94 });
     const Progress connecting = later.Next(), filling = later.Next();
@@ -212,9 +212,12 @@ private:
         ? *this->Context.FoundLattice
         : FindLattice(this->Points, LatticeTolerance, this->Threads, progress);
     }
-    if (lattice.Found)
+    const Progress abort = progress.Between(1.0, 1.0);
+    const bool matchesDensity =
+      options.MatchDensity && !(options.Spacing > 0.0) && this->GivenHoles.Count() > 0;
+    if (lattice.Found || matchesDensity)
     {
-      this->Stars = std::make_unique<VertexStars>(this->Surface, progress.Between(1.0, 1.0));
+      this->Stars = std::make_unique<VertexStars>(this->Surface, abort);
     }
     this->Result.Reports.reserve(this->GivenHoles.Count());
     for (Index hole = 0; hole < this->GivenHoles.Count(); ++hole)
@@ -226,8 +229,10 @@ private:
       this->Result.Reports.push_back(MeasureHole(this->Surface, this->GivenHoles, hole, options));
       HoleReport& report = this->Result.Reports.back();
       PatchPlan& plan = this->Plans[hole];
+      // A hole that stays open needs no spacing.
       plan = PlanPatch(this->Surface, this->Stars.get(), this->GivenHoles, hole, report.Area,
-        options.Spacing, lattice.Found ? &lattice.Steps : nullptr);
+        options.Spacing, lattice.Found ? &lattice.Steps : nullptr,
+        matchesDensity && report.Status == FillStatus::Filled, abort);
       report.Spacing = plan.Spacing;
       // Any point of the rim will do: with the hole's size added, no coordinate of the hole is
       // larger.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PatchPlan.h"
 
+#include "LengthsAround.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -189,6 +191,37 @@ EdgeLengths EdgeSpacings(
   return spacings;
 }
 
+/** Where the surface nearby has shorter edges than the boundary, these are asked for. */
+void MatchDensity(const Mesh& mesh, const VertexStars& stars, const Holes& holes, Index hole,
+  const Progress& progress, EdgeLengths& spacings)
+{
+  // Along lines the surface is denser than between them, where the gaps decide.
+  if (holes.IsOfLines(hole))
+  {
+    return;
+  }
+  const bool isRegion = holes.IsRegion(hole);
+  const std::vector<double> around = LengthsAround(mesh, stars, holes, hole, progress);
+  for (std::size_t i = 0; i < around.size(); ++i)
+  {
+    double& spacing = spacings.Boundary[i];
+    // Long edges stay as they are: MeanWithin() leaves them out, and makes Graded sparser there.
+    spacing = isRegion && spacing > holes.LongestEdge ? spacing : std::min(spacing, around[i]);
+  }
+}
+
+/** The spacing of a hole, if the user sets none. */
+double MeanSpacing(
+  const Holes& holes, Index hole, const EdgeLengths& lengths, const EdgeLengths& spacings)
+{
+  if (holes.IsRegion(hole))
+  {
+    return MeanWithin(holes.LongestEdge, lengths, spacings);
+  }
+  return std::accumulate(spacings.Boundary.begin(), spacings.Boundary.end(), 0.0) /
+    static_cast<double>(spacings.Boundary.size());
+}
+
 /**
  * About how many graded points there will be, which does not grow with the distance of lines. As
  * the spacing grows with the distance from an edge, there are 1 / SpacingGrowth points at each of
@@ -233,37 +266,27 @@ bool IsOnLattice(const Mesh& mesh, const Holes& holes, Index hole, const Lattice
 } // namespace
 
 PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& holes, Index hole,
-  double area, double spacing, const Lattice* lattice)
+  double area, double spacing, const Lattice* lattice, bool matchDensity, const Progress& progress)
 {
   PatchPlan plan;
   const EdgeLengths lengths = MeasureEdges(mesh, holes, hole);
-  const double edges = static_cast<double>(lengths.Boundary.size() + lengths.Inner.size());
   const double perimeter = std::accumulate(lengths.Boundary.begin(), lengths.Boundary.end(), 0.0);
-  // Twice the area over the perimeter: the width of a long strip.
-  const EdgeLengths spacings = EdgeSpacings(holes, hole, lengths, 2.0 * area / perimeter);
-  if (spacing > 0.0)
-  {
-    plan.Spacing = spacing;
-  }
-  else if (holes.IsRegion(hole))
-  {
-    plan.Spacing = MeanWithin(holes.LongestEdge, lengths, spacings);
-  }
-  else
-  {
-    plan.Spacing = perimeter / edges;
-  }
   const double length = std::accumulate(lengths.Inner.begin(), lengths.Inner.end(), perimeter);
-  plan.MostRows = length / plan.Spacing - edges;
-  // One point for each cell of a spacing times the height of a row.
-  plan.ExpectedPoints = plan.MostPoints = area / plan.Spacing / plan.Spacing / RowHeight;
+  const double edges = static_cast<double>(lengths.Boundary.size() + lengths.Inner.size());
+  // Twice the area over the perimeter: the width of a long strip.
+  EdgeLengths spacings = EdgeSpacings(holes, hole, lengths, 2.0 * area / perimeter);
+  const auto setSpacing = [&](double value) {
+    plan.Spacing = value;
+    plan.MostRows = length / value - edges;
+    // One point for each cell of a spacing times the height of a row.
+    plan.ExpectedPoints = plan.MostPoints = area / value / value / RowHeight;
+  };
   if (spacing > 0.0)
   {
+    setSpacing(spacing);
     return plan;
   }
-  // Holes for only a few points may need one more for refinement.
-  constexpr double morePerEdge = 0.125;
-  plan.MostPoints += morePerEdge * edges;
+  setSpacing(MeanSpacing(holes, hole, lengths, spacings));
   if (lattice && IsOnLattice(mesh, holes, hole, *lattice) &&
     MedianTriangleArea(mesh, *stars, holes, hole) <= LargestCellsPerTriangle * lattice->Area())
   {
@@ -272,6 +295,18 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
     plan.ExpectedPoints = plan.MostPoints = area / lattice->Area();
     return plan;
   }
+  if (matchDensity)
+  {
+    MatchDensity(mesh, *stars, holes, hole, progress, spacings);
+    setSpacing(MeanSpacing(holes, hole, lengths, spacings));
+  }
+  // An edge that is longer than its spacing has several points beside it.
+  const double places = std::inner_product(lengths.Boundary.begin(), lengths.Boundary.end(),
+    spacings.Boundary.begin(), static_cast<double>(lengths.Inner.size()), std::plus<double>(),
+    [](double ofEdge, double wanted) { return std::max(1.0, ofEdge / wanted); });
+  // Holes for only a few points may need one more for refinement.
+  constexpr double morePerEdge = 0.125;
+  plan.MostPoints += morePerEdge * places;
 
   // Graded, if spacings differ enough.
   plan.Spacings = SpacingsAlong(holes, hole, spacings.Boundary);
@@ -282,7 +317,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
     // More points are near parts of the boundary that are finer than average.
     constexpr double morePerEdgeWhenGraded = 8.0;
     plan.Kind = Arrangement::Graded;
-    plan.MostPoints += morePerEdgeWhenGraded * edges;
+    plan.MostPoints += morePerEdgeWhenGraded * places;
     const double points = GradedPoints(lengths, spacings, area, plan.Spacing, *range.second);
     if (holes.IsRegion(hole))
     {

@@ -19,6 +19,10 @@
  *           distance, up to the largest one.
  *   Even    Otherwise. The spacing is the mean length of the boundary's edges [Nguyen, eq. 1].
  *
+ * On request the patch is as dense as the surface around it: in Graded and Even, an edge of the
+ * boundary then counts as no longer than the edges of the surface nearby (LengthsAround.h). Long
+ * edges, and a region of lines (both below), are left alone.
+ *
  * A region is a hole made of triangles with edges longer than Holes::LongestEdge, which are long;
  * one of lines has more inner edges than boundary edges.
  * In a region, the mean is that of all edges, of the boundary and inside, that are not long: those
@@ -30,8 +34,8 @@
  * the inner edges there. With Nodes, inner edges are not kept as such: those between neighbouring
  * nodes come by themselves, longer ones get a node inside.
  *
- * Cost: linear in the edges; for Nodes, in the triangles at the boundary. Only std::bad_alloc is
- * thrown.
+ * Cost: linear in the edges; for Nodes, in the triangles at the boundary; on request, that of
+ * LengthsAround().
  *
  * [Nguyen] A Complete Method for Reconstructing an Elevation Surface of 3D Point Clouds.
  */
@@ -70,7 +74,7 @@ enum class Arrangement : unsigned char
 struct PatchPlan
 {
   Arrangement Kind = Arrangement::Even;
-  double Spacing = 0.0; ///< for Even; else the mean length of the edges
+  double Spacing = 0.0; ///< for Even; else the mean of what the edges ask for
   /** For Graded: at the origin of each edge, as of VisitEdges(); at both ends of inner edges. */
   std::vector<double> Spacings;
   /** The most new points that the patch may insert; above 0, not a whole number. */
@@ -101,16 +105,20 @@ struct PatchPlan
 /**
  * Chooses the arrangement for a hole.
  * @param[in] mesh     the surface, without long triangles
- * @param[in] stars    its stars; may be null if lattice is
+ * @param[in] stars    its stars; may be null if lattice is and density is not matched
  * @param[in] holes    its holes
  * @param[in] hole     number of the hole
  * @param[in] area     of the hole
  * @param[in] spacing  the user's; 0: none
  * @param[in] lattice  of the surface; null: none
+ * @param[in] matchDensity  whether the patch is to be as dense as the surface around it
+ * @param[in] progress      asks for an abort alone
  * @return a plan; the caller sets Precision and the members after it
+ * @throws Aborted, std::bad_alloc
  */
 PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& holes, Index hole,
-  double area, double spacing, const Lattice* lattice);
+  double area, double spacing, const Lattice* lattice, bool matchDensity = false,
+  const Progress& progress = Progress());
 
 /** The spacing at which so many points, in rows, fill an area. */
 double PointSpacing(double area, double points);
