@@ -21,6 +21,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace elevation
@@ -190,7 +191,7 @@ private:
       if (report.Status == FillStatus::Filled)
       {
         needs[hole] = { std::max(plan.MostRows, plan.MostPoints), plan.ExpectedPoints,
-          report.Area };
+          report.Area, plan.IsDenser };
       }
     }
     return needs;
@@ -219,6 +220,11 @@ private:
     {
       this->Stars = std::make_unique<VertexStars>(this->Surface, abort);
     }
+    std::optional<LengthsOfSurface> lengths;
+    if (matchesDensity)
+    {
+      lengths.emplace(this->Surface, *this->Stars);
+    }
     this->Result.Reports.reserve(this->GivenHoles.Count());
     for (Index hole = 0; hole < this->GivenHoles.Count(); ++hole)
     {
@@ -232,7 +238,7 @@ private:
       // A hole that stays open needs no spacing.
       plan = PlanPatch(this->Surface, this->Stars.get(), this->GivenHoles, hole, report.Area,
         options.Spacing, lattice.Found ? &lattice.Steps : nullptr,
-        matchesDensity && report.Status == FillStatus::Filled, abort);
+        lengths && report.Status == FillStatus::Filled ? &*lengths : nullptr, abort);
       report.Spacing = plan.Spacing;
       // Any point of the rim will do: with the hole's size added, no coordinate of the hole is
       // larger.
@@ -547,21 +553,28 @@ void CheckEffort(
   const std::vector<HoleNeed>& needs, double numberOfPoints, const FillOptions& options)
 {
   double expected = 0.0, area = 0.0, ofOne = 0.0, largest = 0.0;
+  bool isDenser = false, isDenserOne = false;
   for (const HoleNeed& need : needs)
   {
     if (!std::isnan(need.Most))
     {
       expected += need.Expected;
       area += need.Area;
+      isDenser = isDenser || need.IsDenser;
+      isDenserOne = need.Expected > ofOne ? need.IsDenser : isDenserOne;
       ofOne = std::max(ofOne, need.Expected);
       largest = std::max(largest, need.Area);
     }
   }
+  const auto advice = [](bool isNeeded) {
+    return isNeeded ? Message::Argument(MakeMessage<sentences::FewerIfNotMatched>())
+                    : Message::Argument("");
+  };
   const double room = options.HoleMemory / BytesPerPoint;
   if (options.HoleMemory > 0.0 && ofOne > room)
   {
     throw MakeError<sentences::HoleTooLarge>(CountToText(ofOne), ToGigabytes(ofOne),
-      ToGigabytes(room), RoundedUp(PointSpacing(largest, room)));
+      ToGigabytes(room), RoundedUp(PointSpacing(largest, room)), advice(isDenserOne));
   }
   const double chosen = static_cast<double>(options.MaximumExpectedPoints);
   const double limit =
@@ -575,10 +588,10 @@ void CheckEffort(
   if (chosen > 0.0)
   {
     throw MakeError<sentences::TooManyPointsToFill>(
-      CountToText(expected), ToGigabytes(expected), CountToText(limit), better);
+      CountToText(expected), ToGigabytes(expected), CountToText(limit), better, advice(isDenser));
   }
   throw MakeError<sentences::TooManyPointsByDefault>(CountToText(expected), ToGigabytes(expected),
-    CountToText(limit), CountToText(numberOfPoints), better);
+    CountToText(limit), CountToText(numberOfPoints), better, advice(isDenser));
 }
 
 // From the smallest on: as many holes as possible are filled, and whether one is does not depend on

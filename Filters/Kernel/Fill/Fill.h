@@ -203,6 +203,7 @@ struct HoleNeed
   double Most = std::numeric_limits<double>::quiet_NaN();
   double Expected = 0.0; ///< about how many there will be
   double Area = 0.0;
+  bool IsDenser = false; ///< whether MatchDensity makes them more
 };
 
 /** Of each hole of a part. As FillHoles(), without quotas. */

@@ -3,8 +3,10 @@
 #include "LengthsAround.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <tuple>
 
@@ -15,10 +17,10 @@ namespace
 {
 
 /** How many edges away from the boundary vertices count. Those next to it have long edges, too. */
-constexpr int Rings = 3;
+constexpr std::size_t Rings = 3;
 
-/** The lengths that belong to this many vertices of the boundary count for an edge. */
-constexpr Index VerticesAround = 4;
+/** For an edge, its two ends count this much each, and the vertices before and after it once. */
+constexpr double WeightOfEnd = 2.0;
 
 /**
  * How far from the box of the hole vertices count, in its diagonals and in mean edges. Parts have
@@ -39,13 +41,13 @@ double MedianOf(std::vector<double>& values)
 class RingSearch
 {
 public:
-  RingSearch(const Mesh& mesh, const VertexStars& stars, const Holes& holes, Index hole)
-    : Surface(mesh)
-    , Stars(stars)
+  RingSearch(LengthsOfSurface& surface, const Holes& holes, Index hole)
+    : Surface(surface)
+    , Points(surface.GetMesh())
   {
     double perimeter = 0.0;
     holes.VisitEdges(hole, [&](Index a, Index b) {
-      const Point2 p = mesh.PointOf(a), q = mesh.PointOf(b);
+      const Point2 p = this->Points.PointOf(a), q = this->Points.PointOf(b);
       this->Boundary.push_back(a);
       this->Near.Add(p);
       perimeter += std::hypot(q.X - p.X, q.Y - p.Y);
@@ -62,36 +64,46 @@ public:
 
   void Run(const Progress& progress)
   {
-    // Neighbours of a ring are in it, in the one before, or in the next.
-    std::vector<Reached> before, ring;
     for (const Index vertex : this->Boundary)
     {
-      ring.push_back({ vertex, vertex, 0.0 });
+      this->Found[0].push_back({ vertex, vertex, 0.0 });
     }
-    for (int number = 1; number <= Rings; ++number)
+    for (std::size_t ring = 1; ring < this->Found.size(); ++ring)
     {
-      std::vector<Reached> next = this->NextTo(ring, before, progress);
-      before.swap(ring);
-      ring.swap(next);
-      for (const Reached& one : ring)
+      this->Found[ring] = this->NextTo(this->Found[ring - 1], progress);
+    }
+    std::vector<OwnLength> lengths;
+    for (std::size_t ring = 1; ring < this->Found.size(); ++ring)
+    {
+      for (const Reached& one : this->Found[ring])
       {
-        this->Found.push_back({ one.From, this->LengthAt(one.Vertex) });
+        lengths.push_back({ one.From, this->Surface.At(one.Vertex) });
       }
     }
-    Sort(
-      this->Found.begin(), this->Found.end(),
-      [](const Length& a, const Length& b) { return a.Owner < b.Owner; }, progress);
+    const auto isBefore = [](const OwnLength& a, const OwnLength& b) { return a.Owner < b.Owner; };
+    Sort(lengths.begin(), lengths.end(), isBefore, progress);
+    std::vector<double> ofOne;
+    for (std::size_t i = 0; i < lengths.size(); ++i)
+    {
+      ofOne.push_back(lengths[i].Value);
+      if (i + 1 == lengths.size() || lengths[i + 1].Owner != lengths[i].Owner)
+      {
+        CountWork(ofOne.size());
+        this->Medians.push_back({ lengths[i].Owner, MedianOf(ofOne) });
+        ofOne.clear();
+      }
+    }
   }
 
-  /** Appends the lengths that belong to a vertex of the boundary. */
-  void AppendLengths(Index vertex, std::vector<double>& lengths) const
+  /** The length at a vertex of the boundary; infinite where nothing belongs to it. */
+  double At(Index vertex) const
   {
-    const auto isBefore = [](const Length& one, Index owner) { return one.Owner < owner; };
-    for (auto one = std::lower_bound(this->Found.begin(), this->Found.end(), vertex, isBefore);
-         one != this->Found.end() && one->Owner == vertex; ++one)
-    {
-      lengths.push_back(one->Value);
-    }
+    const auto isBefore = [](const OwnLength& one, Index owner) { return one.Owner < owner; };
+    const auto found =
+      std::lower_bound(this->Medians.begin(), this->Medians.end(), vertex, isBefore);
+    return found != this->Medians.end() && found->Owner == vertex
+      ? found->Value
+      : std::numeric_limits<double>::infinity();
   }
 
 private:
@@ -101,53 +113,42 @@ private:
     Index From;    ///< the vertex of the boundary that it belongs to
     double Square; ///< of the distance from it
   };
-  struct Length
+  struct OwnLength
   {
-    Index Owner;
+    Index Owner; ///< a vertex of the boundary
     double Value;
   };
 
-  static bool IsIn(const std::vector<Reached>& ring, Index vertex)
+  /** Whether the search has come to a vertex before. */
+  bool IsFound(Index vertex) const
   {
-    const auto found = std::lower_bound(ring.begin(), ring.end(), vertex,
-      [](const Reached& one, Index id) { return one.Vertex < id; });
-    return found != ring.end() && found->Vertex == vertex;
-  }
-
-  /** Calls visit(other end) for the edges at a vertex. */
-  template <typename Visitor>
-  void VisitEdges(Index vertex, Visitor&& visit)
-  {
-    this->Stars.Visit(this->Surface, vertex, [&](Index h) {
-      this->Steps.Add();
-      visit(this->Surface.Destination(h));
-      // The last edge of a fan at the border has no half-edge that leaves the vertex.
-      if (this->Surface.IsBorder(Mesh::Previous(h)))
-      {
-        visit(this->Surface.Apex(h));
-      }
-      return true;
-    });
+    return std::any_of(
+      this->Found.begin(), this->Found.end(), [&](const std::vector<Reached>& ring) {
+        const auto found = std::lower_bound(ring.begin(), ring.end(), vertex,
+          [](const Reached& one, Index id) { return one.Vertex < id; });
+        return found != ring.end() && found->Vertex == vertex;
+      });
   }
 
   /** The ring after the last, by increasing vertices. */
-  std::vector<Reached> NextTo(
-    const std::vector<Reached>& last, const std::vector<Reached>& before, const Progress& progress)
+  std::vector<Reached> NextTo(const std::vector<Reached>& last, const Progress& progress)
   {
     std::vector<Reached> next;
     for (std::size_t i = 0; i < last.size(); ++i)
     {
       ReportStep(progress, i, last.size(), 1024);
-      const Point2& from = this->Surface.PointOf(last[i].From);
-      this->VisitEdges(last[i].Vertex, [&](Index vertex) {
-        const Point2& p = this->Surface.PointOf(vertex);
-        if (this->Near.Contains(p) && !IsIn(last, vertex) && !IsIn(before, vertex))
+      const Point2& from = this->Points.PointOf(last[i].From);
+      for (const Index vertex : this->Surface.NeighborsOf(last[i].Vertex))
+      {
+        this->Steps.Add();
+        const Point2& p = this->Points.PointOf(vertex);
+        if (this->Near.Contains(p) && !this->IsFound(vertex))
         {
           next.push_back({ vertex, last[i].From, SquaredLength(p, from) });
         }
-      });
+      }
     }
-    const IsLowerPoint isLower{ this->Surface };
+    const IsLowerPoint isLower{ this->Points };
     Sort(
       next.begin(), next.end(),
       [&isLower](const Reached& a, const Reached& b) {
@@ -162,50 +163,126 @@ private:
     return next;
   }
 
-  double LengthAt(Index vertex)
-  {
-    const Point2& p = this->Surface.PointOf(vertex);
-    this->Lengths.clear();
-    this->VisitEdges(vertex, [&](Index other) {
-      const Point2& q = this->Surface.PointOf(other);
-      this->Lengths.push_back(std::hypot(q.X - p.X, q.Y - p.Y));
-    });
-    return MedianOf(this->Lengths);
-  }
-
-  const Mesh& Surface;
-  const VertexStars& Stars;
+  LengthsOfSurface& Surface;
+  const Mesh& Points;
   Box Near; ///< in which vertices count
   std::vector<Index> Boundary;
-  std::vector<Length> Found;   ///< by increasing owners
-  std::vector<double> Lengths; ///< of one star
+  std::array<std::vector<Reached>, Rings + 1> Found; ///< from the boundary on, by vertices
+  std::vector<OwnLength> Medians;                    ///< by increasing owners
   StepCount Steps;
+};
+
+/** The mean of lengths that are finite, with weights. */
+class MeanLength
+{
+public:
+  void Add(double length, double weight)
+  {
+    if (std::isfinite(length))
+    {
+      this->Sum += weight * length;
+      this->Weights += weight;
+    }
+  }
+  /** Infinite without lengths. */
+  double Get() const
+  {
+    return this->Weights > 0.0 ? this->Sum / this->Weights
+                               : std::numeric_limits<double>::infinity();
+  }
+
+private:
+  double Sum = 0.0, Weights = 0.0;
 };
 } // namespace
 
-std::vector<double> LengthsAround(const Mesh& mesh, const VertexStars& stars, const Holes& holes,
-  Index hole, const Progress& progress)
+void LengthsOfSurface::ListEnds(Index vertex, std::size_t most)
 {
-  RingSearch search(mesh, stars, holes, hole);
+  this->Ends.clear();
+  this->Stars.Visit(this->Surface, vertex, [&](Index h) {
+    this->Ends.push_back(this->Surface.Destination(h));
+    // The last edge of a fan at the border has no half-edge that leaves the vertex.
+    if (this->Surface.IsBorder(Mesh::Previous(h)))
+    {
+      this->Ends.push_back(this->Surface.Apex(h));
+    }
+    return this->Ends.size() < most;
+  });
+  CountWork(this->Ends.size());
+}
+
+double LengthsOfSurface::At(Index vertex)
+{
+  const auto [known, isNew] = this->Medians.try_emplace(vertex, 0.0);
+  if (isNew)
+  {
+    const Point2& p = this->Surface.PointOf(vertex);
+    this->ListEnds(vertex, std::numeric_limits<std::size_t>::max());
+    this->Lengths.clear();
+    for (const Index end : this->Ends)
+    {
+      const Point2& q = this->Surface.PointOf(end);
+      this->Lengths.push_back(std::hypot(q.X - p.X, q.Y - p.Y));
+    }
+    known->second = MedianOf(this->Lengths);
+  }
+  return known->second;
+}
+
+const std::vector<Index>& LengthsOfSurface::NeighborsOf(Index vertex)
+{
+  this->ListEnds(vertex, MostNeighbors + 1);
+  if (this->Ends.size() <= MostNeighbors)
+  {
+    return this->Ends;
+  }
+  const auto [known, isNew] = this->Nearest.try_emplace(vertex);
+  if (isNew)
+  {
+    this->ListEnds(vertex, std::numeric_limits<std::size_t>::max());
+    this->Order.clear();
+    for (const Index end : this->Ends)
+    {
+      this->Order.emplace_back(
+        SquaredLength(this->Surface.PointOf(end), this->Surface.PointOf(vertex)), end);
+    }
+    const auto last = this->Order.begin() + static_cast<std::ptrdiff_t>(MostNeighbors);
+    const IsLowerPoint isLower{ this->Surface };
+    std::nth_element(
+      this->Order.begin(), last, this->Order.end(), [&isLower](const auto& a, const auto& b) {
+        return a.first != b.first ? a.first < b.first : isLower(a.second, b.second);
+      });
+    std::transform(this->Order.begin(), last, std::back_inserter(known->second),
+      [](const auto& one) { return one.second; });
+  }
+  return known->second;
+}
+
+std::vector<double> LengthsAround(
+  LengthsOfSurface& surface, const Holes& holes, Index hole, const Progress& progress)
+{
+  RingSearch search(surface, holes, hole);
   search.Run(progress);
-  std::vector<double> lengths, nearby;
+  std::vector<double> lengths, ofWalk;
   for (Index loop = holes.Offsets[hole]; loop < holes.Offsets[hole + 1]; ++loop)
   {
     const Index* const walk = holes.Walks.Begin(holes.Loops[loop]);
     const Index count = holes.Walks.Size(holes.Loops[loop]);
-    const Index around = std::min(count, VerticesAround);
+    ofWalk.clear();
     for (const Index i : Counted(count))
     {
       ReportStep(progress, static_cast<std::size_t>(i), static_cast<std::size_t>(count), 1024);
-      nearby.clear();
-      for (Index k = 0; k < around; ++k)
-      {
-        // Half of them up to the begin of the edge and half from its end on, around the walk's end.
-        search.AppendLengths(walk[(i + k + 1 + count - around / 2) % count], nearby);
-      }
-      CountWork(nearby.size());
-      lengths.push_back(
-        nearby.empty() ? std::numeric_limits<double>::infinity() : MedianOf(nearby));
+      ofWalk.push_back(search.At(walk[i]));
+    }
+    for (Index i = 0; i < count; ++i)
+    {
+      // In this order, around the walk's end: of a triangle, the first is the last, too.
+      MeanLength mean;
+      mean.Add(ofWalk[(i + count - 1) % count], 1.0);
+      mean.Add(ofWalk[i], WeightOfEnd);
+      mean.Add(ofWalk[(i + 1) % count], WeightOfEnd);
+      mean.Add(ofWalk[(i + 2) % count], 1.0);
+      lengths.push_back(mean.Get());
     }
   }
   return lengths;

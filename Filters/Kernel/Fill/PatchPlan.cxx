@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PatchPlan.h"
 
-#include "LengthsAround.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -23,6 +21,14 @@ constexpr Index EdgesAround = 8;
 
 /** If spacings at the boundary differ more than this, points are graded. */
 constexpr double LargestSpacingRatio = 3.0;
+
+/**
+ * For the surface's density, an edge counts as no shorter than this part of itself. One place of
+ * many close points beside a hole would else take hundreds of thousands of new ones. Where triangles
+ * bridge a part of a void, edges of its rim are longer than those of the surface by a factor of two
+ * to four.
+ */
+constexpr double LeastPartOfEdge = 0.25;
 
 /** A line needs no closer points than this part of the gap beside it. */
 constexpr double LeastSpacingInGap = 0.1;
@@ -191,23 +197,40 @@ EdgeLengths EdgeSpacings(
   return spacings;
 }
 
-/** Where the surface nearby has shorter edges than the boundary, these are asked for. */
-void MatchDensity(const Mesh& mesh, const VertexStars& stars, const Holes& holes, Index hole,
+/**
+ * Whether a hole may have room for a new point if its edges count as short as they may: a disc whose
+ * radius is the distance that points keep from the boundary.
+ */
+bool HasRoomIfDense(
+  const Holes& holes, Index hole, const std::vector<double>& lengths, double area)
+{
+  const std::vector<double> spacings = SpacingsAlong(holes, hole, lengths);
+  const double radius = LeastClearance * LeastPartOfEdge *
+    *std::min_element(spacings.begin(), spacings.end());
+  return area > 3.0 * radius * radius;
+}
+
+/**
+ * Where the surface nearby has shorter edges than the boundary, these are asked for.
+ * @return whether that is so anywhere
+ */
+bool MatchDensity(LengthsOfSurface& surface, const Holes& holes, Index hole,
   const Progress& progress, EdgeLengths& spacings)
 {
-  // Along lines the surface is denser than between them, where the gaps decide.
-  if (holes.IsOfLines(hole))
-  {
-    return;
-  }
   const bool isRegion = holes.IsRegion(hole);
-  const std::vector<double> around = LengthsAround(mesh, stars, holes, hole, progress);
+  const std::vector<double> around = LengthsAround(surface, holes, hole, progress);
+  bool isDenser = false;
   for (std::size_t i = 0; i < around.size(); ++i)
   {
     double& spacing = spacings.Boundary[i];
     // Long edges stay as they are: MeanWithin() leaves them out, and makes Graded sparser there.
-    spacing = isRegion && spacing > holes.LongestEdge ? spacing : std::min(spacing, around[i]);
+    if (around[i] < spacing && !(isRegion && spacing > holes.LongestEdge))
+    {
+      spacing = std::max(around[i], LeastPartOfEdge * spacing);
+      isDenser = true;
+    }
   }
+  return isDenser;
 }
 
 /** The spacing of a hole, if the user sets none. */
@@ -223,13 +246,45 @@ double MeanSpacing(
 }
 
 /**
+ * How many new points, one spacing apart, can be beside each edge of the boundary: one where it asks
+ * for its length or more. Else the spacing grows along it from both ends, where it is s, as it does
+ * into the hole: the integral of dx / (s + g x) up to the middle of a length L, with g =
+ * SpacingGrowth, is log(1 + g L / 2 s) / g.
+ * @param[in] along  at the origin of each edge, as SpacingsAlong()
+ */
+std::vector<double> PlacesAlong(const Holes& holes, Index hole, const EdgeLengths& lengths,
+  const EdgeLengths& spacings, const std::vector<double>& along)
+{
+  std::vector<double> places;
+  places.reserve(lengths.Boundary.size());
+  std::size_t begin = 0;
+  for (Index loop = holes.Offsets[hole]; loop < holes.Offsets[hole + 1]; ++loop)
+  {
+    const std::size_t end = begin + holes.Walks.Size(holes.Loops[loop]);
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const double length = lengths.Boundary[i];
+      const auto upToMiddle = [&](double spacing) {
+        return std::log1p(SpacingGrowth * 0.5 * length / spacing) / SpacingGrowth;
+      };
+      const double next = along[i + 1 < end ? i + 1 : begin];
+      places.push_back(spacings.Boundary[i] < length
+          ? std::max(1.0, upToMiddle(along[i]) + upToMiddle(next))
+          : length / spacings.Boundary[i]);
+    }
+    begin = end;
+  }
+  return places;
+}
+
+/**
  * About how many graded points there will be, which does not grow with the distance of lines. As
  * the spacing grows with the distance from an edge, there are 1 / SpacingGrowth points at each of
- * its sides, if it asks for its length; and around a lone point as many as the integral over rings
+ * its sides for each place along it; and around a lone point as many as the integral over rings
  * gives. Far from all of these, the spacing is the largest.
  */
-double GradedPoints(
-  const EdgeLengths& lengths, const EdgeLengths& spacings, double area, double mean, double largest)
+double GradedPoints(const EdgeLengths& lengths, const EdgeLengths& spacings,
+  const std::vector<double>& places, double area, double mean, double largest)
 {
   constexpr double perSide = 1.0 / SpacingGrowth;
   // Around a point the spacing at distance r is m + g r, with g = SpacingGrowth, and a ring of
@@ -239,9 +294,7 @@ double GradedPoints(
   const double reach = SpacingGrowth * std::sqrt(area) / mean;
   const double perPoint = 6.3 / (SpacingGrowth * SpacingGrowth) * std::log1p(reach);
   double points = area / largest / largest / RowHeight;
-  points += perSide *
-    std::inner_product(lengths.Boundary.begin(), lengths.Boundary.end(), spacings.Boundary.begin(),
-      0.0, std::plus<double>(), std::divides<double>());
+  points += perSide * std::accumulate(places.begin(), places.end(), 0.0);
   for (std::size_t i = 0; i < lengths.Inner.size(); ++i)
   {
     const double length = lengths.Inner[i];
@@ -266,7 +319,8 @@ bool IsOnLattice(const Mesh& mesh, const Holes& holes, Index hole, const Lattice
 } // namespace
 
 PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& holes, Index hole,
-  double area, double spacing, const Lattice* lattice, bool matchDensity, const Progress& progress)
+  double area, double spacing, const Lattice* lattice, LengthsOfSurface* surface,
+  const Progress& progress)
 {
   PatchPlan plan;
   const EdgeLengths lengths = MeasureEdges(mesh, holes, hole);
@@ -295,18 +349,20 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
     plan.ExpectedPoints = plan.MostPoints = area / lattice->Area();
     return plan;
   }
-  if (matchDensity)
+  // Along lines the surface is denser than between them, where the gaps decide.
+  if (surface && !holes.IsOfLines(hole) &&
+    (holes.IsRegion(hole) || HasRoomIfDense(holes, hole, lengths.Boundary, area)))
   {
-    MatchDensity(mesh, *stars, holes, hole, progress, spacings);
+    plan.IsDenser = MatchDensity(*surface, holes, hole, progress, spacings);
     setSpacing(MeanSpacing(holes, hole, lengths, spacings));
   }
-  // An edge that is longer than its spacing has several points beside it.
-  const double places = std::inner_product(lengths.Boundary.begin(), lengths.Boundary.end(),
-    spacings.Boundary.begin(), static_cast<double>(lengths.Inner.size()), std::plus<double>(),
-    [](double ofEdge, double wanted) { return std::max(1.0, ofEdge / wanted); });
   // Holes for only a few points may need one more for refinement.
   constexpr double morePerEdge = 0.125;
-  plan.MostPoints += morePerEdge * places;
+  // An edge that is longer than its spacing has several points beside it.
+  plan.MostPoints += morePerEdge *
+    std::inner_product(lengths.Boundary.begin(), lengths.Boundary.end(),
+      spacings.Boundary.begin(), static_cast<double>(lengths.Inner.size()), std::plus<double>(),
+      [](double ofEdge, double wanted) { return std::max(1.0, ofEdge / wanted); });
 
   // Graded, if spacings differ enough.
   plan.Spacings = SpacingsAlong(holes, hole, spacings.Boundary);
@@ -317,8 +373,13 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
     // More points are near parts of the boundary that are finer than average.
     constexpr double morePerEdgeWhenGraded = 8.0;
     plan.Kind = Arrangement::Graded;
-    plan.MostPoints += morePerEdgeWhenGraded * places;
-    const double points = GradedPoints(lengths, spacings, area, plan.Spacing, *range.second);
+    const std::vector<double> places =
+      PlacesAlong(holes, hole, lengths, spacings, plan.Spacings);
+    plan.MostPoints += morePerEdgeWhenGraded *
+      std::accumulate(places.begin(), places.end(), static_cast<double>(lengths.Inner.size()),
+        [](double sum, double ofEdge) { return sum + std::max(1.0, ofEdge); });
+    const double points =
+      GradedPoints(lengths, spacings, places, area, plan.Spacing, *range.second);
     if (holes.IsRegion(hole))
     {
       plan.MostPoints = std::min(plan.MostPoints, 2.0 * points); // to be safe

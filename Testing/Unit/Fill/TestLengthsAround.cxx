@@ -6,8 +6,10 @@
  * them.
  */
 #include "Kernel/Fill/LengthsAround.h"
+#include "Kernel/Fill/PatchPlan.h"
 
 #include "DelaunayMesh.h"
+#include "ErrorMessage.h"
 #include "FilledSurface.h"
 #include "WorkOf.h"
 
@@ -20,6 +22,7 @@
 
 using namespace elevation;
 using namespace testing_surfaces;
+using testing_errors::MessageFrom;
 
 namespace
 {
@@ -69,7 +72,9 @@ Mesh Coarsely(const Density& density = Everywhere, unsigned seed = 3)
 
 std::vector<double> LengthsOf(const Mesh& mesh)
 {
-  return LengthsAround(mesh, VertexStars(mesh), FindHoles(mesh), 0);
+  const VertexStars stars(mesh);
+  LengthsOfSurface surface(mesh, stars);
+  return LengthsAround(surface, FindHoles(mesh), 0);
 }
 
 FillOptions Matching()
@@ -181,7 +186,9 @@ TEST(LengthsAround, AreFoundInThePartThatIsSentForAHole)
     }
     Mesh part = mesh;
     KeepTriangles(keep, part);
-    EXPECT_EQ(LengthsAround(part, VertexStars(part), holes, 0), LengthsOf(mesh));
+    const VertexStars stars(part);
+    LengthsOfSurface surface(part, stars);
+    EXPECT_EQ(LengthsAround(surface, holes, 0), LengthsOf(mesh));
   }
 }
 
@@ -211,7 +218,8 @@ TEST(LengthsAround, TakeAVertexWithManyEdgesOnce)
     EXPECT_EQ(holes.Count(), 1);
     const VertexStars stars(mesh);
     return testing_work::WorkOf([&] {
-      EXPECT_EQ(LengthsAround(mesh, stars, holes, 0).size(), static_cast<std::size_t>(count) + 2);
+      LengthsOfSurface surface(mesh, stars);
+      EXPECT_EQ(LengthsAround(surface, holes, 0).size(), static_cast<std::size_t>(count) + 2);
     });
   };
   EXPECT_LT(workOf(20000), 2.2 * workOf(10000));
@@ -374,7 +382,232 @@ TEST(Density, OfALongRimCanBeStopped)
     EXPECT_GE(holes.Count(), 1);
     const VertexStars stars(mesh);
     return testing_work::LongestSilence(
-      [&](const Progress& progress) { LengthsAround(mesh, stars, holes, 0, progress); });
+      [&](const Progress& progress) {
+        LengthsOfSurface surface(mesh, stars);
+        LengthsAround(surface, holes, 0, progress);
+      });
   };
   EXPECT_LT(silenceOf(4.0), 100000u);
+}
+
+TEST(LengthsAround, AVertexOfTheBoundaryCountsOnceHoweverManyBelongToIt)
+{
+  // A square hole whose corners are 10 apart, in a surface as coarse; beside one corner, many points
+  // are close together.
+  const auto lengthsWith = [](int close) {
+    Random random(6);
+    std::vector<Point2> points{ { 0.0, 0.0 }, { 10.0, 0.0 }, { 10.0, 10.0 }, { 0.0, 10.0 } };
+    for (int i = -3; i <= 4; ++i)
+    {
+      for (int j = -3; j <= 4; ++j)
+      {
+        if (i < 0 || i > 1 || j < 0 || j > 1)
+        {
+          points.push_back({ 10.0 * i + random.Unit(), 10.0 * j + random.Unit() });
+        }
+      }
+    }
+    for (int i = 0; i < close; ++i)
+    {
+      points.push_back({ -0.1 - 0.1 * random.Unit(), -0.1 - 0.1 * random.Unit() });
+    }
+    const Mesh all = Delaunay(points);
+    const Mesh mesh = Without(all, [&](Index t) {
+      const Index* v = all.Triangles.data() + 3 * t;
+      return std::max({ v[0], v[1], v[2] }) < 4;
+    });
+    const Holes holes = FindHoles(mesh);
+    EXPECT_EQ(holes.NumberOfEdges(0), 4);
+    const VertexStars stars(mesh);
+    LengthsOfSurface surface(mesh, stars);
+    std::vector<double> lengths = LengthsAround(surface, holes, 0);
+    std::sort(lengths.begin(), lengths.end());
+    return lengths;
+  };
+  const std::vector<double> few = lengthsWith(0), many = lengthsWith(500);
+  // Two edges are away from the corner; at the others it is one of two ends.
+  EXPECT_GT(few.front(), 8.0);
+  EXPECT_GT(many[2], 0.7 * few.front());
+  EXPECT_GT(many[0], 0.4 * few.front());
+  EXPECT_LT(many[0], 0.8 * few.front());
+}
+
+namespace
+{
+/** A fan of triangles around one vertex, and a band around it; every step-th triangle is a hole. */
+Mesh Hub(int count, int step)
+{
+  Mesh mesh;
+  mesh.Points.push_back({ 0.0, 0.0 });
+  for (const double radius : { 1.0, 1.3 })
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      const double angle = 2.0 * 3.14159265358979 * i / count;
+      mesh.Points.push_back({ radius * std::cos(angle), radius * std::sin(angle) });
+    }
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    const int a = 1 + i, b = 1 + (i + 1) % count;
+    if (i % step != 0)
+    {
+      mesh.Triangles.insert(mesh.Triangles.end(), { 0, a, b });
+    }
+    mesh.Triangles.insert(
+      mesh.Triangles.end(), { a, a + count, b, b, a + count, b + count });
+  }
+  mesh.ConnectTwins();
+  return mesh;
+}
+
+double WorkOfLengths(const Mesh& mesh)
+{
+  const Holes holes = FindHoles(mesh);
+  const VertexStars stars(mesh);
+  return testing_work::WorkOf([&] {
+    LengthsOfSurface surface(mesh, stars);
+    for (Index hole = 0; hole < holes.Count(); ++hole)
+    {
+      LengthsAround(surface, holes, hole);
+    }
+  });
+}
+} // namespace
+
+TEST(LengthsAround, TakeAHubOfManyHolesOnce)
+{
+  EXPECT_EQ(FindHoles(Hub(2000, 2)).Count(), 1000);
+  EXPECT_LT(WorkOfLengths(Hub(4000, 2)), 2.2 * WorkOfLengths(Hub(2000, 2)));
+}
+
+TEST(LengthsAround, AreNotSoughtWhereNoPointHasRoom)
+{
+  // Planning slits as thin as these costs about as much with it as without.
+  const Mesh mesh = Hub(2000, 2);
+  const Holes holes = FindHoles(mesh);
+  const VertexStars stars(mesh);
+  const auto workWith = [&](bool matches) {
+    return testing_work::WorkOf([&] {
+      LengthsOfSurface surface(mesh, stars);
+      for (Index hole = 0; hole < holes.Count(); ++hole)
+      {
+        const double area = MeasureHole(mesh, holes, hole, FillOptions()).Area;
+        PlanPatch(mesh, &stars, holes, hole, area, 0.0, nullptr, matches ? &surface : nullptr);
+      }
+    });
+  };
+  EXPECT_LE(workWith(true), workWith(false));
+}
+
+TEST(LengthsAround, ThatAHubLeadsOnToTheNearestDoesNotDependOnOrder)
+{
+  const auto sorted = [](std::vector<double> lengths) {
+    std::sort(lengths.begin(), lengths.end());
+    return lengths;
+  };
+  const Mesh mesh = Hub(100, 50);
+  EXPECT_EQ(sorted(LengthsOf(Backwards(mesh))), sorted(LengthsOf(mesh)));
+}
+
+TEST(Density, OfOnePlaceOfManyPointsTakesFewMore)
+{
+  // Points 10 apart, one of them a thousand within 0.02, and a hole beside it.
+  Random random(1);
+  std::vector<Point2> points;
+  for (int i = -5; i <= 5; ++i)
+  {
+    for (int j = -5; j <= 5; ++j)
+    {
+      points.push_back({ 10.0 * i + 2.0 * random.Unit(), 10.0 * j + 2.0 * random.Unit() });
+    }
+  }
+  const Point2 at = points[5 * 11 + 5];
+  for (int i = 0; i < 1000; ++i)
+  {
+    points.push_back({ at.X + 0.01 * random.Unit(), at.Y + 0.01 * random.Unit() });
+  }
+  const Mesh all = Delaunay(points);
+  bool isFirst = true;
+  const Mesh mesh = Without(all, [&](Index t) {
+    double least = 1e9, area = 0.0;
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      const Point2& p = all.PointOf(all.Origin(h));
+      const Point2& q = all.PointOf(all.Destination(h));
+      least = std::min(least, std::hypot(p.X - at.X, p.Y - at.Y));
+      area += 0.5 * (p.X * q.Y - p.Y * q.X);
+    }
+    const bool isHole = isFirst && least < 0.02 && area > 20.0;
+    isFirst = isFirst && !isHole;
+    return isHole;
+  });
+  ASSERT_FALSE(isFirst);
+  const Outcome run = Fill(mesh, Matching());
+  ASSERT_EQ(run.Found.Count(), 1);
+  ExpectPatchesFit(run, 1e-9);
+  EXPECT_LT(run.Patches.NumberOfPoints(), 30);
+}
+
+TEST(Density, IsExpectedHonestlyAlongLongEdges)
+{
+  // Of the square's sides, long edges lie beside runs of short ones.
+  const double side = 100.0;
+  for (const double fine : { 0.5, 0.05, 0.005 })
+  {
+    std::vector<Point2> rim;
+    const auto add = [&](double x, double y) { rim.push_back({ x, y }); };
+    for (int i = 0; i < 20; ++i)
+    {
+      add(i * fine, 0.0);
+    }
+    for (double x = 40.0; x < side; x += 30.0)
+    {
+      add(x, 0.0);
+    }
+    for (const double y : { 0.0, 50.0, 100.0 })
+    {
+      add(side, y);
+    }
+    for (const double x : { 50.0, 0.0 })
+    {
+      add(x, side);
+    }
+    add(0.0, 50.0);
+    const Index count = static_cast<Index>(rim.size());
+    // A band around it is the surface.
+    Mesh mesh;
+    mesh.Points = rim;
+    for (const Point2& p : rim)
+    {
+      mesh.Points.push_back({ 50.0 + 1.2 * (p.X - 50.0), 50.0 + 1.2 * (p.Y - 50.0) });
+    }
+    for (Index i = 0; i < count; ++i)
+    {
+      const Index next = (i + 1) % count;
+      mesh.Triangles.insert(mesh.Triangles.end(),
+        { i, i + count, next, next, i + count, next + count });
+    }
+    mesh.ConnectTwins();
+    const Outcome run = Fill(mesh, Matching());
+    ASSERT_EQ(run.Found.Count(), 1);
+    const HoleNeed need =
+      FindHoleNeeds(run.Surface, run.Points(), run.Found, Matching())[0];
+    const double inserted = run.Patches.NumberOfPoints();
+    EXPECT_GT(need.Expected, 0.5 * inserted) << fine;
+    EXPECT_LT(need.Expected, 5.0 * inserted) << fine;
+    EXPECT_LT(inserted + 1.0, need.Most) << "the limit is not reached";
+  }
+}
+
+TEST(Density, IsNamedWhereItExpectsMoreThanTheLimit)
+{
+  FillOptions options = Matching();
+  options.MaximumExpectedPoints = 50;
+  const std::string message = MessageFrom([&] { Fill(Coarsely(), options); });
+  EXPECT_HAS(message, "With MatchDensity off there would be fewer.");
+  options.MaximumExpectedPoints = 1;
+  options.MatchDensity = false;
+  EXPECT_EQ(
+    MessageFrom([&] { Fill(Coarsely(), options); }).find("MatchDensity"), std::string::npos);
 }
