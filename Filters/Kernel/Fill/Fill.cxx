@@ -190,8 +190,8 @@ private:
       const HoleReport& report = this->Result.Reports[hole];
       if (report.Status == FillStatus::Filled)
       {
-        needs[hole] = { std::max(plan.MostRows, plan.MostPoints), plan.ExpectedPoints,
-          report.Area, plan.IsDenser };
+        needs[hole] = { std::max(plan.MostRows, plan.MostPoints), plan.ExpectedPoints, report.Area,
+          plan.IsDenser };
       }
     }
     return needs;

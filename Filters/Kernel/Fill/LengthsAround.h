@@ -81,8 +81,8 @@ private:
  * @param[in] progress  asks for an abort alone
  * @return one length for each edge, as of VisitEdges(); infinite where nothing is nearby
  */
-std::vector<double> LengthsAround(LengthsOfSurface& surface, const Holes& holes, Index hole,
-  const Progress& progress = Progress());
+std::vector<double> LengthsAround(
+  LengthsOfSurface& surface, const Holes& holes, Index hole, const Progress& progress = Progress());
 
 } // namespace elevation
 

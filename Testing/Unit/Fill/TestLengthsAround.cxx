@@ -381,11 +381,10 @@ TEST(Density, OfALongRimCanBeStopped)
     const Holes holes = FindHoles(mesh);
     EXPECT_GE(holes.Count(), 1);
     const VertexStars stars(mesh);
-    return testing_work::LongestSilence(
-      [&](const Progress& progress) {
-        LengthsOfSurface surface(mesh, stars);
-        LengthsAround(surface, holes, 0, progress);
-      });
+    return testing_work::LongestSilence([&](const Progress& progress) {
+      LengthsOfSurface surface(mesh, stars);
+      LengthsAround(surface, holes, 0, progress);
+    });
   };
   EXPECT_LT(silenceOf(4.0), 100000u);
 }
@@ -454,8 +453,7 @@ Mesh Hub(int count, int step)
     {
       mesh.Triangles.insert(mesh.Triangles.end(), { 0, a, b });
     }
-    mesh.Triangles.insert(
-      mesh.Triangles.end(), { a, a + count, b, b, a + count, b + count });
+    mesh.Triangles.insert(mesh.Triangles.end(), { a, a + count, b, b, a + count, b + count });
   }
   mesh.ConnectTwins();
   return mesh;
@@ -585,14 +583,13 @@ TEST(Density, IsExpectedHonestlyAlongLongEdges)
     for (Index i = 0; i < count; ++i)
     {
       const Index next = (i + 1) % count;
-      mesh.Triangles.insert(mesh.Triangles.end(),
-        { i, i + count, next, next, i + count, next + count });
+      mesh.Triangles.insert(
+        mesh.Triangles.end(), { i, i + count, next, next, i + count, next + count });
     }
     mesh.ConnectTwins();
     const Outcome run = Fill(mesh, Matching());
     ASSERT_EQ(run.Found.Count(), 1);
-    const HoleNeed need =
-      FindHoleNeeds(run.Surface, run.Points(), run.Found, Matching())[0];
+    const HoleNeed need = FindHoleNeeds(run.Surface, run.Points(), run.Found, Matching())[0];
     const double inserted = run.Patches.NumberOfPoints();
     EXPECT_GT(need.Expected, 0.5 * inserted) << fine;
     EXPECT_LT(need.Expected, 5.0 * inserted) << fine;
