@@ -322,7 +322,7 @@ public:
    * Whether new points are as dense as the surface around the hole, where the edges of its boundary
    * are longer than those of the surface nearby, as where triangles bridge a part of a void. On:
    * the distance of new points follows, at each edge, the shorter of its own length and the typical
-   * length of edges up to three rings of vertices away, but a quarter of its own at least. Off
+   * length of edges up to three rings of vertices away, but a sixth of its own at least. Off
    * (default): its own length alone. It plays no part on a lattice, with a Spacing, or between
    * survey lines (OpenEdgeLength).
    */

@@ -154,7 +154,7 @@ class Algorithms(unittest.TestCase):
         data = vtkPolyData()
         data.SetPoints(vtkPoints())
         data.GetPoints().SetData(numpy_to_vtk(numpy.column_stack((xy, numpy.sin(xy[:, 0] / 9))), deep=True))
-        chain.SetInputData(data)
+        chain.SetInputDataObject(data)
         chain.Update()
         surface = chain.GetOutputDataObject(0)
         fills = vtk_to_numpy(surface.GetCellData().GetArray("HoleId")) >= 0

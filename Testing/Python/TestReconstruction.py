@@ -251,7 +251,7 @@ class Properties(unittest.TestCase):
         random = numpy.random.default_rng(4)
         xy = 60 * random.random((3600, 2))
         points = numpy.column_stack((xy, xy[:, 0]))[numpy.hypot(*(xy - 30).T) > 14]
-        with self.assertRaisesRegex(RuntimeError, "With match_density off there would be fewer"):
+        with self.assertRaisesRegex(RuntimeError, "With MatchDensity off there would be fewer"):
             reconstruct(points, maximum_expected_points=100)
 
     def test_misspelt_names_and_wrong_values_raise(self):

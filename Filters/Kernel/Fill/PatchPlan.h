@@ -21,7 +21,7 @@
  *
  * On request the patch is as dense as the surface around it: in Graded and Even, an edge of the
  * boundary then counts as no longer than the edges of the surface nearby (LengthsAround.h), but as a
- * quarter of its length at least. Long edges, and a region of lines (both below), are left alone.
+ * sixth of its length at least. Long edges, and a region of lines (both below), are left alone.
  *
  * A region is a hole made of triangles with edges longer than Holes::LongestEdge, which are long;
  * one of lines has more inner edges than boundary edges.
