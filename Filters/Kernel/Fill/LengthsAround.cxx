@@ -29,12 +29,13 @@ constexpr double WeightOfEnd = 2.0;
 constexpr double ReachInSizes = 1.0;
 constexpr double ReachInEdges = 4.0;
 
-/** Not of an empty list. Changes the order of values. */
+/** Of an even number, the mean of the two in the middle. Not of an empty list, which it reorders. */
 double MedianOf(std::vector<double>& values)
 {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.size() % 2 == 1 ? *middle
+                                : 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
 /** The search from the boundary outwards. */
