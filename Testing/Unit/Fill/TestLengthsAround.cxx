@@ -589,6 +589,7 @@ TEST(Density, IsExpectedHonestlyAlongLongEdges)
     const HoleNeed need = FindHoleNeeds(run.Surface, run.Points(), run.Found, Matching())[0];
     const double inserted = run.Patches.NumberOfPoints();
     EXPECT_GT(inserted, 80.0);
+    EXPECT_LT(inserted, 300.0) << close;
     EXPECT_GT(need.Expected, 0.8 * inserted) << close;
     EXPECT_LT(need.Expected, 4.0 * inserted) << close;
     EXPECT_LT(inserted + 1.0, need.Most) << "the limit is not reached";
