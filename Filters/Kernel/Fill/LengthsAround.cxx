@@ -29,7 +29,7 @@ constexpr double WeightOfEnd = 2.0;
 constexpr double ReachInSizes = 1.0;
 constexpr double ReachInEdges = 4.0;
 
-/** Of an even number, the mean of the two in the middle. Not of an empty list, which it reorders. */
+/** Of an even number, the mean of the two in the middle. Not of an empty list. Reorders it. */
 double MedianOf(std::vector<double>& values)
 {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -200,8 +200,8 @@ EdgeLengths EdgeSpacings(
 }
 
 /**
- * Whether a hole may have room for a new point if its edges count as short as they may: a disc whose
- * radius is the distance that points keep from the boundary.
+ * Whether a hole may have room for a new point if its edges count as short as they may: for a disc
+ * whose radius is the distance that points keep from the boundary.
  */
 bool HasRoomIfDense(const Holes& holes, Index hole, const std::vector<double>& lengths, double area)
 {
@@ -247,8 +247,8 @@ double MeanSpacing(
 }
 
 /**
- * How many new points, one spacing apart, can be beside each edge of the boundary: one where it asks
- * for its length or more. Else the spacing grows along it from both ends, where it is s, as it does
+ * How many new points, one spacing apart, can be beside each edge of the boundary: one where it
+ * asks for its length. Else the spacing grows along it from both ends, where it is s, as it does
  * into the hole: the integral of dx / (s + g x) up to the middle of a length L, with g =
  * SpacingGrowth, is log(1 + g L / 2 s) / g.
  * @param[in] along  at the origin of each edge, as SpacingsAlong()

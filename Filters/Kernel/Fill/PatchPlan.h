@@ -20,8 +20,8 @@
  *   Even    Otherwise. The spacing is the mean length of the boundary's edges [Nguyen, eq. 1].
  *
  * On request the patch is as dense as the surface around it: in Graded and Even, an edge of the
- * boundary then counts as no longer than the edges of the surface nearby (LengthsAround.h), but as a
- * sixth of its length at least. Long edges, and a region of lines (both below), are left alone.
+ * boundary then counts as no longer than the edges of the surface nearby (LengthsAround.h), but as
+ * a sixth of its length at least. Long edges, and a region of lines (both below), are left alone.
  *
  * A region is a hole made of triangles with edges longer than Holes::LongestEdge, which are long;
  * one of lines has more inner edges than boundary edges.
@@ -60,8 +60,8 @@ constexpr double SpacingGrowth = 0.2;
 
 /**
  * Least distance of points from the boundary, and in refinement from each other, in spacings. For
- * rims with unequal edges, 0.5 leaves twice as many small angles and many more long edges; less than
- * 0.3 gains nothing.
+ * rims with unequal edges, 0.5 leaves twice as many small angles and many more long edges; less
+ * than 0.3 gains nothing.
  */
 constexpr double LeastClearance = 0.3;
 

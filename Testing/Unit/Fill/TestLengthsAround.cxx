@@ -391,8 +391,8 @@ TEST(Density, OfALongRimCanBeStopped)
 
 TEST(LengthsAround, AVertexOfTheBoundaryCountsOnceHoweverManyBelongToIt)
 {
-  // A square hole whose corners are 10 apart, in a surface as coarse; beside one corner, many points
-  // are close together.
+  // A square hole whose corners are 10 apart, in a surface as coarse; beside one corner, many
+  // points are close together.
   const auto lengthsWith = [](int close) {
     Random random(6);
     std::vector<Point2> points{ { 0.0, 0.0 }, { 10.0, 0.0 }, { 10.0, 10.0 }, { 0.0, 10.0 } };
