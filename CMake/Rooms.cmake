@@ -88,6 +88,7 @@ set(es_kernel_Fill
   Multigrid
   Membrane
   Spline
+  LengthsAround
   PatchPlan
   PointRows
   Refinement

@@ -45,6 +45,7 @@ FillOptions OptionsOf(vtkFillElevationHoles* filter)
   };
   options.MaximumHoleEdges = toIndex(filter->GetMaximumHoleEdges(), VTK_INT_MAX);
   options.Spacing = filter->GetSpacing();
+  options.MatchDensity = filter->GetMatchDensity();
   options.Mode = static_cast<AreaMode>(filter->GetAreaMode());
   options.LevelArray = filter->GetLevelArrayName() ? filter->GetLevelArrayName() : "";
   options.FillCutOuts = filter->GetFillCutOuts();
@@ -290,6 +291,7 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FillCutOuts: " << (this->FillCutOuts ? "On" : "Off") << "\n";
   os << indent << "MaximumNumberOfExpectedPoints: " << this->MaximumNumberOfExpectedPoints << "\n";
   os << indent << "Spacing: " << this->Spacing << "\n";
+  os << indent << "MatchDensity: " << (this->MatchDensity ? "On" : "Off") << "\n";
   os << indent << "Interpolation: " << this->GetInterpolationAsString() << "\n";
   os << indent << "ConfidenceLevel: " << this->ConfidenceLevel << "\n";
   os << indent << "InterpolatePointData: " << (this->InterpolatePointData ? "On" : "Off") << "\n";

@@ -19,11 +19,11 @@
  * - 0, the surface: the points and cells of the input, with their ids, then the new points and
  *   triangles, counter-clockwise seen from +z. It has the point arrays FilledPoint
  *   (vtkUnsignedCharArray, 1 for new points), FilledError (vtkDoubleArray, the standard error of
- *   z: 0 for points of the input, NaN if unknown), FilledLow and FilledHigh (vtkDoubleArray, between
- *   which the true z lies with the probability ConfidenceLevel: z for points of the input, NaN if
- *   unknown), and the cell array HoleId (vtkIdTypeArray, -1 for cells of the input). Other point
- *   arrays: see InterpolatePointData. If the input has been filled before, its values in these
- *   arrays stay, and new holes are numbered after its largest HoleId.
+ *   z: 0 for points of the input, NaN if unknown), FilledLow and FilledHigh (vtkDoubleArray,
+ *   between which the true z lies with the probability ConfidenceLevel: z for points of the input,
+ *   NaN if unknown), and the cell array HoleId (vtkIdTypeArray, -1 for cells of the input). Other
+ *   point arrays: see InterpolatePointData. If the input has been filled before, its values in
+ *   these arrays stay, and new holes are numbered after its largest HoleId.
  * - 1, the report: the rim of each hole, filled or not, as a closed counter-clockwise line. Cell
  *   data: HoleId, Status (HoleStatusType) and StatusName, the same in words, Size (for comparison
  *   with MaximumHoleSize), NumberOfEdges, Perimeter, Area, NumberOfInsertedPoints, Interpolation
@@ -129,9 +129,9 @@ public:
    *   it, like a plate that bends as little as it can. Continues planes exactly.
    * - CUBIC_SPLINE: as THIN_PLATE, but smoother: better on calm terrain, worse on noise.
    * - LEVEL: all new points of a hole have one z, as of water: that of the rim which a tenth of the
-   *   rim's points do not exceed (see also LevelArrayName). The rim stays as it is; output 1 has the level, and how far the
-   *   highest point of the rim lies above it and the lowest below. Other arrays as by NEIGHBOR_MEAN;
-   *   errors are NaN.
+   *   rim's points do not exceed (see also LevelArrayName). The rim stays as it is; output 1 has
+   *   the level, and how far the highest point of the rim lies above it and the lowest below. Other
+   *   arrays as by NEIGHBOR_MEAN; errors are NaN.
    * - ADAPTIVE: for each hole the one of MEMBRANE, THIN_PLATE and CUBIC_SPLINE that predicts the
    *   surface around it best. The hole's boundary is moved to up to 16 places beside the hole,
    *   where the surface is known, and each method predicts what is inside. Methods that predict it
@@ -140,9 +140,9 @@ public:
    *   are left out instead, and predicted from the others: z is that of the plane triangles between
    *   lines, plus as large a part of what a thin plate bends from them as predicts the lines best.
    *   Beyond the range of z of the lines near a place, z is compressed: it leaves this range by at
-   *   most a quarter, and that of all lines by at most 5 % of it. Where lines cross and disagree, as
-   *   a warning reports (LinesDisagree), the plate goes between them instead of through both; z of
-   *   the lines stays. Output 1 has THIN_PLATE.
+   *   most a quarter, and that of all lines by at most 5 % of it. Where lines cross and disagree,
+   *   as a warning reports (LinesDisagree), the plate goes between them instead of through both; z
+   *   of the lines stays. Output 1 has THIN_PLATE.
    *
    * The splines may leave the range of z of the hole's boundary, as a lost summit did, by at most
    * the distance from the nearest boundary point times the median slope around the hole: upwards
@@ -152,11 +152,10 @@ public:
    * what is continued. So they and noise do not make hills. Slopes are those from the
    * boundary to points half as many edges away as the middle of the hole is, 16 at most, and count
    * four times as far as these points are away. In regions of OpenEdgeLength no method leaves the
-   * range of z of the whole surface by more than 5 % of it: beyond 2.5 % z is compressed, so that the
-   * surface bends and is not cut off. Output 1 has how many points were drawn back, and by how much
-   * at most. Where the
-   * points determine no spline, because they are nearly on one line, MEMBRANE is used; where z
-   * around the hole is not finite, NEIGHBOR_MEAN.
+   * range of z of the whole surface by more than 5 % of it: beyond 2.5 % z is compressed, so that
+   * the surface bends and is not cut off. Output 1 has how many points were drawn back, and by how
+   * much at most. Where the points determine no spline, because they are nearly on one line,
+   * MEMBRANE is used; where z around the hole is not finite, NEIGHBOR_MEAN.
    */
   vtkSetClampMacro(Interpolation, int, NEIGHBOR_MEAN, LEVEL);
   vtkGetMacro(Interpolation, int);
@@ -312,10 +311,24 @@ public:
   ///@{
   /**
    * Distance of new points in x,y, in input units. 0 (default): that of the lattice, or for each
-   * hole the mean length of its boundary edges.
+   * hole the mean length of its boundary edges (see MatchDensity).
    */
   vtkSetMacro(Spacing, double);
   vtkGetMacro(Spacing, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether new points are as dense as the surface around the hole, where the edges of its boundary
+   * are longer than those of the surface nearby, as where triangles bridge a part of a void. On:
+   * the distance of new points follows, at each edge, the shorter of its own length and the typical
+   * length of edges up to three rings of vertices away, but a sixth of its own at least. Off
+   * (default): its own length alone. It plays no part on a lattice, with a Spacing, or between
+   * survey lines (OpenEdgeLength).
+   */
+  vtkSetMacro(MatchDensity, bool);
+  vtkGetMacro(MatchDensity, bool);
+  vtkBooleanMacro(MatchDensity, bool);
   ///@}
 
   ///@{
@@ -410,12 +423,13 @@ public:
    * which are "Words": NothingToFill, HoleNotFilled and RegionNotFilled (with a reason:
    * BordersTouch, SizeOutOfRange, MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall,
    * PointsCoincide, LevelsDiffer), MoreHolesNotFilled, ErrorsOutgrowRoughness, LinesDisagree,
-   * BordersMeet, AreasTouchNoHole, LevelsMissing, LevelsNotUsed, NoLevelArray, InfiniteLevel, RingsRepeated, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
-   * TooManyPointsToFill, TooManyPointsByDefault,
-   * InvalidOpenEdgeLength, InvalidHoleSize, InvalidHoleEdges, InvalidSpacing, InvalidConfidence,
-   * InvalidInsertedPoints, InvalidExpectedPoints, InvalidThreads, InvalidPrecision, FoldsInSingle,
-   * OriginalIdsReplaced, EdgeLengthRenamed, ArraysLeftOut, OnOneRank (with a reason:
-   * PartsDoNotFit), RankWaits, NotEnoughMemory, Stopped.
+   * BordersMeet, AreasTouchNoHole, LevelsMissing, LevelsNotUsed, NoLevelArray, InfiniteLevel,
+   * RingsRepeated, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, TooManyPointsToFill and
+   * TooManyPointsByDefault (whose value matching may be FewerIfNotMatched), InvalidOpenEdgeLength,
+   * InvalidHoleSize, InvalidHoleEdges, InvalidSpacing, InvalidConfidence, InvalidInsertedPoints,
+   * InvalidExpectedPoints, InvalidThreads, InvalidPrecision, FoldsInSingle, OriginalIdsReplaced,
+   * EdgeLengthRenamed, ArraysLeftOut, OnOneRank (with a reason: PartsDoNotFit), RankWaits,
+   * NotEnoughMemory, Stopped.
    */
   virtual vtkStringArray* GetMessages() { return this->Messages; }
 
@@ -436,6 +450,7 @@ protected:
   bool FillCutOuts = false;
   vtkIdType MaximumNumberOfExpectedPoints = 0;
   double Spacing = 0.0;
+  bool MatchDensity = false;
   int Interpolation = ADAPTIVE;
   double ConfidenceLevel = 0.9;
   bool InterpolatePointData = true;

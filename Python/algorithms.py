@@ -28,6 +28,7 @@ from .block_reports import (
     joined_errors,
     lines_to_show,
     once,
+    patch_triangles,
     recognised,
     block_report,
     failed_block_report,
@@ -373,6 +374,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         )
         result.gathered += gathered
         result.report  # pylint: disable=pointless-statement  (all ranks make it)
+        result.patch_triangles = patch_triangles(result, ranks)
         surface = vtkPolyData()
         surface.ShallowCopy(result.surface)  # which may be an output that is kept
         set_elevation(surface, ranks)

@@ -5,10 +5,12 @@ these make together."""
 
 import math
 
+import numpy
 from vtkmodules.vtkCommonCore import vtkStringArray
 
 from .algorithm_base import words_of
 from .messages import counted
+from .query import holes_of
 from .ranks import together, total
 from .report import main_counts, report_lines
 
@@ -50,25 +52,41 @@ def block_report(surface, result, recognised_lines):
 def chosen_values(result):
     """The values used for properties that may be left to be chosen: {property of the panel: value}."""
     report = result.report
-    holes = report.get("holes", {"open_edge_length": 0.0, "list": ()})
     return {
         "GapTolerance": report.get("trim", {}).get("effective_gap_tolerance", 0.0),
-        "OpenEdgeLength": holes["open_edge_length"],
-        "Spacing": spacing_of(result, [hole for hole in holes["list"] if hole["inserted_points"]]),
+        "OpenEdgeLength": report.get("holes", {}).get("open_edge_length", 0.0),
+        "Spacing": spacing_of(result),
     }
 
 
-def spacing_of(result, holes):
-    """The distance of new points: as given, that of a lattice's nodes, or the mean of what each hole has
-    got, the mean length of its edges. 0: there are none."""
+def holes_with_points(result):
+    """Of the report, those holes that got new points."""
+    holes = result.report["holes"]["list"] if result.fill else ()
+    return [hole for hole in holes if hole["inserted_points"]]
+
+
+def patch_triangles(result, ranks):
+    """How many triangles the patches with new points have. In a region of long triangles they join
+    points of the input, too, so counts of new points and edges do not give their number."""
+    numbers = [hole["hole"] for hole in holes_with_points(result)]
+    return total(ranks, numpy.isin(holes_of(result.surface), numbers).sum())
+
+
+def spacing_of(result):
+    """The distance of new points: as given, that of a lattice's nodes, or that at which even triangles,
+    as many as the patches have, cover the holes. 0: there are none.
+
+    result  a Reconstruction with the attribute patch_triangles
+    """
+    holes = holes_with_points(result)
     if not holes:
         return 0.0
     if result.fill.GetSpacing():
         return result.fill.GetSpacing()
     if result.lattice:
         return math.sqrt(math.prod(result.lattice["lengths"]))
-    points = sum(hole["inserted_points"] for hole in holes)
-    return sum(hole["inserted_points"] / points * hole["perimeter"] / hole["edges"] for hole in holes)
+    area = math.fsum(hole["area"] for hole in holes)
+    return math.sqrt(4 / math.sqrt(3) * area / result.patch_triangles)
 
 
 def failed_block_report(surface, error):

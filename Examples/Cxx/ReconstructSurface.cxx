@@ -41,6 +41,7 @@ int main(int argc, char* argv[])
 
   vtkNew<vtkFillElevationHoles> fill;
   fill->SetInputConnection(trim->GetOutputPort());
+  fill->MatchDensityOn();
   fill->Update();
 
   // A filter that meets an error says so and leaves empty output.

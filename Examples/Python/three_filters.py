@@ -32,6 +32,7 @@ def main(points, surface, longest_edge=0.0):
 
     fill = vtkFillElevationHoles()
     fill.SetInputConnection(trim.GetOutputPort())
+    fill.MatchDensityOn()
     fill.Update()
     print(f"{trim.GetNumberOfOutwardTriangles()} outward triangles removed")
     print(f"{fill.GetNumberOfFilledHoles()} of {fill.GetNumberOfHoles()} holes filled")

@@ -76,7 +76,8 @@ Box BoxAround(const HoleExtent& hole, int retries, double reach)
     return { { -DBL_MAX, -DBL_MAX }, { DBL_MAX, DBL_MAX } };
   }
   const double size = std::hypot(rim.Width(), rim.Height());
-  // On each side, 1.5 times the diagonal of the hole and six edges, which small holes need.
+  // On each side, 1.5 times the diagonal of the hole and six edges, which small holes need. No less
+  // than what Kernel/Fill/LengthsAround.cxx looks at: it cannot ask for more.
   const double by = std::max(reach, std::pow(4.0, retries) * (1.5 * size + 6.0 * hole.MeanEdge));
   return { { rim.Low.X - by, rim.Low.Y - by }, { rim.High.X + by, rim.High.Y + by } };
 }

@@ -48,6 +48,7 @@ OTHER_VALUES = {
         "MaximumNumberOfInsertedPoints": 5000,
         "MaximumNumberOfExpectedPoints": 4000,
         "Spacing": 0.25,
+        "MatchDensity": 1,
         "Interpolation": "Thin Plate",
         "ConfidenceLevel": 0.8,
         "InterpolatePointData": 0,

@@ -146,6 +146,25 @@ class Algorithms(unittest.TestCase):
             earlier = [] if values.get("SetMaximumElevationError") else order[: order.index(first)]
             self.assertEqual([words for words in ran if words in earlier], [], (name, values))
 
+    def test_the_effective_spacing_is_that_of_the_triangles_between_lines(self):
+        random = numpy.random.default_rng(3)
+        x, y = numpy.repeat(numpy.arange(0, 100, 8.0), 100), numpy.tile(numpy.arange(100.0), 13)
+        xy = numpy.column_stack((x, y)) + random.normal(0, 0.1, (len(x), 2))
+        chain = ReconstructElevationSurface()
+        data = vtkPolyData()
+        data.SetPoints(vtkPoints())
+        data.GetPoints().SetData(numpy_to_vtk(numpy.column_stack((xy, numpy.sin(xy[:, 0] / 9))), deep=True))
+        chain.SetInputDataObject(data)
+        chain.Update()
+        surface = chain.GetOutputDataObject(0)
+        fills = vtk_to_numpy(surface.GetCellData().GetArray("HoleId")) >= 0
+        self.assertGreater(fills.sum(), 1000)
+        corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)[fills]
+        a, b, c = vtk_to_numpy(surface.GetPoints().GetData())[:, :2].astype("f8")[corners.T]
+        u, v = b - a, c - a
+        area = 0.5 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]).mean()
+        self.assertAlmostEqual(chain.GetEffectiveSpacing() ** 2 * 3**0.5 / 4, area, delta=0.01 * area)
+
     def test_columns_of_tables_and_axes_of_grids_that_change_count(self):
         x, y = GRID
         table = table_of(x=x, y=y, z=x)

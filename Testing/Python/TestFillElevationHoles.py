@@ -80,6 +80,7 @@ class TestFillElevationHoles(unittest.TestCase):
         self.assertEqual(fill.GetMaximumNumberOfInsertedPoints(), 100_000_000)
         self.assertEqual(fill.GetMaximumNumberOfExpectedPoints(), 0)
         self.assertEqual(fill.GetSpacing(), 0.0)
+        self.assertFalse(fill.GetMatchDensity())
         self.assertEqual(fill.GetInterpolation(), fill.ADAPTIVE)
         self.assertEqual(fill.GetInterpolationAsString(), "Adaptive")
         self.assertEqual(fill.GetConfidenceLevel(), 0.9)
@@ -91,8 +92,8 @@ class TestFillElevationHoles(unittest.TestCase):
     def test_every_property_is_printed(self):
         text = str(vtkFillElevationHoles())
         for name in ("MaximumHoleSize", "MaximumHoleEdges", "MaximumNumberOfInsertedPoints",
-                     "MaximumNumberOfExpectedPoints", "Spacing", "Interpolation", "ConfidenceLevel",
-                     "InterpolatePointData",
+                     "MaximumNumberOfExpectedPoints", "Spacing", "MatchDensity", "Interpolation",
+                     "ConfidenceLevel", "InterpolatePointData",
                      "NumberOfThreads", "Controller", "NumberOfHoles", "NumberOfFilledHoles", "OpenEdgeLength"):
             self.assertIn(name + ":", text)
 

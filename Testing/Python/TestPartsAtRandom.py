@@ -44,7 +44,7 @@ LATTICES = ((612000.0, 6073000.0, 25.0, 0.0, 0.0, 12.5), (612000.0, 6073000.0, 2
 NUMBERS = {
     "Delaunay.SearchStrategy": (0, 1), "Delaunay.LatticeMode": (0, 1), "Delaunay.DuplicatePolicy": (0, 1, 2, 3),
     "Trim.RecoverBoundary": (False, True), "Trim.BoundaryEdges": (0, 1, 2),
-    "Fill.Interpolation": (0, 1, 2, 3, 4, 5), "Fill.FillCutOuts": (False, True), "Fill.AreaMode": (0, 1), "Fill.MaximumHoleEdges": (5, 40),
+    "Fill.Interpolation": (0, 1, 2, 3, 4, 5), "Fill.FillCutOuts": (False, True), "Fill.MatchDensity": (False, True), "Fill.AreaMode": (0, 1), "Fill.MaximumHoleEdges": (5, 40),
     "Fill.ConfidenceLevel": (0.5, 0.95), "Fill.InterpolatePointData": (False, True), "Fill.MaximumNumberOfExpectedPoints": (50, 2000),
     "Delaunay.Lattice": LATTICES,
 }

@@ -367,6 +367,7 @@ class Filled(WithFilter):
             ("MaximumHoleSize", 150.0, 2),
             ("MaximumHoleEdges", 30, 3),
             ("Spacing", 40.0, 5),
+            ("MatchDensity", True, 5),
             ("Interpolation", 1, 5),
             ("ConfidenceLevel", 0.7, 5),
             ("InterpolatePointData", False, 5),

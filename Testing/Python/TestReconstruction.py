@@ -207,6 +207,7 @@ class Properties(unittest.TestCase):
             "maximum_hole_edges": (7, "fill", "GetMaximumHoleEdges", 7),
             "maximum_expected_points": (900, "fill", "GetMaximumNumberOfExpectedPoints", 900),
             "spacing": (0.5, "fill", "GetSpacing", 0.5),
+            "match_density": (False, "fill", "GetMatchDensity", 0),
             "interpolation": ("thin plate", "fill", "GetInterpolation", 2),
             "level_attribute": ("water", "fill", "GetLevelArrayName", "water"),
             "confidence_level": (0.8, "fill", "GetConfidenceLevel", 0.8),
@@ -224,6 +225,42 @@ class Properties(unittest.TestCase):
             with self.subTest(name=name):
                 result = reconstruct(SHEET, **{name: value}, **needs.get(name, {}))
                 self.assertEqual(getattr(getattr(result, step), getter)(), expected)
+
+    def test_new_points_are_as_dense_as_those_around_them(self):
+        random = numpy.random.default_rng(4)
+        xy = 60 * random.random((3600, 2))
+        is_lost = numpy.hypot(*(xy - 30).T) < 14
+        points = numpy.column_stack((xy, numpy.sin(xy[:, 0] / 7)))[~is_lost]
+        counts = {}
+        for name, given in (("chain", {}), ("on", {"match_density": True}), ("off", {"match_density": False})):
+            result = reconstruct(points, **given)
+            counts[name] = result.report["holes"]["inserted_points"]
+            self.assertEqual(result.fill.GetMatchDensity(), name != "off")
+        self.assertEqual(counts["chain"], counts["on"])
+        self.assertGreater(counts["on"], 0.6 * is_lost.sum())
+        self.assertLess(counts["on"], 1.2 * is_lost.sum())
+        self.assertLess(counts["off"], 0.3 * is_lost.sum())
+
+    def test_a_few_dense_places_do_not_multiply_new_points(self):
+        random = numpy.random.default_rng(4)
+        xy = 500 * random.random((2500, 2))
+        dense = xy[random.choice(len(xy), 12, replace=False)]
+        xy = numpy.concatenate((xy, *(place + random.normal(0, 0.005, (1000, 2)) for place in dense)))
+        points = numpy.column_stack((xy, numpy.sin(xy[:, 0] / 90)))
+        on, off = (
+            reconstruct(points, match_density=matches, maximum_edge_length=16.0, trim=False)
+            for matches in (True, False)
+        )
+        new = [result.report["holes"]["inserted_points"] for result in (on, off)]
+        self.assertGreater(new[1], 100)
+        self.assertLess(new[0], 6 * new[1])
+
+    def test_too_many_expected_points_name_the_density(self):
+        random = numpy.random.default_rng(4)
+        xy = 60 * random.random((3600, 2))
+        points = numpy.column_stack((xy, xy[:, 0]))[numpy.hypot(*(xy - 30).T) > 14]
+        with self.assertRaisesRegex(RuntimeError, "With MatchDensity off there would be fewer"):
+            reconstruct(points, maximum_expected_points=100)
 
     def test_misspelt_names_and_wrong_values_raise(self):
         with self.assertRaisesRegex(TypeError, "maximum_edge_lenght; did you mean maximum_edge_length"):

@@ -124,6 +124,8 @@ levels of areas, on one rank only | LevelArrayName="Water", Interpolation=5 | co
 most points inserted              | MaximumNumberOfInsertedPoints=50, Trim.BoundaryEdges=1 | coast and lakes              | s  s  s  s  s  s  s
 most points expected              | MaximumNumberOfExpectedPoints=20 | coast and lakes              | s  s  s  s  s  s  s
 spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  s
+as dense as the surface around    | MatchDensity=True, Delaunay.MaximumEdgeLength=2.2 | points                       | s  s  s  s  s  s  s
+the same, long triangles opened   | MatchDensity=True, OpenEdgeLength=2.5 | coast and lakes              | s  s  s  s  s  s  s
 a narrower interval               | ConfidenceLevel=0.7        | coast and lakes              | s  s  s  s  s  s  s
 point data not interpolated       | InterpolatePointData=False | coast and lakes              | s  s  s  s  s  s  s
 holes that an edge limit makes    | Delaunay.MaximumEdgeLength=2.2 | points                       | s  s  s  s  s  s  s

@@ -21,6 +21,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace elevation
@@ -144,7 +145,7 @@ public:
     this->Range = this->Context.Elevations.IsEmpty()
       ? RangeOf(this->Surface, this->GivenHoles, this->Points, ranging)
       : this->Context.Elevations;
-    // On a lattice they are there already, for the plans.
+    // They may be there already, for the plans.
     const bool makesStars = this->AllWork > 0.0 && needsStars && !this->Stars;
     Stages later(stages.Next(), { makesStars ? 4.0 : 0.0, 94 });
     const Progress connecting = later.Next(), filling = later.Next();
@@ -189,8 +190,8 @@ private:
       const HoleReport& report = this->Result.Reports[hole];
       if (report.Status == FillStatus::Filled)
       {
-        needs[hole] = { std::max(plan.MostRows, plan.MostPoints), plan.ExpectedPoints,
-          report.Area };
+        needs[hole] = { std::max(plan.MostRows, plan.MostPoints), plan.ExpectedPoints, report.Area,
+          plan.IsDenser };
       }
     }
     return needs;
@@ -212,9 +213,17 @@ private:
         ? *this->Context.FoundLattice
         : FindLattice(this->Points, LatticeTolerance, this->Threads, progress);
     }
-    if (lattice.Found)
+    const Progress abort = progress.Between(1.0, 1.0);
+    const bool matchesDensity =
+      options.MatchDensity && !(options.Spacing > 0.0) && this->GivenHoles.Count() > 0;
+    if (lattice.Found || matchesDensity)
     {
-      this->Stars = std::make_unique<VertexStars>(this->Surface, progress.Between(1.0, 1.0));
+      this->Stars = std::make_unique<VertexStars>(this->Surface, abort);
+    }
+    std::optional<LengthsOfSurface> lengths;
+    if (matchesDensity)
+    {
+      lengths.emplace(this->Surface, *this->Stars);
     }
     this->Result.Reports.reserve(this->GivenHoles.Count());
     for (Index hole = 0; hole < this->GivenHoles.Count(); ++hole)
@@ -226,8 +235,10 @@ private:
       this->Result.Reports.push_back(MeasureHole(this->Surface, this->GivenHoles, hole, options));
       HoleReport& report = this->Result.Reports.back();
       PatchPlan& plan = this->Plans[hole];
+      // A hole that stays open needs no spacing.
       plan = PlanPatch(this->Surface, this->Stars.get(), this->GivenHoles, hole, report.Area,
-        options.Spacing, lattice.Found ? &lattice.Steps : nullptr);
+        options.Spacing, lattice.Found ? &lattice.Steps : nullptr,
+        lengths && report.Status == FillStatus::Filled ? &*lengths : nullptr, abort);
       report.Spacing = plan.Spacing;
       // Any point of the rim will do: with the hole's size added, no coordinate of the hole is
       // larger.
@@ -542,21 +553,28 @@ void CheckEffort(
   const std::vector<HoleNeed>& needs, double numberOfPoints, const FillOptions& options)
 {
   double expected = 0.0, area = 0.0, ofOne = 0.0, largest = 0.0;
+  bool isDenser = false, isDenserOne = false;
   for (const HoleNeed& need : needs)
   {
     if (!std::isnan(need.Most))
     {
       expected += need.Expected;
       area += need.Area;
+      isDenser = isDenser || need.IsDenser;
+      isDenserOne = need.Expected > ofOne ? need.IsDenser : isDenserOne;
       ofOne = std::max(ofOne, need.Expected);
       largest = std::max(largest, need.Area);
     }
   }
+  const auto advice = [](bool isNeeded) {
+    return isNeeded ? Message::Argument(MakeMessage<sentences::FewerIfNotMatched>())
+                    : Message::Argument("");
+  };
   const double room = options.HoleMemory / BytesPerPoint;
   if (options.HoleMemory > 0.0 && ofOne > room)
   {
     throw MakeError<sentences::HoleTooLarge>(CountToText(ofOne), ToGigabytes(ofOne),
-      ToGigabytes(room), RoundedUp(PointSpacing(largest, room)));
+      ToGigabytes(room), RoundedUp(PointSpacing(largest, room)), advice(isDenserOne));
   }
   const double chosen = static_cast<double>(options.MaximumExpectedPoints);
   const double limit =
@@ -570,10 +588,10 @@ void CheckEffort(
   if (chosen > 0.0)
   {
     throw MakeError<sentences::TooManyPointsToFill>(
-      CountToText(expected), ToGigabytes(expected), CountToText(limit), better);
+      CountToText(expected), ToGigabytes(expected), CountToText(limit), better, advice(isDenser));
   }
   throw MakeError<sentences::TooManyPointsByDefault>(CountToText(expected), ToGigabytes(expected),
-    CountToText(limit), CountToText(numberOfPoints), better);
+    CountToText(limit), CountToText(numberOfPoints), better, advice(isDenser));
 }
 
 // From the smallest on: as many holes as possible are filled, and whether one is does not depend on

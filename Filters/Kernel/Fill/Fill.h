@@ -81,6 +81,8 @@ struct FillOptions
   Index MaximumHoleEdges = 0;
   /** Distance between new points; 0: chosen for each hole by the lengths of its edges. */
   double Spacing = 0.0;
+  /** Whether it is chosen by those of the surface nearby, too, where they are shorter. */
+  bool MatchDensity = false;
   /**
    * New x,y are rounded to float (before they are triangulated, so that the result stays exact).
    */
@@ -136,7 +138,7 @@ struct HoleReport
   double Perimeter = 0.0;  ///< length of all edges
   /** Inside the rim, outside the islands; NaN when Size is above 1e150 or below 1e-150. */
   double Area = 0.0;
-  double Spacing = 0.0; ///< as given, or the mean length of the edges (PatchPlan.h)
+  double Spacing = 0.0; ///< as given, or the mean of what the edges ask for (PatchPlan.h)
   Index NumberOfInsertedPoints = 0;
   Interpolation Method = Interpolation::NeighborMean; ///< as used; never Adaptive
   double Outgrowth = 0.0;                             ///< BetweenLines::Outgrowth()
@@ -201,6 +203,7 @@ struct HoleNeed
   double Most = std::numeric_limits<double>::quiet_NaN();
   double Expected = 0.0; ///< about how many there will be
   double Area = 0.0;
+  bool IsDenser = false; ///< whether MatchDensity makes them more
 };
 
 /** Of each hole of a part. As FillHoles(), without quotas. */

@@ -19,6 +19,10 @@
  *           distance, up to the largest one.
  *   Even    Otherwise. The spacing is the mean length of the boundary's edges [Nguyen, eq. 1].
  *
+ * On request the patch is as dense as the surface around it: in Graded and Even, an edge of the
+ * boundary then counts as no longer than the edges of the surface nearby (LengthsAround.h), but as
+ * a sixth of its length at least. Long edges, and a region of lines (both below), are left alone.
+ *
  * A region is a hole made of triangles with edges longer than Holes::LongestEdge, which are long;
  * one of lines has more inner edges than boundary edges.
  * In a region, the mean is that of all edges, of the boundary and inside, that are not long: those
@@ -30,8 +34,8 @@
  * the inner edges there. With Nodes, inner edges are not kept as such: those between neighbouring
  * nodes come by themselves, longer ones get a node inside.
  *
- * Cost: linear in the edges; for Nodes, in the triangles at the boundary. Only std::bad_alloc is
- * thrown.
+ * Cost: linear in the edges; for Nodes, in the triangles at the boundary; on request, that of
+ * LengthsAround().
  *
  * [Nguyen] A Complete Method for Reconstructing an Elevation Surface of 3D Point Clouds.
  */
@@ -41,6 +45,7 @@
 #include "Kernel/Base/Base.h"
 #include "Kernel/Lattice/Lattice.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "LengthsAround.h"
 
 #include <vector>
 
@@ -52,6 +57,13 @@ constexpr double RowHeight = 0.86602540378443864676;
 
 /** How much the spacing of Graded grows inwards, per distance. */
 constexpr double SpacingGrowth = 0.2;
+
+/**
+ * Least distance of points from the boundary, and in refinement from each other, in spacings. For
+ * rims with unequal edges, 0.5 leaves twice as many small angles and many more long edges; less
+ * than 0.3 gains nothing.
+ */
+constexpr double LeastClearance = 0.3;
 
 /** For smaller spacings, in units of precision, rounding would push points onto each other. */
 constexpr double LeastStepsPerSpacing = 4.0;
@@ -70,12 +82,13 @@ enum class Arrangement : unsigned char
 struct PatchPlan
 {
   Arrangement Kind = Arrangement::Even;
-  double Spacing = 0.0; ///< for Even; else the mean length of the edges
+  double Spacing = 0.0; ///< for Even; else the mean of what the edges ask for
   /** For Graded: at the origin of each edge, as of VisitEdges(); at both ends of inner edges. */
   std::vector<double> Spacings;
   /** The most new points that the patch may insert; above 0, not a whole number. */
   double MostPoints = 0.0;
   double ExpectedPoints = 0.0; ///< about how many there will be
+  bool IsDenser = false;       ///< for the density of the surface around it
   /** The rows that cross the edges, at most, less one for each edge: many in a long thin hole. */
   double MostRows = 0.0;
   Lattice Steps;               ///< for Nodes
@@ -107,10 +120,14 @@ struct PatchPlan
  * @param[in] area     of the hole
  * @param[in] spacing  the user's; 0: none
  * @param[in] lattice  of the surface; null: none
+ * @param[in] surface  if the patch is to be as dense as the surface around it
+ * @param[in] progress  asks for an abort alone
  * @return a plan; the caller sets Precision and the members after it
+ * @throws Aborted, std::bad_alloc
  */
 PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& holes, Index hole,
-  double area, double spacing, const Lattice* lattice);
+  double area, double spacing, const Lattice* lattice, LengthsOfSurface* surface = nullptr,
+  const Progress& progress = Progress());
 
 /** The spacing at which so many points, in rows, fill an area. */
 double PointSpacing(double area, double points);

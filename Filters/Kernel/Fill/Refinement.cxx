@@ -25,13 +25,6 @@ namespace elevation
 namespace
 {
 
-/**
- * Least distance of points from the boundary and each other in refinement, in spacings. For rims
- * with unequal edges, 0.5 leaves twice as many small angles and many more long edges; less than 0.3
- * gains nothing.
- */
-constexpr double RefinementClearance = 0.3;
-
 constexpr double LongestEdge = 1.6; // of interior ones, in spacings
 
 /** Least squared ratio of shortest edge to circumradius: (2 sin 20 degrees)^2. */
@@ -181,7 +174,7 @@ private:
       spacing = std::min(
         this->Largest, std::min(s[0], std::min(s[1], s[2])) + SpacingGrowth * std::sqrt(square));
     }
-    const double clearance = RefinementClearance * spacing;
+    const double clearance = LeastClearance * spacing;
     // Three reasons to leave it: it is good; its circle is smaller than the distance that points
     // keep; or doubles could not keep such points apart.
     if ((lengths.LongestInside <= LongestEdge * LongestEdge * mean * mean &&

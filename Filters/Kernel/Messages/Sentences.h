@@ -248,15 +248,18 @@ ELEVATION_SENTENCE(BordersMeet,
 ELEVATION_SENTENCE(HoleTooLarge,
   "Filling one hole is expected to insert about {points} points, which take some {memory}, more "
   "than the memory for it, {limit}. A {property:Spacing} of {better} would do, or a "
-  "{property:MaximumHoleSize} that leaves it open, or more memory.");
+  "{property:MaximumHoleSize} that leaves it open, or more memory.{matching}");
 ELEVATION_SENTENCE(TooManyPointsToFill,
   "Filling is expected to insert about {points} points, which take some {memory}, more than "
   "{property:MaximumNumberOfExpectedPoints}, {limit}. A {property:Spacing} of {better} would do, "
-  "or a larger {property:MaximumNumberOfExpectedPoints}.");
+  "or a larger {property:MaximumNumberOfExpectedPoints}.{matching}");
 ELEVATION_SENTENCE(TooManyPointsByDefault,
   "Filling is expected to insert about {points} points, which take some {memory}, more than "
   "{property:MaximumNumberOfExpectedPoints}, {limit} by default for the {count} of the input. A "
-  "{property:Spacing} of {better} would do, or a larger {property:MaximumNumberOfExpectedPoints}.");
+  "{property:Spacing} of {better} would do, or a larger "
+  "{property:MaximumNumberOfExpectedPoints}.{matching}");
+/** {matching} of these three; else it is empty. */
+ELEVATION_SENTENCE(FewerIfNotMatched, " With {property:MatchDensity} off there would be fewer.");
 /** @} */
 
 /** @name Why a hole was not filled: {reason} of HoleNotFilled @{ */

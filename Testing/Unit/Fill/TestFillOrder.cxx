@@ -29,7 +29,7 @@ struct Outcome
   FillResult Patches;
 };
 
-Outcome Fill(const Mesh& mesh, Interpolation method, double unit)
+Outcome Fill(const Mesh& mesh, Interpolation method, double unit, bool matchDensity = false)
 {
   std::vector<double> coordinates;
   for (const Point2& p : mesh.Points)
@@ -45,6 +45,7 @@ Outcome Fill(const Mesh& mesh, Interpolation method, double unit)
   view.Count = mesh.NumberOfPoints();
   FillOptions options;
   options.Method = method;
+  options.MatchDensity = matchDensity;
   return { mesh, FillHoles(mesh, view, FindHoles(mesh), options) };
 }
 
@@ -137,14 +138,16 @@ TEST(Fill, DoesNotDependOnTheOrderOfPointsAndCells)
     for (const Interpolation method : { Interpolation::NeighborMean, Interpolation::Membrane,
            Interpolation::ThinPlate, Interpolation::Adaptive, Interpolation::Cubic })
     {
-      const Outcome run = Fill(mesh, method, unit);
+      // Once with it is enough: elevations have no part in it.
+      const bool matchDensity = method == Interpolation::Membrane;
+      const Outcome run = Fill(mesh, method, unit, matchDensity);
       const auto expected = NewPointsOf(run);
       ASSERT_GT(expected.size(), 80u);
       for (unsigned seed = 1; seed < 4; ++seed)
       {
         SCOPED_TRACE(testing::Message()
           << "spacing " << unit << ", method " << static_cast<int>(method) << ", seed " << seed);
-        const Outcome other = Fill(Shuffled(mesh, seed), method, unit);
+        const Outcome other = Fill(Shuffled(mesh, seed), method, unit, matchDensity);
         EXPECT_TRUE(PositionsOf(PatchesOf(other)) == PositionsOf(PatchesOf(run)));
         const auto found = NewPointsOf(other);
         ASSERT_EQ(found.size(), expected.size());
