@@ -35,7 +35,7 @@ from .ranks import extremes, total
 from .reading.arrays import column_cloud, grid_cloud, named_columns
 from .reading.facing import find_faces, notes_on_faces
 from .spreading import ORIGINAL_IDS, follow_points, last_id, original_ids, used_points, without_unused
-from .steps import Kept, Step, state_of, triangulate, trim_along, trim_few
+from .steps import DensityKeeper, Kept, Step, state_of, triangulate, trim_along, trim_few
 from .vtkElevationSurface import vtkFillElevationHoles
 
 # ---- input ------------------------------------------------------------------------------------
@@ -414,7 +414,7 @@ def run_chain(
             )
             filling.SetOpenEdgeLength(length)
             result.open_edge_length = length
-        result.fill = last = filling = run("fill", filling)
+        result.fill = last = filling = run("fill", filling, DensityKeeper(run, filling))
         result.triangles["filled"] = total(ranks, last.GetOutput().GetNumberOfPolys())
         result.holes = filling.GetOutput(1)
         voids = BridgedVoids(result.holes, ranks)

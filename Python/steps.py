@@ -333,6 +333,31 @@ class LineKeeper:
         return True
 
 
+class DensityKeeper:
+    """Fills without the density of the surface around holes where that takes more points than are inserted by
+    default. Called after each run, with its messages, as LineKeeper is."""
+
+    def __init__(self, run, filling):
+        self.run, self.filling = run, filling
+
+    def __call__(self, messages):
+        def expected():
+            return [
+                message.values["points"] for message in messages.errors
+                if message.code == "TooManyPointsByDefault" and message.values["matching"]
+            ]
+
+        found = together(self.run.ranks, expected)
+        if not found or not self.filling.GetMatchDensity():
+            return False
+        self.filling.SetMatchDensity(False)
+        self.run.result.notes.append(
+            f"new points are as far apart as the edges of their holes, not as dense as the surface around: about "
+            f"{int(found[0]):,} would be needed; {argument('maximum_expected_points')} or {argument('spacing')} decides"
+        )
+        return True
+
+
 def trim_few(run, boundary, faults):
     """The first two steps for few points: the outline is that of all, and what is outside of it does not
     count."""

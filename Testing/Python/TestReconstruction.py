@@ -255,6 +255,25 @@ class Properties(unittest.TestCase):
         self.assertGreater(new[1], 100)
         self.assertLess(new[0], 6 * new[1])
 
+    def test_the_density_is_left_out_where_it_takes_too_many_points(self):
+        """A lake 1.4 km wide in a dense strip of soundings, with a shore of few points."""
+        random = numpy.random.default_rng(6)
+        angles, radii = numpy.arange(0, 2 * numpy.pi, 0.03), 700 + 2 * (0.05 + random.random(14000))
+        around = 2 * numpy.pi * random.random(14000)
+        xy = numpy.concatenate((
+            700 * numpy.column_stack((numpy.cos(angles), numpy.sin(angles))),
+            radii[:, None] * numpy.column_stack((numpy.cos(around), numpy.sin(around)))))
+        points = numpy.column_stack((xy, xy[:, 0] / 100))
+        given = {"maximum_edge_length": 25.0}
+        with self.assertWarnsRegex(
+                ElevationSurfaceWarning, "not as dense as the surface around: about [0-9,]+ would be needed; "
+                "maximum_expected_points or spacing decides"):
+            result = reconstruct(points, **given)
+        self.assertFalse(result.fill.GetMatchDensity())
+        without = reconstruct(points, match_density=False, **given)
+        self.assertEqual(result.report["holes"]["inserted_points"], without.report["holes"]["inserted_points"])
+        self.assertGreater(result.report["holes"]["inserted_points"], 10000)
+
     def test_too_many_expected_points_name_the_density(self):
         random = numpy.random.default_rng(4)
         xy = 60 * random.random((3600, 2))
