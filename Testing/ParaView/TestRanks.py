@@ -193,4 +193,8 @@ wrong.GetPolys().ReplaceCellAtId(3, 3, [0, 1, 100000])
 messages, outputs = update(simple.TrimOutwardTriangles(Input=data_source(wrong if RANK == LAST else EMPTY)))
 check_equal(len(messages), 1 if RANK == 0 else 0, "errors of a wrong cell")
 
-end("blocks, boundaries and reports")
+# More of it, in the same processes: ParaView's start takes longer than most of these tests.
+import ranks_samples  # noqa: E402,F401
+import ranks_spread  # noqa: E402
+
+end("; ".join(["blocks, boundaries and reports", "grids and profiles", "spread points", *ranks_spread.MORE]))

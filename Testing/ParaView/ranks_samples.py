@@ -1,19 +1,17 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 """On several ranks Elevation Grid and Elevation Profile of a surface that is spread over them have the
-elevations of one rank, and what is wrong on any rank is one error, of the first. All ranks run this
-script, as that of TestRanks.py.
+elevations of one rank, and what is wrong on any rank is one error, of the first. A part of TestRanks.py.
 """
 import numpy
 from paraview import simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from plugin_testing import alone, array, data_source, lines, points, start, triangles, update
+from plugin_testing import alone, array, data_source, lines, points, triangles, update
 import meshes
-from on_ranks import COUNT, LAST, RANK, check, check_equal, end, gather
+from on_ranks import COUNT, LAST, RANK, check, check_equal, gather
 
-start()
 CLOUD = numpy.random.default_rng(7).uniform(0.0, 30.0, (900, 3))
 CLOUD = CLOUD[numpy.hypot(CLOUD[:, 0] - 12, CLOUD[:, 1] - 14) > 4]
 EMPTY = vtkPolyData()
@@ -148,5 +146,3 @@ for make in filters:
     messages, (output,) = update(source)
     check_equal(messages, [], "messages after a stop")
     check_equal(output.GetNumberOfPoints(), 0, "points after a stop")
-
-end("grids and profiles")

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Points and triangles that are spread over ranks give what they give on one rank: the surface, its
 arrays, counts and messages. And the tests of Testing/Python, with the package that the plugin brings: ranks
-exchange as those of python3 do. Run by mpirun with pvbatch --symmetric, as TestRanks.py is.
+exchange as those of python3 do. A part of TestRanks.py.
 """
 import resource
 
@@ -13,14 +13,13 @@ from vtkmodules.vtkCommonDataModel import (
     vtkImageData, vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPolyData, vtkRectilinearGrid, vtkTable,
     vtkUnstructuredGrid)
 
-from plugin_testing import alone, data_source, information, start, update
+from plugin_testing import alone, data_source, information, update
 import meshes
 from meshes import array_of
-from on_ranks import COUNT, LAST, RANK, check, check_equal, end, gather
+from on_ranks import COUNT, LAST, RANK, check, check_equal, gather
 
-start()
-import TestExchanges  # noqa: E402  (the plugin brings the package)
-import TestSpreadChain  # noqa: E402
+import TestExchanges  # the plugin brings the package
+import TestSpreadChain
 
 EMPTY = vtkPolyData()
 random = numpy.random.default_rng(11)
@@ -276,4 +275,4 @@ for make, data in ((simple.GridDelaunay2D, cloud(spreads["slices"][RANK])), (sim
         check_equal([output.GetNumberOfPoints() for output in outputs], [0] * len(outputs),
                     "points after a stop")
 
-end("; ".join(["spread points and triangles", TestExchanges.main(), TestSpreadChain.main()]))
+MORE = [TestExchanges.main(), TestSpreadChain.main()]
