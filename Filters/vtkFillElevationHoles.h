@@ -246,9 +246,9 @@ public:
   /**
    * Input 1, optional: closed lines or polygons, whose x,y bound areas. Rings may nest, by the
    * even-odd rule: a ring in another one is no area, as an island in a lake; so a place in two
-   * overlapping rings is in none, but the rings themselves always count. Lines whose ends meet are joined. An open line, or a ring of
-   * fewer than three points, is an error that names it. Decided exactly. With ranks, the areas may
-   * be on any of them.
+   * overlapping rings is in none, but the rings themselves always count. Lines whose ends meet are
+   * joined. An open line, or a ring of fewer than three points, is an error that names it. Decided
+   * exactly. With ranks, the areas may be on any of them.
    */
   void SetAreasConnection(vtkAlgorithmOutput* output);
   void SetAreasData(vtkPolyData* areas);
@@ -274,10 +274,11 @@ public:
   /**
    * The cell array of the areas that has the level of each line or polygon, as an attribute of
    * lakes. Holes that touch an area are filled as by LEVEL, with the level of the area, that is of
-   * the rings which bound it: one around it, and those of islands, with the same level or none. Where this has none (NaN), Interpolation decides, and a
-   * warning names the first such area. A hole that touches areas of different levels is not filled
-   * (status FAILED), and a warning names both. It needs areas and AreaMode FILL_ONLY, and an array
-   * that is not there is an error. nullptr (default) or "": areas have no levels.
+   * the rings which bound it: one around it, and those of islands, with the same level or none.
+   * Where this has none (NaN), Interpolation decides, and a warning names the first such area. A
+   * hole that touches areas of different levels is not filled (status FAILED), and a warning names
+   * both. It needs areas and AreaMode FILL_ONLY, and an array that is not there is an error.
+   * nullptr (default) or "": areas have no levels.
    */
   vtkSetStringMacro(LevelArrayName);
   vtkGetStringMacro(LevelArrayName);

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What the algorithms of this package share: how they report their work, and how data sets carry
-words and elevations."""
+elevations."""
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
-from vtkmodules.vtkCommonCore import vtkDataArray, vtkOutputWindow, vtkStringArray
+from vtkmodules.vtkCommonCore import vtkDataArray, vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from .clouds import coordinates_of
@@ -55,23 +55,6 @@ def is_same(array, z):
     if not isinstance(array, vtkDataArray) or array.GetNumberOfComponents() != 1:
         return False
     return numpy.array_equal(vtk_to_numpy(array), z, equal_nan=True)
-
-
-def set_words(data, name, lines):
-    """Writes lines of text into a field array."""
-    words = vtkStringArray()
-    words.SetName(name)
-    for line in lines:
-        words.InsertNextValue(line)
-    data.GetFieldData().AddArray(words)
-
-
-def words_of(attributes, name):
-    """The words in an array of field or cell data; none without such an array of words."""
-    words = attributes.GetAbstractArray(name)
-    if not isinstance(words, vtkStringArray):
-        return []
-    return [words.GetValue(i) for i in range(words.GetNumberOfValues())]
 
 
 def error_text(error):

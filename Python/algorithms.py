@@ -35,15 +35,9 @@ from .block_reports import (
     report_rows,
     report_text,
 )
-from .algorithm_base import (
-    ReportingAlgorithm,
-    drop_elevation,
-    set_elevation,
-    set_words,
-    words_of,
-)
+from .algorithm_base import ReportingAlgorithm, drop_elevation, set_elevation
 from .blocks import parts_of, put_parts, surfaces_of
-from .clouds import ReadOptions, cells_of, joined, keep_points, notes_on, set_crs
+from .clouds import ReadOptions, add_words, cells_of, joined, keep_points, notes_on, set_crs, words_in
 from .description import DESCRIBED
 from .exaggeration import point_exaggeration, surface_exaggeration
 from .inputs import cloud_of, lines_of
@@ -176,17 +170,17 @@ class ElevationPoints(ReportingAlgorithm):
             lines += cloud.notes
             if cloud.crs:
                 lines.append(f"coordinate reference system: {crs_name(cloud.crs)}")
-        set_words(output, RECOGNISED, lines)
+        add_words(output.GetFieldData(), RECOGNISED, lines)
         number = output.GetNumberOfPoints()
-        set_words(output, CONTENTS, [contents, str(number)])
+        add_words(output.GetFieldData(), CONTENTS, [contents, str(number)])
         self._text = "\n".join(lines)
         return lines
 
 
 def set_nothing(output):
     """Marks a file that ElevationPoints could not read, and has reported why."""
-    set_words(output, RECOGNISED, [NOTHING])
-    set_words(output, CONTENTS, [NOTHING])
+    add_words(output.GetFieldData(), RECOGNISED, [NOTHING])
+    add_words(output.GetFieldData(), CONTENTS, [NOTHING])
 
 
 def read_options(given):
@@ -345,7 +339,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
         properties = {name: given[name] for name in given if name in PROPERTIES}
         properties = checked(properties, argument)
         options = ReadOptions(**read_options(given))
-        if any(words_of(data.GetFieldData(), CONTENTS)[:1] == ["boundary"] for data in surface.data):
+        if any(words_in(data.GetFieldData(), CONTENTS)[:1] == ["boundary"] for data in surface.data):
             raise ElevationSurfaceError(
                 "the input is a boundary, which has no elevations; choose it as Boundary, or set "
                 "Contents to Points where the file was opened"
@@ -416,7 +410,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
 
 def has_failed_reader(data):
     """Whether ElevationPoints has left this empty, and reported why."""
-    return words_of(data.GetFieldData(), CONTENTS) == [NOTHING]
+    return words_in(data.GetFieldData(), CONTENTS) == [NOTHING]
 
 
 def python_value(one, value, place):

@@ -8,7 +8,7 @@ import math
 import numpy
 from vtkmodules.vtkCommonCore import vtkStringArray
 
-from .algorithm_base import words_of
+from .clouds import words_in
 from .messages import counted
 from .query import holes_of
 from .ranks import together, total
@@ -26,7 +26,7 @@ def recognised(points, ranks=None):
     """
     count = total(ranks, points.GetNumberOfPoints())
     fields = points.GetFieldData()
-    words = together(ranks, lambda: [[words_of(fields, name) for name in (RECOGNISED, CONTENTS)]])
+    words = together(ranks, lambda: [[words_in(fields, name) for name in (RECOGNISED, CONTENTS)]])
     lines, contents = next((pair for pair in words if pair[0]), ([], []))
     if lines and contents[1:] != [str(count)]:
         lines[0] += f"; this surface is of {counted(count, 'point')}"

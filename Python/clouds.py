@@ -304,19 +304,27 @@ def make_lines(parts, names=None):
     data = make_points(numpy.concatenate(coordinates))
     data.SetLines(cells)
     if names is not None:
-        add_words(data, LINE_NAMES, names)
+        add_words(data.GetCellData(), LINE_NAMES, names)
     if any(bare):
         mark_bare(data, bare)
     return data
 
 
-def add_words(data, name, values):
-    """Adds text, one for each cell, as array."""
+def add_words(attributes, name, values):
+    """Adds an array of words to cell or field data."""
     words = vtkStringArray()
     words.SetName(name)
     for value in values:
         words.InsertNextValue(value)
-    data.GetCellData().AddArray(words)
+    attributes.AddArray(words)
+
+
+def words_in(attributes, name):
+    """The words in an array of field or cell data; none without such an array of words."""
+    words = attributes.GetAbstractArray(name)
+    if not isinstance(words, vtkStringArray):
+        return []
+    return [words.GetValue(i) for i in range(words.GetNumberOfValues())]
 
 
 def mark_bare(data, bare=None):

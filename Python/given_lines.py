@@ -4,9 +4,8 @@
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkStringArray
 
-from .clouds import LINE_NAMES, WITHOUT_Z, bare_lines, coordinates_of, crs_of, line_parts, make_points, set_crs
+from .clouds import LINE_NAMES, WITHOUT_Z, bare_lines, coordinates_of, crs_of, line_parts, make_points, set_crs, words_in
 from .draping import draped
 from .gdal_common import check_system, is_near, moving, name_of, same_system
 from .mending import mended
@@ -67,10 +66,9 @@ def check_levels(lines, names, given):
     if name is None or "fill_only" not in lines:
         return
     attributes = lines["fill_only"].GetCellData()
-    words = attributes.GetAbstractArray(name)
-    if isinstance(words, vtkStringArray) and name != LINE_NAMES:
-        values = [words.GetValue(i) for i in range(words.GetNumberOfValues())]
-        bad = next((value for value in values if value.strip() and not is_number(value)), None)
+    words = words_in(attributes, name)
+    if words and name != LINE_NAMES:
+        bad = next((value for value in words if value.strip() and not is_number(value)), None)
         raise ElevationSurfaceError(
             f"{names['fill_only']}: attribute {name}, which {argument('level_attribute')} names, is text"
             + (f": '{bad}' is not a number; leave empty what has none" if bad else "; numbers are needed"),

@@ -5,8 +5,7 @@
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .algorithm_base import words_of
-from .clouds import are_among, coordinates_of
+from .clouds import are_among, coordinates_of, words_in
 from .messages import counted
 from .names import option
 from .properties import INTERPOLATIONS
@@ -45,7 +44,7 @@ def hole_report(outlines, bridged, fill, why_opened=None, ranks=None):
              "Interpolation", "NumberOfPointsDrawnBack", "LargestDrawBack", "Level",
              "RimAboveLevel", "RimBelowLevel")
     columns = [column_of(outlines, name).tolist() for name in names]
-    statuses = words_of(outlines.GetCellData(), "StatusName")
+    statuses = words_in(outlines.GetCellData(), "StatusName")
     rows = zip(*columns, statuses, bridged.tolist(), *hole_places(outlines))
     rows = together(ranks, lambda: list(rows))
     holes = [

@@ -227,7 +227,6 @@ class Pieces:
             ("fill", source.GetFill()),
         ):
             set_properties(algorithm, step, options.properties)
-        source.GetFill().SetMatchDensity(options.properties.get("match_density", True))
         if not options.boundary:
             source.GetFill().FillCutOutsOn()  # as in memory
         source.AddObserver(

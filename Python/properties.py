@@ -21,6 +21,12 @@ BOUNDARY_EDGES, COLOURS, DUPLICATES, FAULTS_Z, INTERPOLATIONS, LATTICE_MODES, ME
     DESCRIBED[name].choices
     for name in ("boundary_edges", "colours", "duplicates", "faults_z", "interpolation", "lattice_mode", "method")
 )
+# Switches of the filters that the chain sets the other way, unless they are given.
+TURNED = {
+    name: one.default_in("chain") == "on"
+    for name, one in PROPERTIES.items()
+    if one.words["takes"] == "switch" and one.default_in("chain") != one.default_in("filter")
+}
 FEWER = ("maximum_number_of_points", "maximum_elevation_error")  # what makes a surface of few points
 
 
@@ -76,11 +82,11 @@ def is_simplified(given):
 
 
 def set_properties(algorithm, step, given):
-    """Gives a filter the properties that are its own, as checked() has them. Returns it.
+    """Gives a filter of the chain the properties that are its own, as checked() has them. Returns it.
 
     Unused points are removed at the end of the chain: reports need all of them.
     """
-    for name, value in given.items():
+    for name, value in {**TURNED, **given}.items():
         is_own = PROPERTIES[name].step in (step, "") and name != "remove_unused_points"
         if is_own and PROPERTIES[name].setter:
             getattr(algorithm, PROPERTIES[name].setter)(value)

@@ -398,7 +398,6 @@ def run_chain(
     if fill:
         filling = run.configure("fill", vtkFillElevationHoles())
         filling.SetInputData(last.GetOutput())
-        filling.SetMatchDensity(given.get("match_density", True))
         if boundary is None:
             filling.FillCutOutsOn()  # an outline of few points does not count as a given boundary
         for name, mode in AREA_MODES.items():

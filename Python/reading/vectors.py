@@ -217,7 +217,7 @@ def add_attribute(data, name, values):
     if all(is_number(value) for value in values):
         add_array(data, name, numpy.array([numpy.nan if v is None else float(v) for v in values]), "Cell")
     else:
-        add_words(data, name, ["" if value is None else str(value) for value in values])
+        add_words(data.GetCellData(), name, ["" if value is None else str(value) for value in values])
 
 
 def read_layer(path, wanted, columns, progress, as_lines=False, needs_z=True):

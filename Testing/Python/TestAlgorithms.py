@@ -11,9 +11,9 @@ import unittest
 import numpy
 from vtkelevationsurface import read, reconstruct, vtkGridDelaunay2D
 from vtkelevationsurface.block_reports import CONTENTS, RECOGNISED
-from vtkelevationsurface.algorithm_base import set_words
 from vtkelevationsurface.algorithms import ElevationPoints, ReconstructElevationSurface
 from vtkelevationsurface.blocks import parts_of
+from vtkelevationsurface.clouds import add_words
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow, vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import (
@@ -247,8 +247,8 @@ class Algorithms(unittest.TestCase):
         for count, words in ((30, "note       f.xyz: 30 points\n"),
                              (24, "note       f.xyz: 30 points; this surface is of 24 points\n")):
             chain, data = ReconstructElevationSurface(), cloud(count)
-            set_words(data, RECOGNISED, ["f.xyz: 30 points"])
-            set_words(data, CONTENTS, ["points", "30"])
+            add_words(data.GetFieldData(), RECOGNISED, ["f.xyz: 30 points"])
+            add_words(data.GetFieldData(), CONTENTS, ["points", "30"])
             chain.SetInputDataObject(0, data)
             self.assertEqual(errors_of(chain), [])
             self.assertIn(words, chain.GetReport())

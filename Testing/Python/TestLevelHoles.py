@@ -126,7 +126,7 @@ class LevelsOfAreas(unittest.TestCase):
     def test_what_cannot_be_is_an_error_that_names_it(self):
         areas = with_levels(LAKES, [90.0, numpy.inf])
         add_array(areas, "pair", numpy.zeros((2, 2)), "Cell")
-        add_words(areas, "shore", ["90", "130"])
+        add_words(areas.GetCellData(), "shore", ["90", "130"])
         for data, name, properties, code, words in (
             (areas, "depth", {}, "NoLevelArray", '"depth", but the areas have no attribute of single numbers '
              "(cell array) with this name; there are water."),
@@ -334,7 +334,7 @@ class Python(unittest.TestCase):
             with self.assertRaisesRegex(ElevationSurfaceError, words):
                 reconstruct(survey(), maximum_edge_length=2.0, fill_only=ring, level_attribute="deep")
         words = "^fill_only: attribute shore, which level_attribute names, is text; numbers are needed$"
-        add_words(areas, "shore", ["90", "130"])
+        add_words(areas.GetCellData(), "shore", ["90", "130"])
         with self.assertRaisesRegex(ElevationSurfaceError, words):
             reconstruct(survey(), maximum_edge_length=2.0, fill_only=areas, level_attribute="shore")
         for wrong in (3, ""):

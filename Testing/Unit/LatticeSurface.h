@@ -69,6 +69,24 @@ inline elevation::Mesh Make(
   return mesh;
 }
 
+/** The triangles of a mesh whose boxes meet a box. */
+inline elevation::Mesh PartIn(const elevation::Box& box, const elevation::Mesh& mesh)
+{
+  std::vector<char> keep;
+  for (elevation::Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    elevation::Box ofTriangle;
+    for (elevation::Index k = 0; k < 3; ++k)
+    {
+      ofTriangle.Add(mesh.PointOf(mesh.Origin(3 * t + k)));
+    }
+    keep.push_back(box.Intersects(ofTriangle));
+  }
+  elevation::Mesh part = mesh;
+  elevation::KeepTriangles(keep, part);
+  return part;
+}
+
 } // namespace testing_surfaces
 
 #endif

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LengthsAround.h"
 
+#include "Quantiles.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +11,7 @@
 #include <iterator>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 namespace elevation
 {
@@ -28,15 +31,6 @@ constexpr double WeightOfEnd = 2.0;
  */
 constexpr double ReachInSizes = 1.0;
 constexpr double ReachInEdges = 4.0;
-
-/** Of an even number, the mean of the two in the middle. Not of an empty list. Reorders it. */
-double MedianOf(std::vector<double>& values)
-{
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return values.size() % 2 == 1 ? *middle
-                                : 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
 
 /** The search from the boundary outwards. */
 class RingSearch
@@ -90,7 +84,7 @@ public:
       if (i + 1 == lengths.size() || lengths[i + 1].Owner != lengths[i].Owner)
       {
         CountWork(ofOne.size());
-        this->Medians.push_back({ lengths[i].Owner, MedianOf(ofOne) });
+        this->Medians.push_back({ lengths[i].Owner, Median(ofOne) });
         ofOne.clear();
       }
     }
@@ -219,13 +213,13 @@ double LengthsOfSurface::At(Index vertex)
   {
     const Point2& p = this->Surface.PointOf(vertex);
     this->ListEnds(vertex, std::numeric_limits<std::size_t>::max());
-    this->Lengths.clear();
+    std::vector<double> lengths;
     for (const Index end : this->Ends)
     {
       const Point2& q = this->Surface.PointOf(end);
-      this->Lengths.push_back(std::hypot(q.X - p.X, q.Y - p.Y));
+      lengths.push_back(std::hypot(q.X - p.X, q.Y - p.Y));
     }
-    known->second = MedianOf(this->Lengths);
+    known->second = Median(std::move(lengths));
   }
   return known->second;
 }

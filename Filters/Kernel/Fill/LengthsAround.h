@@ -73,7 +73,6 @@ private:
   std::unordered_map<Index, double> Medians;             ///< that were asked for
   std::unordered_map<Index, std::vector<Index>> Nearest; ///< of vertices with many neighbours
   std::vector<Index> Ends;                               ///< of one star
-  std::vector<double> Lengths;                           ///< of one star
   std::vector<std::pair<double, Index>> Order;           ///< of one star
 };
 

@@ -174,18 +174,7 @@ TEST(LengthsAround, AreFoundInThePartThatIsSentForAHole)
     // What parts send at least: see BoxAround() of Parts/HoleNeighborhoods.h.
     const double by = 1.5 * hole.Size + 6.0 * hole.Perimeter / hole.NumberOfEdges;
     box = { { box.Low.X - by, box.Low.Y - by }, { box.High.X + by, box.High.Y + by } };
-    std::vector<char> keep;
-    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-    {
-      Box ofTriangle;
-      for (Index k = 0; k < 3; ++k)
-      {
-        ofTriangle.Add(mesh.PointOf(mesh.Origin(3 * t + k)));
-      }
-      keep.push_back(box.Intersects(ofTriangle));
-    }
-    Mesh part = mesh;
-    KeepTriangles(keep, part);
+    const Mesh part = PartIn(box, mesh);
     const VertexStars stars(part);
     LengthsOfSurface surface(part, stars);
     EXPECT_EQ(LengthsAround(surface, holes, 0), LengthsOf(mesh));

@@ -337,18 +337,7 @@ TEST(Trials, OfAPartOfTheSurfaceAreThoseOfTheWholeOrReportThatTheyNeedMore)
   for (double reach = 6.0; reach < 30.0; reach += 1.5)
   {
     const Box box{ { 30 - reach, 30 - reach }, { 30 + reach, 30 + reach } };
-    std::vector<char> keep;
-    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-    {
-      Box ofTriangle;
-      for (Index k = 0; k < 3; ++k)
-      {
-        ofTriangle.Add(mesh.PointOf(mesh.Origin(3 * t + k)));
-      }
-      keep.push_back(box.Intersects(ofTriangle));
-    }
-    Mesh part = mesh;
-    KeepTriangles(keep, part);
+    const Mesh part = testing_surfaces::PartIn(box, mesh);
     WholeSurface known;
     known.Surroundings = { box };
     const FillResult patches = FillHoles(part, points, FindHoles(mesh), FillOptions(), known);
