@@ -14,11 +14,8 @@ import re
 import numpy
 
 from .column_names import Meaning, alike_but_for_axis, in_brackets, meaning, plain
-from .table_words import (
-    CLEAR, CLEAR_OF_POOR, COLOURS, FINNISH, GEOCENTRIC, GOOD, HIGHEST, LINES_AS_AXES, MOST_FEET, MOST_STEP_OF_LINES,
-    PARTS_OF_TIME, SEISMIC, TIMES, WEIGHTS, X_IS_NORTH
-)
 from .nulls import FAR, usual_nulls
+from .tables import known
 from ..messages import FileError
 from ..names import option
 
@@ -105,7 +102,7 @@ class Choice:
         self.name_others()
         if names:
             self.z_name = names[self.indices[-1]] if needed == 3 else ""
-            self.is_horizon = any("".join(plain(name)) in SEISMIC for name in names)
+            self.is_horizon = any("".join(plain(name)) in known().words["seismic"] for name in names)
 
     def judge_values(self):
         table = [list(map(self.layout.number, row)) for row in self.rows]
@@ -138,16 +135,17 @@ class Choice:
         def mean(others):
             self.meanings = [others.get(name, m) for name, m in zip(letters, self.meanings)]
 
-        mean(alike_but_for_axis([name for name, known in zip(letters, self.meanings) if known == Meaning()]))
+        mean(alike_but_for_axis([name for name, m in zip(letters, self.meanings) if m == Meaning()]))
         if not {"r", "g", "b"} <= set(letters):  # single letters are colours only together
             mean({letter: Meaning() for letter in "rgb"})
-        if set(FINNISH) <= set(letters) and not set(letters) & set("nexy"):
-            mean({letter: Meaning(axis, 2) for letter, axis in FINNISH.items()})
+        finnish, lines = known().finnish, known().lines
+        if set(finnish) <= set(letters) and not set(letters) & set("nexy"):
+            mean({letter: Meaning(axis, 2) for letter, axis in finnish.items()})
         self.is_in_lines = not any(m.axis in ("x", "y") for m in self.meanings) and all(
-            words & set(letters) for words in LINES_AS_AXES.values()
+            words & set(letters) for words in lines.values()
         )
         if self.is_in_lines:
-            mean({word: Meaning(axis, 8) for axis, words in LINES_AS_AXES.items() for word in words})
+            mean({word: Meaning(axis, 8) for axis, words in lines.items() for word in words})
 
     # -- what the user said
 
@@ -161,8 +159,8 @@ class Choice:
             else:
                 found = [i for i, name in enumerate(names) if name == column]
                 found = found or [i for i, name in enumerate(joined) if name == "".join(plain(column))]
-                known = ", ".join(names) or "none: the file has no header line"
-                error = f"there is no column named {column}; names: {known}"
+                there = ", ".join(names) or "none: the file has no header line"
+                error = f"there is no column named {column}; names: {there}"
             if not found:
                 raise FileError(f"{self.path}: {error}")
             if found[0] in self.indices:
@@ -182,7 +180,8 @@ class Choice:
         readings  {indices: score}, in the order in which they are shown
         """
         best, *others = sorted(readings, key=readings.get, reverse=True)
-        clear = CLEAR if readings[best] >= GOOD else CLEAR_OF_POOR
+        figures = known().figures
+        clear = figures["clear" if readings[best] >= figures["good"] else "clear of poor"]
         self.refuse_geocentric(best)
         shown = [one for one in readings if one in (best, *others[:1])]
         if others and readings[best] - readings[others[0]] < clear:
@@ -200,7 +199,7 @@ class Choice:
         """Swaps x and y where the lines before the data are in a language in which X is often north and the sizes
         prove it; asks where these prove nothing."""
         x, y = self.indices[:2]
-        language = next((name for name, letters in X_IS_NORTH.items() if re.search(letters, self.head)), "")
+        language = next((name for name, letters in known().x_is_north.items() if re.search(letters, self.head)), "")
         is_plain = self.meanings[x].rank == self.meanings[y].rank == 0
         if not language or not is_plain or self.is_utm(x, y) or self.are_degrees(x, y):
             return
@@ -220,7 +219,7 @@ class Choice:
         return self.largest[x] <= 360 and self.largest[y] <= 90 and min(self.decimals[x], self.decimals[y]) >= 4
 
     def is_too_high(self, i):
-        return len(self.finite[i]) > 0 and abs(self.finite[i]).min() > HIGHEST
+        return len(self.finite[i]) > 0 and abs(self.finite[i]).min() > known().figures["highest"]
 
     def ask(self, readings, why, other=""):
         """Raises the error that shows readings as options, or another command, and the first rows under the columns'
@@ -245,12 +244,13 @@ class Choice:
             return False
         missing = [axis for axis in self.axes if not named[axis]]
         free, are_likely = self.free_columns(sum(named.values(), []), missing) if missing else ([], True)
-        known = ", ".join(f"{a} = {self.called(c[0])}" for a, c in named.items() if c)
-        why = f"the names give {known}, but not {' and '.join(missing)}"
+        given = ", ".join(f"{a} = {self.called(c[0])}" for a, c in named.items() if c)
+        why = f"the names give {given}, but not {' and '.join(missing)}"
         if len(free) < len(missing):
             self.ask([], f"{why}; no column is left for it")
+        good = known().figures["good"]
         readings = {  # the values only choose which two are shown
-            indices: GOOD + WEIGHTS["one pair"] * self.is_pair(*indices[:2]) + 1e-3 * self.score(indices)
+            indices: good + known().weights["one pair"] * self.is_pair(*indices[:2]) + 1e-3 * self.score(indices)
             for indices in itertools.product(*(named[axis] or free for axis in self.axes))
             if len(set(indices)) == self.needed
         }
@@ -291,7 +291,7 @@ class Choice:
 
     def free_columns(self, taken, missing):
         """Columns for axes that have no name of their own, and whether they are likely."""
-        most = HIGHEST if missing == ["z"] else math.inf
+        most = known().figures["highest"] if missing == ["z"] else math.inf
         free = [i for i in self.numeric if i not in taken and not self.meanings[i].axis]
         for roles in (("",), ("a measure", "a code")):
             others = [i for i in free if self.meanings[i].role in roles]
@@ -371,14 +371,15 @@ class Choice:
         """Takes columns that are no more than needed as they stand."""
         self.indices = list(range(self.width))
         order = tuple(self.indices)
-        readings = {order: GOOD}
+        good = known().figures["good"]
+        readings = {order: good}
         if self.names:
             self.note(f"{self.none_is_named()}: {self.taken()}")
         if self.needed == 3 and not any(m.axis or m.role for m in self.meanings):
             for other in ((1, 2, 0), (2, 1, 0)):  # as z, x, y
-                readings[other] = GOOD if self.is_utm(*other[:2]) else 0
+                readings[other] = good if self.is_utm(*other[:2]) else 0
             if self.may_be_latitude(*order):
-                readings = {(1, 0, 2): GOOD, order: GOOD}
+                readings = {(1, 0, 2): good, order: good}
         self.decide(readings)
 
     def without_others(self, columns):
@@ -420,19 +421,19 @@ class Choice:
 
     def scored(self, columns):
         """{indices: score} of the readings of columns, in a row or with numbers of lines before z."""
-        count, readings = self.needed, {}
+        count, readings, weights = self.needed, {}, known().weights
         for k in range(len(columns) - count + 1):
             x, y, *z = columns[k : k + count]
-            place = WEIGHTS["a column is left out"] * (k - 1) if k else WEIGHTS["stands first"]
+            place = weights["a column is left out"] * (k - 1) if k else weights["stands first"]
             readings[x, y, *z] = self.score((x, y, *z)) + place
             others = [i for i in columns[k + count :] if self.spans[i] > 0]
             behind = columns[k + count : k + count + 1]
             is_flat = z and self.spans[z[0]] == 0 and (not others or self.counts_along(behind[0]))
             if is_flat or z and others and self.counts_along(z[0]) and not self.may_count(x, y):
-                readings[x, y, *z] += WEIGHTS["z is flat or rises along lines"]
+                readings[x, y, *z] += weights["z is flat or rises along lines"]
                 for other in others:
-                    behind = WEIGHTS["z behind lines"] + place
-                    behind += WEIGHTS["a column is left out"] * self.counts_along(other)
+                    behind = weights["z behind lines"] + place
+                    behind += weights["a column is left out"] * self.counts_along(other)
                     readings[x, y, other] = self.score((x, y, other)) + behind
         return readings
 
@@ -454,7 +455,7 @@ class Choice:
         if z:
             found["z spans less"] = spans[2] <= 10 * max(spans[:2])
             found["z is higher than any place"] = self.is_too_high(z[0])
-        return sum(WEIGHTS[what] for what, is_so in found.items() if is_so)
+        return sum(known().weights[what] for what, is_so in found.items() if is_so)
 
     def steps(self, i):
         return numpy.diff(self.values[: self.consecutive, i])
@@ -479,13 +480,13 @@ class Choice:
 
     def times(self, columns):
         """Columns that are years, months, days, hours, minutes and seconds, in which time goes on."""
-        for parts, k in itertools.product(TIMES, range(len(columns))):
+        for parts, k in itertools.product(known().times, range(len(columns))):
             found = columns[k : k + len(parts)]
             if len(found) < len(parts) or found[-1] - found[0] >= len(parts):
                 continue
             moment, even = 0.0, True
             for part, i in zip(parts, found):
-                low, high, factor = PARTS_OF_TIME[part]
+                low, high, factor = known().parts_of_time[part]
                 values = self.values[: self.consecutive, i]
                 even &= bool((values >= low).all() and (values <= high).all())
                 even &= part == "second" or self.whole[i]
@@ -535,7 +536,7 @@ class Choice:
             return False
         steps = [abs(self.steps(i)) for i in (x, y)]
         usual = [numpy.median(s[s > 0]) if (s > 0).any() else 0.0 for s in steps]
-        return 1.0 <= min(usual) and max(usual) <= MOST_STEP_OF_LINES
+        return 1.0 <= min(usual) and max(usual) <= known().figures["most step of lines"]
 
     def counts_along(self, i):
         """Whether numbers go one way, in even steps within their rounding, but where a line begins."""
@@ -574,7 +575,7 @@ class Choice:
         has_ids |= any(reason in (COUNTS_UP, EACH_ONCE) for reason in self.reasons.values())
         coded = any(i > max(x, y, z) for i in texts)
         northing_first, northing_second = self.is_utm(y, x), self.is_utm(x, y)
-        is_sure = max(self.low[x], self.low[y]) > MOST_FEET
+        is_sure = max(self.low[x], self.low[y]) > known().figures["most feet"]
         if has_ids and northing_first and is_sure:
             self.has_swapped, self.indices = True, self.swapped()
             self.notes.append(
@@ -604,7 +605,8 @@ class Choice:
 
     def refuse_geocentric(self, chosen):
         """Raises the error for columns of which some are x, y and z from the centre of the earth."""
-        equator, pole, most, least = GEOCENTRIC
+        names = ("equator", "pole", "most off the earth", "least geocentric z")
+        equator, pole, most, least = (known().figures[name] for name in names)
         for i in range(self.width - 2):
             x, y, z = self.values[:, i : i + 3].T
             away = (x * x + y * y) / equator**2 + z * z / pole**2 - 1
@@ -680,7 +682,7 @@ class Choice:
                 left_out.append(name)
                 others = self.texts if self.share_of_text[i] > 0 else {}
             else:
-                colours = [colour for colour, words in COLOURS.items() if "".join(plain(name)) in words]
+                colours = [colour for colour, words in known().colours.items() if "".join(plain(name)) in words]
                 name = next((colour for colour in colours if colour not in self.extras.values()), name)
             is_known = name in (*self.extras.values(), *self.texts.values())
             others[i] = f"{name} (column {i + 1})" if is_known else name

@@ -9,10 +9,7 @@ import math
 import re
 
 from .column_names import known_names, meaning, plain, length_unit
-from .table_words import (
-    COMMAS_TWICE, COMMENT_MARKS, DATE, GRIDS, GROUPED, MISSING, NEXT_TO_AXES, NO_NUMBERS, NO_TABLES, NUMBERED_NAME,
-    PAIRS, SEPARATORS, SEXAGESIMAL, THOUSANDS, TOUCHING, WITH_DECIMALS
-)
+from .tables import known
 from ..messages import FileError
 
 
@@ -27,17 +24,16 @@ class Layout:
     decimal_comma: bool = False
 
     def __str__(self):
-        return SEPARATORS[self.separator] + ", decimal comma" * self.decimal_comma
+        return known().separators[self.separator] + ", decimal comma" * self.decimal_comma
 
     def words(self, line):
-        if '"' in line:
-            if self.separator is None:
-                found = re.findall(r'"([^"]*)"|(\S+)', line)
-                return [quoted or plain for quoted, plain in found]
-            return [word.strip() for word in next(csv.reader([line], delimiter=self.separator))]
-        if self.separator is None:
-            return line.split()
-        return [word.strip() for word in line.split(self.separator)]
+        if '"' not in line:
+            words = line.split(self.separator)
+        elif self.separator is None:
+            words = [quoted or plain for quoted, plain in re.findall(r'"([^"]*)"|(\S+)', line)]
+        else:
+            words = next(csv.reader([line], delimiter=self.separator))
+        return [word.strip() for word in words] if self.separator else words
 
     def number(self, word):
         """The word's value; NaN where a value is missing; None for text."""
@@ -47,19 +43,28 @@ class Layout:
         except ValueError:
             if fortran := FORTRAN.fullmatch(plain):
                 return float("e".join(fortran.groups()))
-        return math.nan if word.lower() in MISSING else None
+        return math.nan if is_missing(word) else None
 
     def numbers(self, line):
         """How many words of the line are written as numbers."""
-        return sum(w.lower() not in MISSING and self.number(w) is not None for w in self.words(line))
+        return sum(not is_missing(word) and self.number(word) is not None for word in self.words(line))
 
 
-LAYOUTS = [Layout(separator) for separator in SEPARATORS]
-LAYOUTS += [Layout(separator, True) for separator in SEPARATORS if separator != ","]
+def is_missing(word):
+    return not word or word.lower() in known().signs["missing"]
+
+
+def is_number(word):
+    return Layout(None).number(word) is not None
 
 
 def is_comment(line):
-    return line.lstrip().startswith(COMMENT_MARKS)
+    return line.lstrip().startswith(known().signs["comments"])
+
+
+def with_points():
+    """The layouts with decimal points."""
+    return [Layout(separator) for separator in known().separators]
 
 
 def find_layout(path, lines, needed):
@@ -67,23 +72,25 @@ def find_layout(path, lines, needed):
     lines = [line for line in lines if line.strip()]
     sample = [line for line in lines if not is_comment(line)][:400]
     head = "\n".join(line.strip().lower() for line in lines[:20])
-    for pattern, words in NO_TABLES:
-        if re.match(pattern, head):
-            lacks = words in GRIDS and importlib.util.find_spec("osgeo") is None
-            raise FileError(f"{path}: {words.replace('{path}', path)}" + "; install python3-gdal to read it" * lacks)
+    for kind in known().grids + known().not_tables:
+        if re.match(kind[0], head):
+            lacks = kind in known().grids and importlib.util.find_spec("osgeo") is None
+            words = kind[1].replace("{path}", path) + "; install python3-gdal to read it" * lacks
+            raise FileError(f"{path}: {words}")
     if not sample:
         raise FileError(f"{path}: holds no data, only blank or comment lines")
-    counts = {layout: [layout.numbers(line) for line in sample] for layout in LAYOUTS}
+    layouts = with_points() + [Layout(one, True) for one in known().separators if one != ","]
+    counts = {layout: [layout.numbers(line) for line in sample] for layout in layouts}
 
     def merits(layout):
         """Rows, numbers, and fewer words that are none: "1,5;2,5" is two numbers with decimal commas."""
         rows = [line for line, count in zip(sample, counts[layout]) if count >= needed]
         return len(rows), sum(counts[layout]), -sum(len(layout.words(line)) for line in rows)
 
-    best = max(LAYOUTS, key=merits)
+    best = max(layouts, key=merits)
     has_rows = merits(best)[0] > 0
     are_needed = f"Rows with {'x, y and z' if needed == 3 else 'x and y'} in columns of their own are needed"
-    for pattern, most, words in NO_NUMBERS:
+    for pattern, most, words in known().not_numbers:
         if sum(bool(re.search(pattern, line)) for line in sample) > (most if has_rows else 0.0) * len(sample):
             raise FileError(f"{path}: {words}")
     if has_rows:
@@ -100,8 +107,8 @@ def find_layout(path, lines, needed):
 
 def touching_in(line):
     """The first word of a line in which numbers touch, or None."""
-    is_so = (word for word in line.split() if re.fullmatch(TOUCHING, word) and not re.fullmatch(DATE, word))
-    return next(is_so, None)
+    touching, date = (known().patterns[name] for name in ("touching", "date"))
+    return next((w for w in line.split() if re.fullmatch(touching, w) and not re.fullmatch(date, w)), None)
 
 
 def are_touching(word):
@@ -117,7 +124,7 @@ def check_marks(path, rows, columns):
     Another sign stands before decimals, or numbers below 1000 have no sign and all others have it
     before three digits, with zeros at the end where these are not cut off.
     """
-    grouped, signs, proved = re.compile(GROUPED), {".": [], ",": []}, False
+    grouped, signs, proved = re.compile(known().patterns["grouped"]), {".": [], ",": []}, False
     for i in columns:
         words = [row[i] for row in rows if i < len(row) and is_number(row[i].replace(",", "."))]
         for sign, found in signs.items():
@@ -129,14 +136,14 @@ def check_marks(path, rows, columns):
     if all(signs.values()):
         proved |= any(all(map(grouped.fullmatch, found)) for found in signs.values())
     if proved:
-        raise FileError(f"{path}: {THOUSANDS}")
+        raise FileError(f"{path}: {known().refusals['thousands']}")
 
 
 def doubtful_marks(rows, x, y, z):
     """Notes where z alone has a sign, always before three digits: it may part thousands."""
     rows = [row for row in rows if len(row) > max(x, y, z)]
     has_signs = any(re.search(r"[.,]", row[x] + row[y]) for row in rows)
-    if has_signs or not rows or not all(re.fullmatch(GROUPED, row[z]) for row in rows):
+    if has_signs or not rows or not all(re.fullmatch(known().patterns["grouped"], row[z]) for row in rows):
         return []
     return [
         f"z = {rows[0][z]} is read as {rows[0][z].replace(',', '.')}, though x,y are whole "
@@ -153,9 +160,10 @@ def check_names(path, layout, before, rows, names, width, advice):
     """
     rows = [" ".join(row) for row in rows if len(row) == width]
     if layout.separator == "," and are_parted_by_commas(rows):
-        raise FileError(f"{path}: {COMMAS_TWICE}")
-    if not names and len(rows) > 1 and all(re.fullmatch(SEXAGESIMAL, row) for row in rows):
-        if any(re.match(WITH_DECIMALS, row) for row in rows):
+        raise FileError(f"{path}: {known().refusals['commas twice']}")
+    patterns = known().patterns
+    if not names and len(rows) > 1 and all(re.fullmatch(patterns["sexagesimal"], row) for row in rows):
+        if any(re.match(patterns["with decimals"], row) for row in rows):
             raise FileError(
                 f"{path}: the columns look like degrees, minutes and seconds; export degrees as plain "
                 f"decimals; {advice}"
@@ -170,7 +178,7 @@ def check_names(path, layout, before, rows, names, width, advice):
         own = other.separator and other.separator == layout.separator
         meanings = [meaning(name) for name in found]
         others = [name for m, name in zip(meanings, found) if not m.axis and not m.role]
-        if own or NEXT_TO_AXES.issuperset(plain(" ".join(others))):
+        if own or known().beside_axes.issuperset(plain(" ".join(others))):
             degrees = any(m.rank == 3 for m in meanings) and width in (5, 7)
             why = "export degrees as plain decimals, if minutes have columns of their own, or " if degrees else ""
             if layout.separator == "," and len(found) < width:
@@ -190,7 +198,7 @@ def are_parted_by_commas(rows):
 
     These are whole, all of the same length, and one of them begins with 0, as no number does.
     """
-    if len(rows) < 2 or not all(re.fullmatch(PAIRS, row) for row in rows):
+    if len(rows) < 2 or not all(re.fullmatch(known().patterns["pairs"], row) for row in rows):
         return False
     behind = list(zip(*(row.split()[1::2] for row in rows)))
     are_even = all(len(set(map(len, column))) == 1 for column in behind)
@@ -199,7 +207,7 @@ def are_parted_by_commas(rows):
 
 def splittings(layout, line):
     """Yields (Layout, names) of a line of names, with the separator of the data and with others."""
-    for other in [layout, *LAYOUTS[: len(SEPARATORS)]]:
+    for other in [layout, *with_points()]:
         yield other, [unquoted(word) for word in other.words(line)]
 
 
@@ -214,7 +222,8 @@ def find_names(layout, head, width, one_may_lack=True):
     """
     if len(head) > 2 and head[1].split()[:1] == [str(width)] and len(head[2:]) == width:
         return [name.strip() for name in head[2:]]
-    matches = [match for match in map(NUMBERED_NAME.match, head) if match]
+    numbered = re.compile(known().patterns["numbered name"])
+    matches = [match for match in map(numbered.match, head) if match]
     found = {int(match.group(1)): match.group(2).strip('" ') for match in matches}
     candidates = [[found[i] for i in range(1, width + 1) if i in found]]
     upper = [line.upper() for line in head]
@@ -266,7 +275,3 @@ def doubtful_units(layout, head, names, indices):
                 "converted, so slopes and distances mix both"
             ]
     return []
-
-
-def is_number(word):
-    return Layout(None).number(word) is not None

@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_FLOAT
 
 from ..clouds import coordinates_of, keep_points, slices
-from .table_words import NULL_ROWS, NULLS
+from .tables import known
 from ..messages import FileError, Reason, counted, counted_reason
 from ..names import option
 from ..progress import items_with_progress, no_progress, share
@@ -196,7 +196,7 @@ def usual_nulls(values, is_place=False, ranks=None):
     """
     low, high = limits(values, ranks)
     present = {}
-    for value in NULLS:
+    for value in known().nulls["values"]:
         slack = 1e-5 * abs(value) if abs(value) >= 1e20 else 0.0  # as text or single precision wrote it
         if low - slack <= value <= high + slack:
             found = numpy.abs(values - value) <= slack
@@ -216,7 +216,7 @@ def usual_nulls(values, is_place=False, ranks=None):
 def null_rows(x, y, z, ranks=None):
     """[(name, value, (n,) of bool)]: the rows that have it thrice, as 0 0 0, or in x and y, as of receivers that have
     no place yet, where x,y of the others are all elsewhere: of the latter ten times as far as they are wide."""
-    present = [(value, (x == value) & (y == value)) for value in NULL_ROWS]
+    present = [(value, (x == value) & (y == value)) for value in known().nulls["rows"]]
     others, result = ~numpy.logical_or.reduce([found for _, found in present]), []
     for value, pairs in present:
         for name, found, reach in (("", pairs & (z == value), 1.0), ("x = y", pairs, 10.0)):

@@ -15,7 +15,7 @@ import numpy
 
 from ..clouds import WHOLE, Cloud, ReadOptions, add_array, make_points
 from .columns import Choice, advice_on_columns
-from .table_words import COMMENT_MARKS, SUMMARY
+from .tables import known
 from .layouts import (
     are_touching,
     check_marks,
@@ -36,7 +36,6 @@ from ..projecting import note_on_degrees
 from ..selecting import MOST_VALUES, WordReader
 from ..names import option
 
-COMMENTS = re.compile(rb"\n[ \t]*[" + "".join(COMMENT_MARKS).encode() + b"]")
 TAIL = 50  # lines at the end of a block among which summaries are looked for
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED, MOST_SUMMARIES = 3, 5  # that many lines of other kinds, and of summaries, are named
@@ -80,7 +79,7 @@ class Table:
         near = self.first + SAMPLE
         behind = lines[self.first : near] + lines[max(near, len(lines) - TAIL) :]
         behind = [line for line in behind if self.is_row(line)]
-        summaries = sum(bool(SUMMARY.match(line)) for line in behind)
+        summaries = sum(bool(re.match(known().patterns["summary"], line)) for line in behind)
         # Points may have such names; then they are many.
         self.has_summaries = summaries < len(behind) and summaries <= 5 + len(behind) // 100
         self.sees_summaries = self.has_summaries and summaries > 0
@@ -173,7 +172,7 @@ class Table:
 
     def summary(self, line):
         """The word of a line that holds the total, mean or such of others; None for data."""
-        match = SUMMARY.match(line) if self.has_summaries else None
+        match = re.match(known().patterns["summary"], line) if self.has_summaries else None
         return match and match.group(1)
 
     def name_columns(self, head, rows):
@@ -233,6 +232,7 @@ class Parser:
         self.table, self.blocks, self.alive, self.named = table, blocks, alive, named
         self.texts = {index: WordReader() for index in table.choice.texts}
         self.used = [*table.indices, *table.choice.extras]
+        self.comment = re.compile(rb"\n[ \t]*[" + "".join(known().signs["comments"]).encode() + b"]")
         self.parts, self.starts = [], []
         self.line, self.after_blank = 0, True
         self.before = None  # lines before this part of the file, once a message needs their number
@@ -282,7 +282,7 @@ class Parser:
     def rows_among(self, block, lines, skip):
         """The places of the rows. Counts other lines, and notes where a row follows a blank line."""
         table, facts = self.table, self.facts
-        plain = not skip and not is_comment(lines[0]) and not COMMENTS.search(block)
+        plain = not skip and not is_comment(lines[0]) and not self.comment.search(block)
         plain = plain and not table.sees_summaries and not any(map(table.summary, lines[-TAIL:]))
         if plain and all(map(str.strip, lines)):
             self.starts += [facts["count"]] * self.after_blank

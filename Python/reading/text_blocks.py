@@ -7,7 +7,7 @@ import os
 import re
 
 from .column_names import known_names
-from .table_words import ENCODINGS
+from .tables import known
 from ..clouds import WHOLE, Part
 from ..messages import FileError
 
@@ -84,9 +84,10 @@ def plain(data):
 def encoding_of(block):
     """The encoding in which most words of a header mean something, of text that is not UTF-8."""
     head = b" ".join(line for line in block.split(b"\n", 20)[:20] if not re.search(rb"\d[.,]\d", line))
+    encodings = known().signs["encodings"]
     if head.isascii():
-        return ENCODINGS[0]  # it reads the same in all of them
-    texts = {encoding: head.decode(encoding, "replace") for encoding in ENCODINGS}
+        return encodings[0]  # it reads the same in all of them
+    texts = {encoding: head.decode(encoding, "replace") for encoding in encodings}
     return max(texts, key=lambda encoding: known_names(re.split(r"[\s,;|]+", texts[encoding])))
 
 
