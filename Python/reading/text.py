@@ -136,11 +136,6 @@ class Table:
         """Whether a line holds enough numbers for a row."""
         return self.layout.numbers(line) >= self.needed
 
-    def holds_numbers(self, line):
-        """Whether a line holds enough numbers for a row, or nothing else."""
-        words = self.layout.words(line)
-        return self.is_like(line) or len(words) > 1 and self.layout.numbers(line) == len(words)
-
     def bad_line(self, number, line, why, advice=""):
         """The error for a line that is not a row."""
         touching = touching_in(line)
