@@ -71,7 +71,7 @@ def _axis_meaning(words, joined, inside):
     beside = [w for w in words if w not in axes and joined not in axes]
     heights = [w for w in named if axes[w][0] == axis == "z"]
     is_old = words[-1] == "alt" and len(set(heights)) > 1  # "Höhe_alt"
-    if is_old or not known().beside_axes.issuperset(beside):
+    if is_old or not known().words["beside axes"].issuperset(beside):
         if max(map(len, named), default=0) < 2 or rank == 4:
             return None  # a single letter among words that mean something else
         rank += 5

@@ -72,11 +72,10 @@ def find_layout(path, lines, needed):
     lines = [line for line in lines if line.strip()]
     sample = [line for line in lines if not is_comment(line)][:400]
     head = "\n".join(line.strip().lower() for line in lines[:20])
-    for kind in known().grids + known().not_tables:
-        if re.match(kind[0], head):
-            lacks = kind in known().grids and importlib.util.find_spec("osgeo") is None
-            words = kind[1].replace("{path}", path) + "; install python3-gdal to read it" * lacks
-            raise FileError(f"{path}: {words}")
+    for pattern, words in known().not_tables:
+        if re.match(pattern, head):
+            advice = "" if importlib.util.find_spec("osgeo") else "; install python3-gdal to read it"
+            raise FileError(f"{path}: {words.replace('{path}', path).replace('{gdal}', advice)}")
     if not sample:
         raise FileError(f"{path}: holds no data, only blank or comment lines")
     layouts = with_points() + [Layout(one, True) for one in known().separators if one != ","]
@@ -95,9 +94,9 @@ def find_layout(path, lines, needed):
             raise FileError(f"{path}: {words}")
     if has_rows:
         return best
-    touching = [word for word in map(touching_in, sample) if word]
+    touching = list(filter(None, map(touching_in, sample)))
     if 2 * len(touching) > len(sample):
-        raise FileError(f"{path}: {are_touching(touching[0])}")
+        raise FileError(f"{path}: {touching[0]}")
     if not any(re.search(r"\d", line) for line in sample):
         raise FileError(f"{path}: holds text, but no numbers. {are_needed}")
     raise FileError(
@@ -106,13 +105,10 @@ def find_layout(path, lines, needed):
 
 
 def touching_in(line):
-    """The first word of a line in which numbers touch, or None."""
+    """What is wrong with a line in which numbers touch, or ""."""
     touching, date = (known().patterns[name] for name in ("touching", "date"))
-    return next((w for w in line.split() if re.fullmatch(touching, w) and not re.fullmatch(date, w)), None)
-
-
-def are_touching(word):
-    return (
+    word = next((w for w in line.split() if re.fullmatch(touching, w) and not re.fullmatch(date, w)), "")
+    return word and (
         f"numbers of fixed width touch, as {word[:40]}: cut them by their widths, as awk '{{print substr($0,1,10), "
         "substr($0,11,10), substr($0,21,10)}' for 10 each"
     )
@@ -178,7 +174,7 @@ def check_names(path, layout, before, rows, names, width, advice):
         own = other.separator and other.separator == layout.separator
         meanings = [meaning(name) for name in found]
         others = [name for m, name in zip(meanings, found) if not m.axis and not m.role]
-        if own or known().beside_axes.issuperset(plain(" ".join(others))):
+        if own or known().words["beside axes"].issuperset(plain(" ".join(others))):
             degrees = any(m.rank == 3 for m in meanings) and width in (5, 7)
             why = "export degrees as plain decimals, if minutes have columns of their own, or " if degrees else ""
             if layout.separator == "," and len(found) < width:
@@ -200,9 +196,9 @@ def are_parted_by_commas(rows):
     """
     if len(rows) < 2 or not all(re.fullmatch(known().patterns["pairs"], row) for row in rows):
         return False
-    behind = list(zip(*(row.split()[1::2] for row in rows)))
-    are_even = all(len(set(map(len, column))) == 1 for column in behind)
-    return are_even and any(re.match(r"0\d", word) for column in behind for word in column)
+    behind = [row.split()[1::2] for row in rows]
+    are_even = all(len(set(map(len, column))) == 1 for column in zip(*behind))
+    return are_even and any(re.match(r"0\d", word) for row in behind for word in row)
 
 
 def splittings(layout, line):
@@ -220,12 +216,11 @@ def find_names(layout, head, width, one_may_lack=True):
     They stand in one line, with the separator of the data or another; or a line each, numbered as
     "3: X", or below their count as GSLIB has them, or between BEGIN HEADER and END HEADER.
     """
-    if len(head) > 2 and head[1].split()[:1] == [str(width)] and len(head[2:]) == width:
-        return [name.strip() for name in head[2:]]
-    numbered = re.compile(known().patterns["numbered name"])
-    matches = [match for match in map(numbered.match, head) if match]
-    found = {int(match.group(1)): match.group(2).strip('" ') for match in matches}
+    numbered = filter(None, map(re.compile(known().patterns["numbered name"]).match, head))
+    found = {int(match.group(1)): match.group(2).strip('" ') for match in numbered}
     candidates = [[found[i] for i in range(1, width + 1) if i in found]]
+    if len(head) > 2 and head[1].split()[:1] == [str(width)]:
+        candidates.insert(0, head[2:])
     upper = [line.upper() for line in head]
     if "BEGIN HEADER" in upper and "END HEADER" in upper:
         part = head[upper.index("BEGIN HEADER") + 1 : upper.index("END HEADER")]
@@ -242,8 +237,7 @@ def find_names(layout, head, width, one_may_lack=True):
                 others.append(words[:-1])
             # With another separator than the data has, words that mean nothing are a sentence.
             candidates += [names for names in others if other is layout or known_names(names) > 1]
-    candidates = [names for names in candidates if len(names) == width and any(names)]
-    candidates = [names for names in candidates if not all(is_number(name) for name in names)]
+    candidates = [names for names in candidates if len(names) == width and not all(map(is_number, names))]
     return max(candidates, key=known_names, default=None)
 
 
@@ -262,13 +256,12 @@ def doubtful_units(layout, head, names, indices):
     The units stand in the names, as in "Z (ft)", in a line of their own, as in "m,m,ft", or where
     Petrel writes them.
     """
-    rows = [[length_unit(name) for name in names or []]]
-    rows += [[length_unit(f"({word.strip('()[]')})") for word in layout.words(line)] for line in head]
-    pattern = re.compile(r"unit in (x and y direction|depth):\s*(\w+)", re.I)
-    petrel = {where.lower(): length_unit(f"({unit})") for where, unit in pattern.findall("\n".join(head))}
-    named = [[row[i] if i < len(row) else "" for i in indices] for row in rows]
-    across = petrel.get("x and y direction", "")
-    for units in [*named, [across, across, petrel.get("depth", "")]]:
+    rows = [names or [], *([f"({word.strip('()[]')})" for word in layout.words(line)] for line in head)]
+    rows = [[row[i] if i < len(row) else "" for i in indices] for row in rows]
+    petrel = dict(re.findall(r"unit in (x and y direction|depth):\s*(\w+)", "\n".join(head).lower()))
+    across, up = (f"({petrel.get(where)})" for where in ("x and y direction", "depth"))
+    for row in [*rows, [across, across, up]]:
+        units = list(map(length_unit, row))
         if all(units) and units[0] == units[1] != units[2]:
             return [
                 f"x and y are in {units[0]} and z is in {units[2]}, by the header: nothing is "

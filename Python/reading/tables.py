@@ -22,8 +22,8 @@ def known():
     with open(path, encoding="utf-8") as stream:
         parser.read_file(stream)
 
-    def each(section, convert):
-        return {name: convert(value) for name, value in parser[section].items()}
+    def each(section, convert=str):
+        return {name: convert(text) for name, text in parser[section].items()}
 
     def words(text):
         return frozenset(text.split())
@@ -31,41 +31,31 @@ def known():
     def numbers(text):
         return tuple(map(float, text.split()))
 
-    def pattern(text):
-        return text.replace("\n", "")
+    def lines(text):
+        return text.strip().split("\n")
 
-    def not_table(text):
-        begin, *said = text.strip().split("\n")
-        said = " ".join(said)
-        return begin, refusals.get(said, said)
-
-    def not_number(name, text):
-        share, *lines = text.split("\n")
-        return "".join(lines), float(share), refusals[name.rsplit(" ", 1)[0]]
-
-    refusals = each("refusals", lambda text: " ".join(text.split()))
-    keys = [(key.split(), names.split()) for key, names in parser["axes"].items()]
+    refusals = each("refusals", lambda text: " ".join(lines(text)))
+    axes = [(key.split(), names.split()) for key, names in parser["axes"].items()]
+    shares = [(name.rsplit(" ", 1)[0], *lines(text)) for name, text in parser["not numbers"].items()]
     return types.SimpleNamespace(
-        axes={name: (axis, int(rank), "".join(what)) for (axis, rank, *what), names in keys for name in names},
-        beside_axes=words(parser["beside axes"]["words"]),
+        axes={name: (axis, int(rank), "".join(what)) for (axis, rank, *what), names in axes for name in names},
+        words=each("other words", words),
         roles=each("roles", words),
         colours=each("colours", words),
         lengths=each("units of length", words),
-        words=each("other words", words),
-        letters=str.maketrans(each("letters", str)),
+        letters=str.maketrans(each("letters")),
         lines=each("lines", words),
-        finnish=each("finnish", str),
-        x_is_north=each("x is north", str),
+        finnish=each("finnish"),
+        x_is_north=each("x is north"),
         signs=each("signs", lambda text: tuple(text.split())),
         separators={sign.replace("\\t", "\t") or None: name for name, sign in parser["separators"].items()},
         refusals=refusals,
-        grids=list(each("grids", not_table).values()),
-        not_tables=list(each("not tables", not_table).values()),
-        not_numbers=[not_number(*one) for one in parser["not numbers"].items()],
-        patterns=each("patterns", pattern),
+        not_tables=[(begin, " ".join(said)) for begin, *said in each("not tables", lines).values()],
+        not_numbers=[("".join(parts), float(share), refusals[name]) for name, share, *parts in shares],
+        patterns=each("patterns", lambda text: "".join(lines(text))),
         nulls=each("nulls", numbers),
         weights=each("weights", float),
         figures=each("figures", float),
         parts_of_time=each("parts of time", numbers),
-        times=[line.split(", ") for line in parser["times"]["orders"].strip().split("\n")],
+        times=[line.split(", ") for line in lines(parser["times"]["orders"])],
     )

@@ -17,7 +17,6 @@ from ..clouds import WHOLE, Cloud, ReadOptions, add_array, make_points
 from .columns import Choice, advice_on_columns
 from .tables import known
 from .layouts import (
-    are_touching,
     check_marks,
     check_names,
     doubtful_marks,
@@ -138,9 +137,8 @@ class Table:
 
     def bad_line(self, number, line, why, advice=""):
         """The error for a line that is not a row."""
-        touching = touching_in(line)
-        if touching:
-            why, advice = are_touching(touching), ""
+        if touching := touching_in(line):
+            why, advice = touching, ""
         elif self.can_skip and not (advice and self.is_like(line)):
             advice = f"{option('skip_bad_lines')} leaves out such lines"
         return BadLine(f"{self.path}, line {number}: {why}" + (advice and "; " + advice))
