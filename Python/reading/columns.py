@@ -14,7 +14,8 @@ import re
 import numpy
 
 from .column_names import Meaning, alike_but_for_axis, in_brackets, meaning, plain
-from .nulls import FAR, usual_nulls
+from .blunders import FAR
+from .nulls import usual_nulls
 from .tables import known
 from ..messages import FileError
 from ..names import option
@@ -130,22 +131,18 @@ class Choice:
     def judge_names(self):
         """Sets meanings; some names have another one next to some others."""
         letters = ["".join(plain(name)) for name in self.names or [""] * self.width]
-        self.meanings = [meaning(name) for name in self.names or [""] * self.width]
-
-        def mean(others):
-            self.meanings = [others.get(name, m) for name, m in zip(letters, self.meanings)]
-
-        mean(alike_but_for_axis([name for name, m in zip(letters, self.meanings) if m == Meaning()]))
+        meanings = [meaning(name) for name in self.names or [""] * self.width]
+        others = alike_but_for_axis([name for name, m in zip(letters, meanings) if m == Meaning()])
         if not {"r", "g", "b"} <= set(letters):  # single letters are colours only together
-            mean({letter: Meaning() for letter in "rgb"})
+            others.update({letter: Meaning() for letter in "rgb"})
         finnish, lines = known().finnish, known().lines
         if set(finnish) <= set(letters) and not set(letters) & set("nexy"):
-            mean({letter: Meaning(axis, 2) for letter, axis in finnish.items()})
-        self.is_in_lines = not any(m.axis in ("x", "y") for m in self.meanings) and all(
-            words & set(letters) for words in lines.values()
-        )
+            others.update({letter: Meaning(axis, 2) for letter, axis in finnish.items()})
+        has_places = any(others.get(name, m).axis in ("x", "y") for name, m in zip(letters, meanings))
+        self.is_in_lines = not has_places and all(words & set(letters) for words in lines.values())
         if self.is_in_lines:
-            mean({word: Meaning(axis, 8) for axis, words in lines.items() for word in words})
+            others.update({word: Meaning(axis, 8) for axis, words in lines.items() for word in words})
+        self.meanings = [others.get(name, m) for name, m in zip(letters, meanings)]
 
     # -- what the user said
 
@@ -351,10 +348,8 @@ class Choice:
         if self.indices == list(range(count)):
             self.note(f"the first {count} of {self.width} columns are taken as {', '.join(self.axes)}")
             return
-        why = "".join(
-            f"column {self.called(i)} is {reason}; "
-            for i, reason in sorted(self.reasons.items()) if i < max(self.indices)
-        )
+        reasons = [(i, reason) for i, reason in sorted(self.reasons.items()) if i < max(self.indices)]
+        why = "".join(f"column {self.called(i)} is {reason}; " for i, reason in reasons)
         self.note(f"columns by their values: {why}{self.taken()}")
 
     def ask_for_grid(self):
@@ -369,8 +364,7 @@ class Choice:
 
     def in_their_order(self):
         """Takes columns that are no more than needed as they stand."""
-        self.indices = list(range(self.width))
-        order = tuple(self.indices)
+        self.indices = order = tuple(range(self.width))
         good = known().figures["good"]
         readings = {order: good}
         if self.names:
@@ -448,7 +442,7 @@ class Choice:
             "as many decimals": alike,
             "as wide as high": 0 < max(spans[:2]) <= 30 * min(spans[:2]),
             "x is a line": self.is_line(x, y),
-            "x rises": self.always_rises(x),
+            "x rises": self.rises(x, 10),
             "x and y count": self.may_count(x, y),
             "x and y are of UTM": self.is_utm(x, y) or self.is_utm(y, x),
         }
@@ -462,21 +456,9 @@ class Choice:
 
     def is_id(self, i):
         """Whole numbers that count up by one, here and there with a gap, and never go back."""
-        values = self.values[:, i]
-        if len(values) < 3 or not numpy.isfinite(values).all() or not self.whole[i]:
-            return False
-        steps = numpy.diff(values)
-        near = steps[: max(self.consecutive - 1, 1)]
-        return bool((steps > 0).all() and (near == 1).mean() > 0.6)
-
-    def is_class(self, i, beside):
-        """A few small whole numbers next to a column of quite other ones."""
-        values = self.finite[i]
-        if len(values) < 20 or not self.whole[i] or self.low[i] < 0 or self.high[i] > 255:
-            return False
-        few = len(numpy.unique(values)) <= min(32, len(values) // 10)
-        other = self.spans[beside] > 30 * numpy.ptp(values)
-        return few and (other or not self.whole[beside])
+        is_full = len(self.finite[i]) == len(self.rows)
+        counts = numpy.count_nonzero(self.steps(i) == 1) > 0.6 * (self.consecutive - 1)
+        return is_full and self.whole[i] and self.rises(i, 3) and counts
 
     def times(self, columns):
         """Columns that are years, months, days, hours, minutes and seconds, in which time goes on."""
@@ -497,16 +479,13 @@ class Choice:
                 return found
         return []
 
-    def may_be_place(self, i):
-        """Whether a column may be a line, trace, latitude or longitude in addition to x and y."""
-        return self.whole[i] or self.decimals[i] >= 4 and self.largest[i] <= 360
-
     def place_in_grid(self, columns):
-        """The two columns from which two others follow, as from line and trace or in degrees."""
+        """The two columns from which two others follow: of lines and traces, or in degrees."""
         pairs = list(zip(columns, columns[1:]))
         for place, pair in itertools.product(pairs, pairs):
+            may_be = all(self.whole[k] or self.decimals[k] >= 4 and self.largest[k] <= 360 for k in place)
             others = [k for k in columns if k > pair[1] and k not in place]
-            if set(place) & set(pair) or not others or not all(map(self.may_be_place, place)):
+            if set(place) & set(pair) or not others or not may_be:
                 continue
             is_larger = math.prod(self.spans[k] for k in pair) > math.prod(self.spans[k] for k in place) > 0
             follow = self.follow_from(place, pair) or self.follow_from(pair, place, are_rounded=True)
@@ -549,9 +528,16 @@ class Choice:
         are_even = abs(abs(steps) - numpy.median(abs(steps))) <= rounding
         return bool(one_way and are_even.mean() >= 0.6)
 
-    def always_rises(self, i):
-        values = self.finite[i]
-        return len(values) > 9 and bool((numpy.diff(values) > 0).all())
+    def is_class(self, i, beside):
+        """A few small whole numbers next to a column of quite other ones."""
+        count = len(self.finite[i])
+        few = count >= 20 and self.whole[i] and len(numpy.unique(self.finite[i])) <= min(32, count // 10)
+        other = self.spans[beside] > 30 * self.spans[i] or not self.whole[beside]
+        return few and other and 0 <= self.low[i] and self.high[i] <= 255
+
+    def rises(self, i, least):
+        """Whether numbers rise in all rows, of which there are at least so many."""
+        return len(self.finite[i]) >= least and bool((numpy.diff(self.finite[i]) > 0).all())
 
     def is_line(self, i, beside):
         """The same whole number along runs of rows, through which others go in no even steps."""
@@ -605,14 +591,13 @@ class Choice:
 
     def refuse_geocentric(self, chosen):
         """Raises the error for columns of which some are x, y and z from the centre of the earth."""
-        names = ("equator", "pole", "most off the earth", "least geocentric z")
-        equator, pole, most, least = (known().figures[name] for name in names)
-        for i in range(self.width - 2):
-            x, y, z = self.values[:, i : i + 3].T
+        equator, pole, most, least = known().earth
+        for three in zip(*(range(i, self.width) for i in range(3))):
+            x, y, z = self.values[:, three].T
             away = (x * x + y * y) / equator**2 + z * z / pole**2 - 1
-            if not {i, i + 1, i + 2}.isdisjoint(chosen) and (abs(away) < most).all() and (abs(z) > least).all():
+            if not set(three).isdisjoint(chosen) and (abs(away) < most).all() and (abs(z) > least).all():
                 raise FileError(
-                    f"{self.path}: {self.listed([i, i + 1, i + 2])} are x, y and z from the centre of the "
+                    f"{self.path}: {self.listed(three)} are x, y and z from the centre of the "
                     "earth (ECEF); export longitude, latitude and height, or a map projection"
                 )
 

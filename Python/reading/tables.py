@@ -56,6 +56,7 @@ def known():
         nulls=each("nulls", numbers),
         weights=each("weights", float),
         figures=each("figures", float),
+        earth=numbers(parser["earth"]["figures"]),
         parts_of_time=each("parts of time", numbers),
         times=[line.split(", ") for line in lines(parser["times"]["orders"])],
     )
