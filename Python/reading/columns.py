@@ -290,13 +290,11 @@ class Choice:
         """Columns for axes that have no name of their own, and whether they are likely."""
         most = known().figures["highest"] if missing == ["z"] else math.inf
         free = [i for i in self.numeric if i not in taken and not self.meanings[i].axis]
-        for roles in (("",), ("a measure", "a code")):
-            others = [i for i in free if self.meanings[i].role in roles]
-            if others:
-                is_other = self.times(others)
-                likely = [i for i in others if i not in is_other and not self.is_id(i) and self.high[i] < most]
-                return (likely, roles == ("",)) if len(likely) >= len(missing) else (others, False)
-        return [], False
+        bare = [i for i in free if not self.meanings[i].role]
+        others = bare or [i for i in free if self.meanings[i].role in ("a measure", "a code")]
+        times = self.times(others)
+        likely = [i for i in others if i not in times and not self.is_id(i) and self.high[i] < most]
+        return (likely, bool(bare)) if len(likely) >= len(missing) else (others, False)
 
     def look_at_names(self, missing):
         x, y = self.indices[:2]
@@ -330,14 +328,14 @@ class Choice:
         if len(usable) < count <= len(numbers) and self.names and all(self.names):
             others = self.listed([i for i in numbers if i not in usable])
             self.ask([numbers[:count]], f"{self.none_is_named()}, and {others} may be something else by the names")
-        if self.width == count:
-            self.in_their_order()
-            return
         usable = usable if len(usable) >= count else numbers
-        if not self.names and len(usable) == self.width and count == 3:
+        if not self.names and len(usable) == self.width > count == 3:
             self.ask_for_grid()
-        left = self.without_others(usable[:MOST_JUDGED])
-        self.decide(self.scored(left))
+        left = self.without_others(usable[:MOST_JUDGED]) if self.width > count else list(range(count))
+        readings = self.scored(left)
+        for other in ((1, 2, 0), (2, 1, 0)) if self.width == count == 3 else ():  # as z, x, y
+            readings[other] = readings[0, 1, 2] if self.is_utm(*other[:2]) else -math.inf
+        self.decide(readings)
         for i in left[: left.index(min(self.indices[:2]))]:
             each = self.whole[i] and len(numpy.unique(self.finite[i])) == len(self.finite[i])
             self.reasons[i] = EACH_ONCE if each else NO_NEIGHBOUR
@@ -345,6 +343,10 @@ class Choice:
             self.ask([usable[:count], self.indices], "so few rows do not show which columns are x, y and z")
         if count == 3:
             self.east_and_north()
+        if self.width == count:
+            if self.names:
+                self.note(f"{self.none_is_named()}: {self.taken()}")
+            return
         if self.indices == list(range(count)):
             self.note(f"the first {count} of {self.width} columns are taken as {', '.join(self.axes)}")
             return
@@ -361,20 +363,6 @@ class Choice:
             source = f"numpy.loadtxt({lines.format(self.path)}{between})"
             why = f"{self.width} columns of numbers without names may be a grid of elevations"
             self.ask([] if is_wide else [(0, 1, 2)], why, as_grid(self.path, source))
-
-    def in_their_order(self):
-        """Takes columns that are no more than needed as they stand."""
-        self.indices = order = tuple(range(self.width))
-        good = known().figures["good"]
-        readings = {order: good}
-        if self.names:
-            self.note(f"{self.none_is_named()}: {self.taken()}")
-        if self.needed == 3 and not any(m.axis or m.role for m in self.meanings):
-            for other in ((1, 2, 0), (2, 1, 0)):  # as z, x, y
-                readings[other] = good if self.is_utm(*other[:2]) else 0
-            if self.may_be_latitude(*order):
-                readings = {(1, 0, 2): good, order: good}
-        self.decide(readings)
 
     def without_others(self, columns):
         """The columns that may be coordinates, by their values; sets the reasons of the others."""

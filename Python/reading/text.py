@@ -143,6 +143,13 @@ class Table:
             advice = f"{option('skip_bad_lines')} leaves out such lines"
         return BadLine(f"{self.path}, line {number}: {why}" + (advice and "; " + advice))
 
+    def few_words(self, number, line, count):
+        """The error for a line with fewer words than others have."""
+        why = f"{counted(count, 'column')} found where other lines have {self.words}"
+        if not self.layout.separator:
+            why += ", and blanks do not show which one lacks: part columns by commas, or write nan for what is missing"
+        return self.bad_line(number, line, why)
+
     def no_number(self, number, line, words, axis):
         """The error for a line in which x, y or z is a word."""
         index = self.indices[axis]
@@ -197,8 +204,7 @@ class Table:
         values = [self.layout.number(word) for word in words]
         no_words = re.fullmatch(r"[-+\d.,;\seE]+", " ".join(words)) is not None
         if 2 <= len(words) < self.width and (None not in values or no_words):
-            why = f"{len(words)} columns found where other lines have {self.width}"
-            raise self.bad_line(number, line, f"{why} (mark it with # if it is not a row of data)")
+            raise self.few_words(number, line, len(words))
         if len(words) < self.width:
             return False
         values = [values[i] for i in self.indices]
@@ -265,12 +271,12 @@ class Parser:
         return numpy.flatnonzero(counts != expected).tolist()
 
     def is_short(self, words):
-        """Whether blanks part fewer words than others have, unless only text lacks behind numbers."""
+        """Whether x, y or z lacks, or blanks part fewer words than others have, unless only text lacks behind
+        numbers."""
         table = self.table
-        return len(words) < table.words and not table.layout.separator and any(
-            column >= len(words) or table.layout.number(words[column]) is None
-            for column in table.choice.of_numbers
-        )
+        needed = table.indices if table.layout.separator else {*table.indices, *table.choice.of_numbers}
+        are_there = (i < len(words) and table.layout.number(words[i]) is not None for i in needed)
+        return len(words) < table.words and not all(are_there)
 
     def rows_among(self, block, lines, skip):
         """The places of the rows. Counts other lines, and notes where a row follows a blank line."""
@@ -356,18 +362,10 @@ class Parser:
         table = self.table
         words = table.layout.words(line)
         for axis, index in enumerate(table.indices):
-            if index >= len(words):
-                why = f"{counted(len(words), 'column')} found, but {'xyz'[axis]} is column {index + 1}"
-                raise table.bad_line(self.number(i), line, why)
-            if table.layout.number(words[index]) is None:
+            if index < len(words) and table.layout.number(words[index]) is None:
                 raise table.no_number(self.number(i), line, words, axis)
         if self.is_short(words):
-            why = (
-                f"{counted(len(words), 'column')} found where {table.words} are expected, and "
-                "blanks do not show which one lacks; part the columns by commas or write nan for "
-                "what is missing"
-            )
-            raise table.bad_line(self.number(i), line, why)
+            raise table.few_words(self.number(i), line, len(words))
         row = [table.layout.number(words[index]) if index < len(words) else math.nan for index in self.used]
         for index, value in zip(self.used, row):
             if value is None:
@@ -408,9 +406,8 @@ class Parser:
                 "blanks do not part the columns of this table; export it as .csv"
             )
         notes, seen = table.notes, [f"separated by {table.layout}"]
-        for count, what in ((table.headers, "header"), (facts["comment"] + table.comments, "comment")):
-            if count:
-                seen.append(counted(count, f"{what} line"))
+        counts = {"header line": table.headers, "comment line": facts["comment"] + table.comments}
+        seen += [counted(count, what) for what, count in counts.items() if count]
         if not any(" as x" in note or ", y = " in note for note in notes):
             columns = ", ".join(str(index + 1) for index in table.indices)
             notes.insert(0, f"{', '.join('xyz'[:table.needed])} are in columns {columns}")

@@ -87,7 +87,7 @@ class Text(InFolder):
         self.assert_rows(self.read('1,2,3.5,"rock, hard"\n4.25,5,6,sand\n-7,8,9,\n'), ROWS)
 
     def test_a_short_row_names_file_line_and_column(self):
-        self.assert_refused(", line 2: 2 columns found, but z is column 3", "1 2 3\n4 5\n6 7 8\n")
+        self.assert_refused(", line 2: 2 columns found where other lines have 3", "1 2 3\n4 5\n6 7 8\n")
 
         self.assert_refused(
             ", line 1: 2 columns found where other lines have 3", "1 2\n3 4 5\n6 7 8\n"
