@@ -232,8 +232,8 @@ class Parser:
         self.texts = {index: WordReader() for index in table.choice.texts}
         self.used = [*table.indices, *table.choice.extras]
         self.comment = re.compile(rb"\n[ \t]*[" + "".join(known().signs["comments"]).encode() + b"]")
-        self.parts, self.starts = [], []
-        self.line, self.after_blank = 0, True
+        self.parts, self.line = [], 0
+        self.breaks = [0]  # numbers of lines behind which another line or ring begins
         self.before = None  # lines before this part of the file, once a message needs their number
         first = table.bad_lines if blocks.begin == 0 else []
         self.facts = {
@@ -279,26 +279,23 @@ class Parser:
         return len(words) < table.words and not all(are_there)
 
     def rows_among(self, block, lines, skip):
-        """The places of the rows. Counts other lines, and notes where a row follows a blank line."""
+        """The places of the rows. Counts other lines, and keeps the breaks between rows."""
         table, facts = self.table, self.facts
         plain = not skip and not is_comment(lines[0]) and not self.comment.search(block)
         plain = plain and not table.sees_summaries and not any(map(table.summary, lines[-TAIL:]))
         if plain and all(map(str.strip, lines)):
-            self.starts += [facts["count"]] * self.after_blank
-            self.after_blank = False
             return range(len(lines))
         rows = []
         for i, line in enumerate(items_with_progress(lines, self.alive, len(lines), 20_000)):
             kind = table.kind(line) if i >= skip else "head"
             if kind == "row":
-                self.starts += [facts["count"] + len(rows)] * self.after_blank
-                self.after_blank = False
                 rows.append(i)
             elif kind == "summary":
                 facts["summary"].append([self.number(i), table.summary(line)])
             elif kind in ("comment", "repeated"):
                 facts[kind] += 1
-            self.after_blank |= kind == "blank" or kind == "comment" and line.lstrip().startswith(">")
+            if kind == "blank" or kind == "comment" and line.lstrip().startswith(">"):
+                self.breaks.append(self.line + 1 + i)
         return rows
 
     def add_rows(self, lines, places, short, quoted):
@@ -469,7 +466,8 @@ def read_table(path, needed=3, progress=no_progress):
     """
     advice = f"a header line with {', '.join(('easting', 'northing', 'elevation')[:needed])} names the columns"
     parser, rows, numbers, notes = parse(path, ReadOptions(progress=progress), needed, advice)
-    return rows[:, :needed].copy(), numbers, parser.starts, notes
+    starts = numpy.unique(numpy.searchsorted(numbers, parser.breaks))
+    return rows[:, :needed].copy(), numbers, starts[starts < len(rows)].tolist(), notes
 
 
 def read_line_table(path, progress):
