@@ -114,35 +114,30 @@ def touching_in(line):
     )
 
 
-def check_marks(path, rows, columns):
-    """Refuses marks between thousands that look like decimal signs, where the file proves it.
+def notes_on_marks(path, rows, columns, axes):
+    """Refuses marks between thousands that look like decimal signs, where the file proves it: another sign stands
+    before decimals, or numbers below 1000 have no sign and all others have it before three digits, with zeros at the
+    end where these are not cut off. A note says where z alone has a sign, always before three digits.
 
-    Another sign stands before decimals, or numbers below 1000 have no sign and all others have it
-    before three digits, with zeros at the end where these are not cut off.
+    columns, axes  those of numbers; of them x, y and z
     """
-    grouped, signs, proved = re.compile(known().patterns["grouped"]), {".": [], ",": []}, False
+    is_grouped, signs, proved = re.compile(known().patterns["grouped"]).fullmatch, {".": [], ",": []}, False
     for i in columns:
         words = [row[i] for row in rows if i < len(row) and is_number(row[i].replace(",", "."))]
         for sign, found in signs.items():
             found += [word for word in words if sign in word]
-        marked = [word for word in words if grouped.fullmatch(word)]
+        marked = list(filter(is_grouped, words))
         without = sum(bool(re.fullmatch(r"[-+]?\d{1,3}", word)) for word in words)
-        zeros = any(word[-1] == "0" for word in marked)
-        proved |= zeros and without > 0 and len(marked) + without == len(words)
+        proved |= any(word[-1] == "0" for word in marked) and without > 0 and len(marked) + without == len(words)
     if all(signs.values()):
-        proved |= any(all(map(grouped.fullmatch, found)) for found in signs.values())
+        proved |= any(all(map(is_grouped, found)) for found in signs.values())
     if proved:
         raise FileError(f"{path}: {known().refusals['thousands']}")
-
-
-def doubtful_marks(rows, x, y, z):
-    """Notes where z alone has a sign, always before three digits: it may part thousands."""
-    rows = [row for row in rows if len(row) > max(x, y, z)]
-    has_signs = any(re.search(r"[.,]", row[x] + row[y]) for row in rows)
-    if has_signs or not rows or not all(re.fullmatch(known().patterns["grouped"], row[z]) for row in rows):
+    places = [[row[i] for i in axes] for row in rows if len(row) > max(axes)]
+    if len(axes) < 3 or not places or not all(is_grouped(z) and not re.search("[.,]", x + y) for x, y, z in places):
         return []
     return [
-        f"z = {rows[0][z]} is read as {rows[0][z].replace(',', '.')}, though x,y are whole "
+        f"z = {places[0][2]} is read as {places[0][2].replace(',', '.')}, though x,y are whole "
         "numbers; if the sign stands between thousands, export plain decimals"
     ]
 
@@ -250,7 +245,7 @@ def unquoted(word):
     return word
 
 
-def doubtful_units(layout, head, names, indices):
+def notes_on_units(layout, head, names, indices):
     """Notes where the header has one unit of length for x and y, and another for z.
 
     The units stand in the names, as in "Z (ft)", in a line of their own, as in "m,m,ft", or where

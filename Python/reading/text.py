@@ -17,14 +17,13 @@ from ..clouds import WHOLE, Cloud, ReadOptions, add_array, make_points
 from .columns import Choice, advice_on_columns
 from .tables import known
 from .layouts import (
-    check_marks,
     check_names,
-    doubtful_marks,
-    doubtful_units,
     find_layout,
     find_names,
     is_comment,
     known_axes,
+    notes_on_marks,
+    notes_on_units,
     touching_in,
 )
 from .nulls import leave_out
@@ -94,10 +93,9 @@ class Table:
             path, rows, consecutive, self.layout, head, self.names, self.width, options.columns, needed, advice
         )
         self.indices, self.notes = self.choice.indices, self.choice.notes
-        check_marks(path, rows, self.choice.of_numbers)
+        self.notes += notes_on_marks(path, rows, self.choice.of_numbers, self.indices)
         if needed == 3:
-            self.notes += doubtful_marks(rows, *self.indices)
-            self.notes += doubtful_units(self.layout, head, self.names, self.indices)
+            self.notes += notes_on_units(self.layout, head, self.names, self.indices)
         begin = next((number for number, line in preamble if self.is_data(number, line)), self.first + 1)
         self.first = begin - 1
         before = [line for number, line in preamble if number < begin]
@@ -190,28 +188,21 @@ class Table:
 
     def is_data(self, number, line):
         """Whether a line before the data is a row that lacks one of its values. One that looks like a row
-        but for a word is no header, but a bad line."""
-        try:
-            return self.lacks_a_value(number, line)
-        except BadLine:
-            if not self.skips:
-                raise
-            self.bad_lines.append([number, line.strip()])
-            return False
-
-    def lacks_a_value(self, number, line):
-        words = self.layout.words(line)
+        but for a word, or but for its end, is no header, but a bad line."""
+        words, error = self.layout.words(line), None
         values = [self.layout.number(word) for word in words]
-        no_words = re.fullmatch(r"[-+\d.,;\seE]+", " ".join(words)) is not None
-        if 2 <= len(words) < self.width and (None not in values or no_words):
-            raise self.few_words(number, line, len(words))
+        chosen = [values[i] for i in self.indices if i < len(words)]
+        good = sum(v is not None and not math.isnan(v) for v in chosen)
         if len(words) < self.width:
-            return False
-        values = [values[i] for i in self.indices]
-        good = sum(v is not None and not math.isnan(v) for v in values)
-        if None in values and good >= len(values) - 1:
-            raise self.no_number(number, line, words, values.index(None))
-        return None not in values and good > 0
+            no_words = None not in values or re.fullmatch(r"[-+\d.,;\seE]+", " ".join(words))
+            error = self.few_words(number, line, len(words)) if len(words) > 1 and no_words else None
+        elif None in chosen and good >= len(chosen) - 1:
+            error = self.no_number(number, line, words, chosen.index(None))
+        if error and not self.skips:
+            raise error
+        if error:
+            self.bad_lines.append([number, line.strip()])
+        return not error and len(words) >= self.width and None not in chosen and good > 0
 
 
 # ---- rows -------------------------------------------------------------------------------------
