@@ -110,9 +110,9 @@ def says_up(name):
 
 def names_horizon(name):
     """Whether the name of a file says that it holds a horizon, or depths."""
-    return any(
-        word in known().words["horizons"] or len(word) > 4 and meaning(word).direction == "depth" for word in plain(name)
-    )
+    words = plain(name)
+    is_depth = any(len(word) > 4 and meaning(word).direction == "depth" for word in words)
+    return is_depth or not known().words["horizons"].isdisjoint(words)
 
 
 def known_names(names):

@@ -147,19 +147,16 @@ class Choice:
     # -- what the user said
 
     def use_given(self, columns):
-        names = self.names or []
+        names, numbers = self.names or [], list(range(1, self.width + 1))
         joined = ["".join(plain(in_brackets(name)[0])) for name in names]
         for axis, column in zip(self.axes, columns):
-            if re.fullmatch(r"\d+", column):
-                found = [int(column) - 1] if 0 < int(column) <= self.width else []
-                error = f"there is no column {column} for {axis}; lines have {self.width}"
-            else:
-                found = [i for i, name in enumerate(names) if name == column]
-                found = found or [i for i, name in enumerate(joined) if name == "".join(plain(column))]
-                there = ", ".join(names) or "none: the file has no header line"
-                error = f"there is no column named {column}; names: {there}"
+            ways = [(names, column), (joined, "".join(plain(column)))]
+            ways = [(numbers, int(column))] if column.isdecimal() else ways
+            found = [titles.index(title) for titles, title in ways if title in titles]
             if not found:
-                raise FileError(f"{self.path}: {error}")
+                there = f"named {', '.join(names)}" if names else "without names: the file has no header line"
+                why = f"there is no column {column} for {axis}; lines have {self.width}, {there}"
+                raise FileError(f"{self.path}: {why}")
             if found[0] in self.indices:
                 other = self.axes[self.indices.index(found[0])]
                 raise FileError(
@@ -595,7 +592,7 @@ class Choice:
         x, y = self.indices[:2]
         for i in (x + 1, y + 1):  # behind a latitude or longitude without its sign
             letters = {row[i].strip().upper() for row in self.rows if i < self.width} - {""}
-            if letters and letters <= set("NSEW") and letters & set("SW"):
+            if letters <= set("NSEW") and letters & set("SW"):
                 raise FileError(
                     f"{self.path}: column {i + 1} has {' and '.join(sorted(letters))} for the signs of the "
                     "numbers before it; export signed decimals"
@@ -646,17 +643,15 @@ class Choice:
     def name_others(self):
         """Sets extras and texts."""
         left_out = []
-        for i in range(self.width):
-            if i in self.indices or self.needed == 2:
-                continue
+        for i in [i for i in range(self.width) if i not in self.indices and self.needed == 3]:
             name = (self.names[i].strip() if self.names else "") or f"column {i + 1}"
-            others = self.extras
             if not len(self.finite[i]) or self.share_of_text[i] > 0.1:
                 left_out.append(name)
                 others = self.texts if self.share_of_text[i] > 0 else {}
             else:
+                others = self.extras
                 colours = [colour for colour, words in known().colours.items() if "".join(plain(name)) in words]
-                name = next((colour for colour in colours if colour not in self.extras.values()), name)
+                name = next((colour for colour in colours if colour not in others.values()), name)
             is_known = name in (*self.extras.values(), *self.texts.values())
             others[i] = f"{name} (column {i + 1})" if is_known else name
         if left_out:

@@ -216,10 +216,8 @@ def find_names(layout, head, width, one_may_lack=True):
     candidates = [[found[i] for i in range(1, width + 1) if i in found]]
     if len(head) > 2 and head[1].split()[:1] == [str(width)]:
         candidates.insert(0, head[2:])
-    upper = [line.upper() for line in head]
-    if "BEGIN HEADER" in upper and "END HEADER" in upper:
-        part = head[upper.index("BEGIN HEADER") + 1 : upper.index("END HEADER")]
-        candidates.append([name.split(",")[-1] for name in part])
+    for part in re.findall(r"(?ims)^begin header\n(.*)\nend header$", "\n".join(head)):
+        candidates.append([name.split(",")[-1] for name in part.split("\n")])
     for line in reversed(head):
         for other, words in splittings(layout, line):
             others = [words]

@@ -65,7 +65,7 @@ class Text(InFolder):
     def test_a_wrong_column_is_named(self):
         text = "a,b,c\n1,2,3\n"
         self.assert_refused("no column 4 for z; lines have 3", text, columns=["1", "2", "4"])
-        self.assert_refused("no column named q; names: a, b, c", text, columns=["a", "b", "q"])
+        self.assert_refused("no column q for z; lines have 3, named a, b, c", text, columns=["a", "b", "q"])
         self.assert_refused("the file has no header line", "1 2 3\n", columns=["a", "b", "c"])
 
     def test_header_comment_and_blank_lines_are_skipped_and_counted(self):
