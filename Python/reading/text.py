@@ -15,7 +15,6 @@ import numpy
 
 from ..clouds import WHOLE, Cloud, ReadOptions, add_array, make_points
 from .columns import Choice, advice_on_columns
-from .tables import known
 from .layouts import (
     check_names,
     find_layout,
@@ -27,6 +26,7 @@ from .layouts import (
     touching_in,
 )
 from .nulls import leave_out
+from .tables import known
 from .text_blocks import Blocks, block_lines, encoding_of
 from ..messages import FileError, counted
 from ..progress import no_progress, items_with_progress
@@ -69,7 +69,7 @@ class Table:
     def __init__(self, path, block, options, needed, advice):
         self.path, self.needed, self.advice = path, needed, advice or advice_on_columns()
         self.encoding = encoding_of(block)
-        lines = self.lines(block)
+        lines = block_lines(block, self.encoding)
         self.skips, self.can_skip, self.bad_lines = options.skip_bad_lines, advice is None, []
         self.layout = find_layout(path, lines[:5000], needed)
         self.head_lines, self.has_summaries = set(), False
@@ -100,9 +100,6 @@ class Table:
         self.first = begin - 1
         before = [line for number, line in preamble if number < begin]
         self.head_lines, self.headers = set(map(str.strip, before)), len(before) - len(self.bad_lines)
-
-    def lines(self, block):
-        return block_lines(block, self.encoding)
 
     def read_head(self, lines):
         """(lines before the data, [(number, line)] of those of them that are not comments). Sets first
@@ -237,7 +234,7 @@ class Parser:
 
     def add(self, block):
         """Takes the lines of a block."""
-        table, lines = self.table, self.table.lines(block)
+        table, lines = self.table, block_lines(block, self.table.encoding)
         skip = table.first if self.line == 0 and self.blocks.begin == 0 else 0  # lines that are not data
         odd = [i for i in self.odd_lines(block, lines) if i >= skip and table.is_row(lines[i])]
         words = {i: table.layout.words(lines[i]) for i in odd}
