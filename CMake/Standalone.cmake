@@ -200,8 +200,8 @@ if (ES_WRAP_PYTHON)
   configure_file("${CMAKE_CURRENT_SOURCE_DIR}/Python/__init__.py.in"
     "${CMAKE_BINARY_DIR}/${es_python_package}/__init__.py" @ONLY)
   file(GLOB_RECURSE es_python_files CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}/Python"
-    "${CMAKE_CURRENT_SOURCE_DIR}/Python/*.py" "${CMAKE_CURRENT_SOURCE_DIR}/Python/help.txt"
-    "${CMAKE_CURRENT_SOURCE_DIR}/Python/properties.ini" "${CMAKE_CURRENT_SOURCE_DIR}/Python/py.typed")
+    "${CMAKE_CURRENT_SOURCE_DIR}/Python/*.py" "${CMAKE_CURRENT_SOURCE_DIR}/Python/*.ini"
+    "${CMAKE_CURRENT_SOURCE_DIR}/Python/help.txt" "${CMAKE_CURRENT_SOURCE_DIR}/Python/py.typed")
   foreach (file IN LISTS es_python_files)
     configure_file("Python/${file}" "${CMAKE_BINARY_DIR}/${es_python_package}/${file}" COPYONLY)
     get_filename_component(folder "${file}" DIRECTORY)

@@ -31,7 +31,7 @@ from .messages import ElevationSurfaceError, counted
 from .names import option
 from .properties import DUPLICATES
 from .ranks import collected, together, total
-from .reading.nulls import body
+from .reading.blunders import body
 from .selecting import MOST_VALUES, Words, as_option, coded, columns_in, shown_values
 from .spreading import NOT_FINITE, SAME_PLACE
 

@@ -7,16 +7,14 @@ import functools
 import re
 import unicodedata
 
-from .table_words import (
-    AXIS_NAMES, HORIZONS, LETTERS, LETTERS_OF_AXES, NEXT_TO_AXES, ROLES, UNITS, UNITS_OF_TIME
-)
+from .tables import known
 
 
 def plain(text):
     """Without accents, apart at capitals, signs and scripts: "Höhe_NN (m)" -> ["hohe", "nn", "m"],
     "X座標" -> ["x", "座標"]."""
     text = re.sub("Ø(?=[A-Z])", "OE", text)
-    text = unicodedata.normalize("NFKD", text.translate(LETTERS))
+    text = unicodedata.normalize("NFKD", text.translate(known().letters))
     text = "".join(letter for letter in text if not unicodedata.combining(letter))
     text = unicodedata.normalize("NFC", text)
     text = re.sub(r"([a-z])([A-Z])|([A-Z])([A-Z][a-z])", r"\1\3 \2\4", text)
@@ -48,31 +46,32 @@ def meaning(name):
     outside, inside = in_brackets(name)
     words = plain(outside) or plain(inside)
     joined = "".join(words)
-    for role, names in ROLES:
+    for role, names in known().roles.items():
         whole = joined in names and (len(words) == 1 or len(joined) > 3)  # "X L" is no "xl"
         if whole or role == "a measure" and names.intersection(words):
             return Meaning(role=role)
-    roles = [role for role, names in ROLES if names.intersection(words) and min(map(len, words)) > 1]
+    roles = [role for role, names in known().roles.items() if names.intersection(words) and min(map(len, words)) > 1]
     return _axis_meaning(words, joined, plain(inside)) or Meaning(role=(roles or [""])[0])
 
 
 def _axis_meaning(words, joined, inside):
     """The Meaning of a name of an axis, or None."""
-    named = [word for word in words if word in AXIS_NAMES]
+    axes, letters = known().axes, known().words["letters of axes"]
+    named = [word for word in words if word in axes]
     # "Longitude_E": the word says more than the letter.
-    found = [joined] if joined in AXIS_NAMES else [w for w in named if w not in LETTERS_OF_AXES] or named
-    found = [AXIS_NAMES[word] for word in found]
-    found += [AXIS_NAMES[word] for word in inside if word in AXIS_NAMES and AXIS_NAMES[word][1] == 1]
+    found = [joined] if joined in axes else [w for w in named if w not in letters] or named
+    found = [axes[word] for word in found]
+    found += [axes[word] for word in inside if word in axes and axes[word][1] == 1]
     if len({axis for axis, *_ in found}) > 1:
         # "X (Nord)": the word says more than the letter.
         found = [one for one in found if one[1] == 1 and one[0] != "z"]
     if len({axis for axis, *_ in found}) != 1:
         return None
     axis, rank, _ = min(found)
-    beside = [w for w in words if w not in AXIS_NAMES and joined not in AXIS_NAMES]
-    heights = [w for w in named if AXIS_NAMES[w][0] == axis == "z"]
+    beside = [w for w in words if w not in axes and joined not in axes]
+    heights = [w for w in named if axes[w][0] == axis == "z"]
     is_old = words[-1] == "alt" and len(set(heights)) > 1  # "Höhe_alt"
-    if is_old or not NEXT_TO_AXES.issuperset(beside):
+    if is_old or not known().words["beside axes"].issuperset(beside):
         if max(map(len, named), default=0) < 2 or rank == 4:
             return None  # a single letter among words that mean something else
         rank += 5
@@ -94,12 +93,12 @@ def length_unit(name):
     """The unit of length in a column's name, as "feet" for "Z (ft)" and "elev_ft", or ""."""
     outside, inside = in_brackets(name)
     words = plain(inside) or plain(outside)[1:]
-    return next((unit for unit, names in UNITS.items() if words and words[-1] in names), "")
+    return next((unit for unit, names in known().lengths.items() if words and words[-1] in names), "")
 
 
 def z_direction(name):
     """"depth" or "time" where a name, or its unit in brackets, says that z counts downwards, or ""."""
-    is_time = "".join(plain(in_brackets(name)[1])) in UNITS_OF_TIME
+    is_time = "".join(plain(in_brackets(name)[1])) in known().words["time"]
     return meaning(name).direction or ("time" if is_time else "")
 
 
@@ -111,9 +110,9 @@ def says_up(name):
 
 def names_horizon(name):
     """Whether the name of a file says that it holds a horizon, or depths."""
-    return any(
-        word in HORIZONS or len(word) > 4 and meaning(word).direction == "depth" for word in plain(name)
-    )
+    words = plain(name)
+    is_depth = any(len(word) > 4 and meaning(word).direction == "depth" for word in words)
+    return is_depth or not known().words["horizons"].isdisjoint(words)
 
 
 def known_names(names):

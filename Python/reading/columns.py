@@ -14,11 +14,9 @@ import re
 import numpy
 
 from .column_names import Meaning, alike_but_for_axis, in_brackets, meaning, plain
-from .table_words import (
-    CLEAR, CLEAR_OF_POOR, COLOURS, FINNISH, GEOCENTRIC, GOOD, HIGHEST, LINES_AS_AXES, MOST_FEET, MOST_STEP_OF_LINES,
-    PARTS_OF_TIME, SEISMIC, TIMES, WEIGHTS, X_IS_NORTH
-)
-from .nulls import FAR, usual_nulls
+from .blunders import FAR
+from .nulls import usual_nulls
+from .tables import known
 from ..messages import FileError
 from ..names import option
 
@@ -105,7 +103,7 @@ class Choice:
         self.name_others()
         if names:
             self.z_name = names[self.indices[-1]] if needed == 3 else ""
-            self.is_horizon = any("".join(plain(name)) in SEISMIC for name in names)
+            self.is_horizon = any("".join(plain(name)) in known().words["seismic"] for name in names)
 
     def judge_values(self):
         table = [list(map(self.layout.number, row)) for row in self.rows]
@@ -133,38 +131,32 @@ class Choice:
     def judge_names(self):
         """Sets meanings; some names have another one next to some others."""
         letters = ["".join(plain(name)) for name in self.names or [""] * self.width]
-        self.meanings = [meaning(name) for name in self.names or [""] * self.width]
-
-        def mean(others):
-            self.meanings = [others.get(name, m) for name, m in zip(letters, self.meanings)]
-
-        mean(alike_but_for_axis([name for name, known in zip(letters, self.meanings) if known == Meaning()]))
+        meanings = [meaning(name) for name in self.names or [""] * self.width]
+        others = alike_but_for_axis([name for name, m in zip(letters, meanings) if m == Meaning()])
         if not {"r", "g", "b"} <= set(letters):  # single letters are colours only together
-            mean({letter: Meaning() for letter in "rgb"})
-        if set(FINNISH) <= set(letters) and not set(letters) & set("nexy"):
-            mean({letter: Meaning(axis, 2) for letter, axis in FINNISH.items()})
-        self.is_in_lines = not any(m.axis in ("x", "y") for m in self.meanings) and all(
-            words & set(letters) for words in LINES_AS_AXES.values()
-        )
+            others.update({letter: Meaning() for letter in "rgb"})
+        finnish, lines = known().finnish, known().lines
+        if set(finnish) <= set(letters) and not set(letters) & set("nexy"):
+            others.update({letter: Meaning(axis, 2) for letter, axis in finnish.items()})
+        has_places = any(others.get(name, m).axis in ("x", "y") for name, m in zip(letters, meanings))
+        self.is_in_lines = not has_places and all(words & set(letters) for words in lines.values())
         if self.is_in_lines:
-            mean({word: Meaning(axis, 8) for axis, words in LINES_AS_AXES.items() for word in words})
+            others.update({word: Meaning(axis, 8) for axis, words in lines.items() for word in words})
+        self.meanings = [others.get(name, m) for name, m in zip(letters, meanings)]
 
     # -- what the user said
 
     def use_given(self, columns):
-        names = self.names or []
+        names, numbers = self.names or [], list(range(1, self.width + 1))
         joined = ["".join(plain(in_brackets(name)[0])) for name in names]
         for axis, column in zip(self.axes, columns):
-            if re.fullmatch(r"\d+", column):
-                found = [int(column) - 1] if 0 < int(column) <= self.width else []
-                error = f"there is no column {column} for {axis}; lines have {self.width}"
-            else:
-                found = [i for i, name in enumerate(names) if name == column]
-                found = found or [i for i, name in enumerate(joined) if name == "".join(plain(column))]
-                known = ", ".join(names) or "none: the file has no header line"
-                error = f"there is no column named {column}; names: {known}"
+            ways = [(names, column), (joined, "".join(plain(column)))]
+            ways = [(numbers, int(column))] if column.isdecimal() else ways
+            found = [titles.index(title) for titles, title in ways if title in titles]
             if not found:
-                raise FileError(f"{self.path}: {error}")
+                there = f"named {', '.join(names)}" if names else "without names: the file has no header line"
+                why = f"there is no column {column} for {axis}; lines have {self.width}, {there}"
+                raise FileError(f"{self.path}: {why}")
             if found[0] in self.indices:
                 other = self.axes[self.indices.index(found[0])]
                 raise FileError(
@@ -182,7 +174,8 @@ class Choice:
         readings  {indices: score}, in the order in which they are shown
         """
         best, *others = sorted(readings, key=readings.get, reverse=True)
-        clear = CLEAR if readings[best] >= GOOD else CLEAR_OF_POOR
+        figures = known().figures
+        clear = figures["clear" if readings[best] >= figures["good"] else "clear of poor"]
         self.refuse_geocentric(best)
         shown = [one for one in readings if one in (best, *others[:1])]
         if others and readings[best] - readings[others[0]] < clear:
@@ -200,7 +193,7 @@ class Choice:
         """Swaps x and y where the lines before the data are in a language in which X is often north and the sizes
         prove it; asks where these prove nothing."""
         x, y = self.indices[:2]
-        language = next((name for name, letters in X_IS_NORTH.items() if re.search(letters, self.head)), "")
+        language = next((name for name, letters in known().x_is_north.items() if re.search(letters, self.head)), "")
         is_plain = self.meanings[x].rank == self.meanings[y].rank == 0
         if not language or not is_plain or self.is_utm(x, y) or self.are_degrees(x, y):
             return
@@ -220,7 +213,7 @@ class Choice:
         return self.largest[x] <= 360 and self.largest[y] <= 90 and min(self.decimals[x], self.decimals[y]) >= 4
 
     def is_too_high(self, i):
-        return len(self.finite[i]) > 0 and abs(self.finite[i]).min() > HIGHEST
+        return len(self.finite[i]) > 0 and abs(self.finite[i]).min() > known().figures["highest"]
 
     def ask(self, readings, why, other=""):
         """Raises the error that shows readings as options, or another command, and the first rows under the columns'
@@ -245,12 +238,13 @@ class Choice:
             return False
         missing = [axis for axis in self.axes if not named[axis]]
         free, are_likely = self.free_columns(sum(named.values(), []), missing) if missing else ([], True)
-        known = ", ".join(f"{a} = {self.called(c[0])}" for a, c in named.items() if c)
-        why = f"the names give {known}, but not {' and '.join(missing)}"
+        given = ", ".join(f"{a} = {self.called(c[0])}" for a, c in named.items() if c)
+        why = f"the names give {given}, but not {' and '.join(missing)}"
         if len(free) < len(missing):
             self.ask([], f"{why}; no column is left for it")
+        good = known().figures["good"]
         readings = {  # the values only choose which two are shown
-            indices: GOOD + WEIGHTS["one pair"] * self.is_pair(*indices[:2]) + 1e-3 * self.score(indices)
+            indices: good + known().weights["one pair"] * self.is_pair(*indices[:2]) + 1e-3 * self.score(indices)
             for indices in itertools.product(*(named[axis] or free for axis in self.axes))
             if len(set(indices)) == self.needed
         }
@@ -291,15 +285,13 @@ class Choice:
 
     def free_columns(self, taken, missing):
         """Columns for axes that have no name of their own, and whether they are likely."""
-        most = HIGHEST if missing == ["z"] else math.inf
+        most = known().figures["highest"] if missing == ["z"] else math.inf
         free = [i for i in self.numeric if i not in taken and not self.meanings[i].axis]
-        for roles in (("",), ("a measure", "a code")):
-            others = [i for i in free if self.meanings[i].role in roles]
-            if others:
-                is_other = self.times(others)
-                likely = [i for i in others if i not in is_other and not self.is_id(i) and self.high[i] < most]
-                return (likely, roles == ("",)) if len(likely) >= len(missing) else (others, False)
-        return [], False
+        bare = [i for i in free if not self.meanings[i].role]
+        others = bare or [i for i in free if self.meanings[i].role in ("a measure", "a code")]
+        times = self.times(others)
+        likely = [i for i in others if i not in times and not self.is_id(i) and self.high[i] < most]
+        return (likely, bool(bare)) if len(likely) >= len(missing) else (others, False)
 
     def look_at_names(self, missing):
         x, y = self.indices[:2]
@@ -333,14 +325,14 @@ class Choice:
         if len(usable) < count <= len(numbers) and self.names and all(self.names):
             others = self.listed([i for i in numbers if i not in usable])
             self.ask([numbers[:count]], f"{self.none_is_named()}, and {others} may be something else by the names")
-        if self.width == count:
-            self.in_their_order()
-            return
         usable = usable if len(usable) >= count else numbers
-        if not self.names and len(usable) == self.width and count == 3:
+        if not self.names and len(usable) == self.width > count == 3:
             self.ask_for_grid()
-        left = self.without_others(usable[:MOST_JUDGED])
-        self.decide(self.scored(left))
+        left = self.without_others(usable[:MOST_JUDGED]) if self.width > count else list(range(count))
+        readings = self.scored(left)
+        for other in ((1, 2, 0), (2, 1, 0)) if self.width == count == 3 else ():  # as z, x, y
+            readings[other] = readings[0, 1, 2] if self.is_utm(*other[:2]) else -math.inf
+        self.decide(readings)
         for i in left[: left.index(min(self.indices[:2]))]:
             each = self.whole[i] and len(numpy.unique(self.finite[i])) == len(self.finite[i])
             self.reasons[i] = EACH_ONCE if each else NO_NEIGHBOUR
@@ -348,13 +340,15 @@ class Choice:
             self.ask([usable[:count], self.indices], "so few rows do not show which columns are x, y and z")
         if count == 3:
             self.east_and_north()
+        if self.width == count:
+            if self.names:
+                self.note(f"{self.none_is_named()}: {self.taken()}")
+            return
         if self.indices == list(range(count)):
             self.note(f"the first {count} of {self.width} columns are taken as {', '.join(self.axes)}")
             return
-        why = "".join(
-            f"column {self.called(i)} is {reason}; "
-            for i, reason in sorted(self.reasons.items()) if i < max(self.indices)
-        )
+        reasons = [(i, reason) for i, reason in sorted(self.reasons.items()) if i < max(self.indices)]
+        why = "".join(f"column {self.called(i)} is {reason}; " for i, reason in reasons)
         self.note(f"columns by their values: {why}{self.taken()}")
 
     def ask_for_grid(self):
@@ -366,20 +360,6 @@ class Choice:
             source = f"numpy.loadtxt({lines.format(self.path)}{between})"
             why = f"{self.width} columns of numbers without names may be a grid of elevations"
             self.ask([] if is_wide else [(0, 1, 2)], why, as_grid(self.path, source))
-
-    def in_their_order(self):
-        """Takes columns that are no more than needed as they stand."""
-        self.indices = list(range(self.width))
-        order = tuple(self.indices)
-        readings = {order: GOOD}
-        if self.names:
-            self.note(f"{self.none_is_named()}: {self.taken()}")
-        if self.needed == 3 and not any(m.axis or m.role for m in self.meanings):
-            for other in ((1, 2, 0), (2, 1, 0)):  # as z, x, y
-                readings[other] = GOOD if self.is_utm(*other[:2]) else 0
-            if self.may_be_latitude(*order):
-                readings = {(1, 0, 2): GOOD, order: GOOD}
-        self.decide(readings)
 
     def without_others(self, columns):
         """The columns that may be coordinates, by their values; sets the reasons of the others."""
@@ -420,19 +400,19 @@ class Choice:
 
     def scored(self, columns):
         """{indices: score} of the readings of columns, in a row or with numbers of lines before z."""
-        count, readings = self.needed, {}
+        count, readings, weights = self.needed, {}, known().weights
         for k in range(len(columns) - count + 1):
             x, y, *z = columns[k : k + count]
-            place = WEIGHTS["a column is left out"] * (k - 1) if k else WEIGHTS["stands first"]
+            place = weights["a column is left out"] * (k - 1) if k else weights["stands first"]
             readings[x, y, *z] = self.score((x, y, *z)) + place
             others = [i for i in columns[k + count :] if self.spans[i] > 0]
             behind = columns[k + count : k + count + 1]
             is_flat = z and self.spans[z[0]] == 0 and (not others or self.counts_along(behind[0]))
             if is_flat or z and others and self.counts_along(z[0]) and not self.may_count(x, y):
-                readings[x, y, *z] += WEIGHTS["z is flat or rises along lines"]
+                readings[x, y, *z] += weights["z is flat or rises along lines"]
                 for other in others:
-                    behind = WEIGHTS["z behind lines"] + place
-                    behind += WEIGHTS["a column is left out"] * self.counts_along(other)
+                    behind = weights["z behind lines"] + place
+                    behind += weights["a column is left out"] * self.counts_along(other)
                     readings[x, y, other] = self.score((x, y, other)) + behind
         return readings
 
@@ -447,45 +427,33 @@ class Choice:
             "as many decimals": alike,
             "as wide as high": 0 < max(spans[:2]) <= 30 * min(spans[:2]),
             "x is a line": self.is_line(x, y),
-            "x rises": self.always_rises(x),
+            "x rises": self.rises(x, 10),
             "x and y count": self.may_count(x, y),
             "x and y are of UTM": self.is_utm(x, y) or self.is_utm(y, x),
         }
         if z:
             found["z spans less"] = spans[2] <= 10 * max(spans[:2])
             found["z is higher than any place"] = self.is_too_high(z[0])
-        return sum(WEIGHTS[what] for what, is_so in found.items() if is_so)
+        return sum(known().weights[what] for what, is_so in found.items() if is_so)
 
     def steps(self, i):
         return numpy.diff(self.values[: self.consecutive, i])
 
     def is_id(self, i):
         """Whole numbers that count up by one, here and there with a gap, and never go back."""
-        values = self.values[:, i]
-        if len(values) < 3 or not numpy.isfinite(values).all() or not self.whole[i]:
-            return False
-        steps = numpy.diff(values)
-        near = steps[: max(self.consecutive - 1, 1)]
-        return bool((steps > 0).all() and (near == 1).mean() > 0.6)
-
-    def is_class(self, i, beside):
-        """A few small whole numbers next to a column of quite other ones."""
-        values = self.finite[i]
-        if len(values) < 20 or not self.whole[i] or self.low[i] < 0 or self.high[i] > 255:
-            return False
-        few = len(numpy.unique(values)) <= min(32, len(values) // 10)
-        other = self.spans[beside] > 30 * numpy.ptp(values)
-        return few and (other or not self.whole[beside])
+        is_full = len(self.finite[i]) == len(self.rows)
+        counts = numpy.count_nonzero(self.steps(i) == 1) > 0.6 * (self.consecutive - 1)
+        return is_full and self.whole[i] and self.rises(i, 3) and counts
 
     def times(self, columns):
         """Columns that are years, months, days, hours, minutes and seconds, in which time goes on."""
-        for parts, k in itertools.product(TIMES, range(len(columns))):
+        for parts, k in itertools.product(known().times, range(len(columns))):
             found = columns[k : k + len(parts)]
             if len(found) < len(parts) or found[-1] - found[0] >= len(parts):
                 continue
             moment, even = 0.0, True
             for part, i in zip(parts, found):
-                low, high, factor = PARTS_OF_TIME[part]
+                low, high, factor = known().parts_of_time[part]
                 values = self.values[: self.consecutive, i]
                 even &= bool((values >= low).all() and (values <= high).all())
                 even &= part == "second" or self.whole[i]
@@ -496,16 +464,13 @@ class Choice:
                 return found
         return []
 
-    def may_be_place(self, i):
-        """Whether a column may be a line, trace, latitude or longitude in addition to x and y."""
-        return self.whole[i] or self.decimals[i] >= 4 and self.largest[i] <= 360
-
     def place_in_grid(self, columns):
-        """The two columns from which two others follow, as from line and trace or in degrees."""
+        """The two columns from which two others follow: of lines and traces, or in degrees."""
         pairs = list(zip(columns, columns[1:]))
         for place, pair in itertools.product(pairs, pairs):
+            may_be = all(self.whole[k] or self.decimals[k] >= 4 and self.largest[k] <= 360 for k in place)
             others = [k for k in columns if k > pair[1] and k not in place]
-            if set(place) & set(pair) or not others or not all(map(self.may_be_place, place)):
+            if set(place) & set(pair) or not others or not may_be:
                 continue
             is_larger = math.prod(self.spans[k] for k in pair) > math.prod(self.spans[k] for k in place) > 0
             follow = self.follow_from(place, pair) or self.follow_from(pair, place, are_rounded=True)
@@ -535,7 +500,7 @@ class Choice:
             return False
         steps = [abs(self.steps(i)) for i in (x, y)]
         usual = [numpy.median(s[s > 0]) if (s > 0).any() else 0.0 for s in steps]
-        return 1.0 <= min(usual) and max(usual) <= MOST_STEP_OF_LINES
+        return 1.0 <= min(usual) and max(usual) <= known().figures["most step of lines"]
 
     def counts_along(self, i):
         """Whether numbers go one way, in even steps within their rounding, but where a line begins."""
@@ -548,9 +513,16 @@ class Choice:
         are_even = abs(abs(steps) - numpy.median(abs(steps))) <= rounding
         return bool(one_way and are_even.mean() >= 0.6)
 
-    def always_rises(self, i):
-        values = self.finite[i]
-        return len(values) > 9 and bool((numpy.diff(values) > 0).all())
+    def is_class(self, i, beside):
+        """A few small whole numbers next to a column of quite other ones."""
+        count = len(self.finite[i])
+        few = count >= 20 and self.whole[i] and len(numpy.unique(self.finite[i])) <= min(32, count // 10)
+        other = self.spans[beside] > 30 * self.spans[i] or not self.whole[beside]
+        return few and other and 0 <= self.low[i] and self.high[i] <= 255
+
+    def rises(self, i, least):
+        """Whether numbers rise in all rows, of which there are at least so many."""
+        return len(self.finite[i]) >= least and bool((numpy.diff(self.finite[i]) > 0).all())
 
     def is_line(self, i, beside):
         """The same whole number along runs of rows, through which others go in no even steps."""
@@ -574,7 +546,7 @@ class Choice:
         has_ids |= any(reason in (COUNTS_UP, EACH_ONCE) for reason in self.reasons.values())
         coded = any(i > max(x, y, z) for i in texts)
         northing_first, northing_second = self.is_utm(y, x), self.is_utm(x, y)
-        is_sure = max(self.low[x], self.low[y]) > MOST_FEET
+        is_sure = max(self.low[x], self.low[y]) > known().figures["most feet"]
         if has_ids and northing_first and is_sure:
             self.has_swapped, self.indices = True, self.swapped()
             self.notes.append(
@@ -604,13 +576,13 @@ class Choice:
 
     def refuse_geocentric(self, chosen):
         """Raises the error for columns of which some are x, y and z from the centre of the earth."""
-        equator, pole, most, least = GEOCENTRIC
-        for i in range(self.width - 2):
-            x, y, z = self.values[:, i : i + 3].T
+        equator, pole, most, least = known().earth
+        for three in zip(*(range(i, self.width) for i in range(3))):
+            x, y, z = self.values[:, three].T
             away = (x * x + y * y) / equator**2 + z * z / pole**2 - 1
-            if not {i, i + 1, i + 2}.isdisjoint(chosen) and (abs(away) < most).all() and (abs(z) > least).all():
+            if not set(three).isdisjoint(chosen) and (abs(away) < most).all() and (abs(z) > least).all():
                 raise FileError(
-                    f"{self.path}: {self.listed([i, i + 1, i + 2])} are x, y and z from the centre of the "
+                    f"{self.path}: {self.listed(three)} are x, y and z from the centre of the "
                     "earth (ECEF); export longitude, latitude and height, or a map projection"
                 )
 
@@ -620,7 +592,7 @@ class Choice:
         x, y = self.indices[:2]
         for i in (x + 1, y + 1):  # behind a latitude or longitude without its sign
             letters = {row[i].strip().upper() for row in self.rows if i < self.width} - {""}
-            if letters and letters <= set("NSEW") and letters & set("SW"):
+            if letters <= set("NSEW") and letters & set("SW"):
                 raise FileError(
                     f"{self.path}: column {i + 1} has {' and '.join(sorted(letters))} for the signs of the "
                     "numbers before it; export signed decimals"
@@ -671,17 +643,15 @@ class Choice:
     def name_others(self):
         """Sets extras and texts."""
         left_out = []
-        for i in range(self.width):
-            if i in self.indices or self.needed == 2:
-                continue
+        for i in [i for i in range(self.width) if i not in self.indices and self.needed == 3]:
             name = (self.names[i].strip() if self.names else "") or f"column {i + 1}"
-            others = self.extras
             if not len(self.finite[i]) or self.share_of_text[i] > 0.1:
                 left_out.append(name)
                 others = self.texts if self.share_of_text[i] > 0 else {}
             else:
-                colours = [colour for colour, words in COLOURS.items() if "".join(plain(name)) in words]
-                name = next((colour for colour in colours if colour not in self.extras.values()), name)
+                others = self.extras
+                colours = [colour for colour, words in known().colours.items() if "".join(plain(name)) in words]
+                name = next((colour for colour in colours if colour not in others.values()), name)
             is_known = name in (*self.extras.values(), *self.texts.values())
             others[i] = f"{name} (column {i + 1})" if is_known else name
         if left_out:

@@ -9,12 +9,11 @@ import os
 import re
 
 from .column_names import known_names
-from .table_words import COMMENT_MARKS
+from .tables import known
 from ..messages import FileError
 from ..paths import is_geodatabase, suffix_of
 
 HEAD, LONG_HEAD = 4096, 1 << 16
-MARKS = tuple(mark.encode() for mark in COMMENT_MARKS)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -88,8 +87,8 @@ def count_numbers(line):
 
 def first_lines(head):
     """The first lines of a text that are neither blank nor comments; the last may be cut."""
-    lines = [line for line in re.split(rb"[\r\n]+", head) if line.strip()]
-    return [line for line in lines if not line.lstrip().startswith(MARKS)]
+    marks = "".join(known().signs["comments"]).encode()
+    return [line for line in re.split(rb"[\r\n]+", head) if line.strip() and line.lstrip()[0] not in marks]
 
 
 def is_text(head):

@@ -9,10 +9,7 @@ import math
 import re
 
 from .column_names import known_names, meaning, plain, length_unit
-from .table_words import (
-    COMMAS_TWICE, COMMENT_MARKS, DATE, GRIDS, GROUPED, MISSING, NEXT_TO_AXES, NO_NUMBERS, NO_TABLES, NUMBERED_NAME,
-    PAIRS, SEPARATORS, SEXAGESIMAL, THOUSANDS, TOUCHING, WITH_DECIMALS
-)
+from .tables import known
 from ..messages import FileError
 
 
@@ -27,17 +24,16 @@ class Layout:
     decimal_comma: bool = False
 
     def __str__(self):
-        return SEPARATORS[self.separator] + ", decimal comma" * self.decimal_comma
+        return known().separators[self.separator] + ", decimal comma" * self.decimal_comma
 
     def words(self, line):
-        if '"' in line:
-            if self.separator is None:
-                found = re.findall(r'"([^"]*)"|(\S+)', line)
-                return [quoted or plain for quoted, plain in found]
-            return [word.strip() for word in next(csv.reader([line], delimiter=self.separator))]
-        if self.separator is None:
-            return line.split()
-        return [word.strip() for word in line.split(self.separator)]
+        if '"' not in line:
+            words = line.split(self.separator)
+        elif self.separator is None:
+            words = [quoted or plain for quoted, plain in re.findall(r'"([^"]*)"|(\S+)', line)]
+        else:
+            words = next(csv.reader([line], delimiter=self.separator))
+        return [word.strip() for word in words] if self.separator else words
 
     def number(self, word):
         """The word's value; NaN where a value is missing; None for text."""
@@ -47,19 +43,28 @@ class Layout:
         except ValueError:
             if fortran := FORTRAN.fullmatch(plain):
                 return float("e".join(fortran.groups()))
-        return math.nan if word.lower() in MISSING else None
+        return math.nan if is_missing(word) else None
 
     def numbers(self, line):
         """How many words of the line are written as numbers."""
-        return sum(w.lower() not in MISSING and self.number(w) is not None for w in self.words(line))
+        return sum(not is_missing(word) and self.number(word) is not None for word in self.words(line))
 
 
-LAYOUTS = [Layout(separator) for separator in SEPARATORS]
-LAYOUTS += [Layout(separator, True) for separator in SEPARATORS if separator != ","]
+def is_missing(word):
+    return not word or word.lower() in known().signs["missing"]
+
+
+def is_number(word):
+    return Layout(None).number(word) is not None
 
 
 def is_comment(line):
-    return line.lstrip().startswith(COMMENT_MARKS)
+    return line.lstrip().startswith(known().signs["comments"])
+
+
+def with_points():
+    """The layouts with decimal points."""
+    return [Layout(separator) for separator in known().separators]
 
 
 def find_layout(path, lines, needed):
@@ -67,30 +72,31 @@ def find_layout(path, lines, needed):
     lines = [line for line in lines if line.strip()]
     sample = [line for line in lines if not is_comment(line)][:400]
     head = "\n".join(line.strip().lower() for line in lines[:20])
-    for pattern, words in NO_TABLES:
+    for pattern, words in known().not_tables:
         if re.match(pattern, head):
-            lacks = words in GRIDS and importlib.util.find_spec("osgeo") is None
-            raise FileError(f"{path}: {words.replace('{path}', path)}" + "; install python3-gdal to read it" * lacks)
+            advice = "" if importlib.util.find_spec("osgeo") else "; install python3-gdal to read it"
+            raise FileError(f"{path}: {words.replace('{path}', path).replace('{gdal}', advice)}")
     if not sample:
         raise FileError(f"{path}: holds no data, only blank or comment lines")
-    counts = {layout: [layout.numbers(line) for line in sample] for layout in LAYOUTS}
+    layouts = with_points() + [Layout(one, True) for one in known().separators if one != ","]
+    counts = {layout: [layout.numbers(line) for line in sample] for layout in layouts}
 
     def merits(layout):
         """Rows, numbers, and fewer words that are none: "1,5;2,5" is two numbers with decimal commas."""
         rows = [line for line, count in zip(sample, counts[layout]) if count >= needed]
         return len(rows), sum(counts[layout]), -sum(len(layout.words(line)) for line in rows)
 
-    best = max(LAYOUTS, key=merits)
+    best = max(layouts, key=merits)
     has_rows = merits(best)[0] > 0
     are_needed = f"Rows with {'x, y and z' if needed == 3 else 'x and y'} in columns of their own are needed"
-    for pattern, most, words in NO_NUMBERS:
+    for pattern, most, words in known().not_numbers:
         if sum(bool(re.search(pattern, line)) for line in sample) > (most if has_rows else 0.0) * len(sample):
             raise FileError(f"{path}: {words}")
     if has_rows:
         return best
-    touching = [word for word in map(touching_in, sample) if word]
+    touching = list(filter(None, map(touching_in, sample)))
     if 2 * len(touching) > len(sample):
-        raise FileError(f"{path}: {are_touching(touching[0])}")
+        raise FileError(f"{path}: {touching[0]}")
     if not any(re.search(r"\d", line) for line in sample):
         raise FileError(f"{path}: holds text, but no numbers. {are_needed}")
     raise FileError(
@@ -99,47 +105,39 @@ def find_layout(path, lines, needed):
 
 
 def touching_in(line):
-    """The first word of a line in which numbers touch, or None."""
-    is_so = (word for word in line.split() if re.fullmatch(TOUCHING, word) and not re.fullmatch(DATE, word))
-    return next(is_so, None)
-
-
-def are_touching(word):
-    return (
+    """What is wrong with a line in which numbers touch, or ""."""
+    touching, date = (known().patterns[name] for name in ("touching", "date"))
+    word = next((w for w in line.split() if re.fullmatch(touching, w) and not re.fullmatch(date, w)), "")
+    return word and (
         f"numbers of fixed width touch, as {word[:40]}: cut them by their widths, as awk '{{print substr($0,1,10), "
         "substr($0,11,10), substr($0,21,10)}' for 10 each"
     )
 
 
-def check_marks(path, rows, columns):
-    """Refuses marks between thousands that look like decimal signs, where the file proves it.
+def notes_on_marks(path, rows, columns, axes):
+    """Refuses marks between thousands that look like decimal signs, where the file proves it: another sign stands
+    before decimals, or numbers below 1000 have no sign and all others have it before three digits, with zeros at the
+    end where these are not cut off. A note says where z alone has a sign, always before three digits.
 
-    Another sign stands before decimals, or numbers below 1000 have no sign and all others have it
-    before three digits, with zeros at the end where these are not cut off.
+    columns, axes  those of numbers; of them x, y and z
     """
-    grouped, signs, proved = re.compile(GROUPED), {".": [], ",": []}, False
+    is_grouped, signs, proved = re.compile(known().patterns["grouped"]).fullmatch, {".": [], ",": []}, False
     for i in columns:
         words = [row[i] for row in rows if i < len(row) and is_number(row[i].replace(",", "."))]
         for sign, found in signs.items():
             found += [word for word in words if sign in word]
-        marked = [word for word in words if grouped.fullmatch(word)]
+        marked = list(filter(is_grouped, words))
         without = sum(bool(re.fullmatch(r"[-+]?\d{1,3}", word)) for word in words)
-        zeros = any(word[-1] == "0" for word in marked)
-        proved |= zeros and without > 0 and len(marked) + without == len(words)
+        proved |= any(word[-1] == "0" for word in marked) and without > 0 and len(marked) + without == len(words)
     if all(signs.values()):
-        proved |= any(all(map(grouped.fullmatch, found)) for found in signs.values())
+        proved |= any(all(map(is_grouped, found)) for found in signs.values())
     if proved:
-        raise FileError(f"{path}: {THOUSANDS}")
-
-
-def doubtful_marks(rows, x, y, z):
-    """Notes where z alone has a sign, always before three digits: it may part thousands."""
-    rows = [row for row in rows if len(row) > max(x, y, z)]
-    has_signs = any(re.search(r"[.,]", row[x] + row[y]) for row in rows)
-    if has_signs or not rows or not all(re.fullmatch(GROUPED, row[z]) for row in rows):
+        raise FileError(f"{path}: {known().refusals['thousands']}")
+    places = [[row[i] for i in axes] for row in rows if len(row) > max(axes)]
+    if len(axes) < 3 or not places or not all(is_grouped(z) and not re.search("[.,]", x + y) for x, y, z in places):
         return []
     return [
-        f"z = {rows[0][z]} is read as {rows[0][z].replace(',', '.')}, though x,y are whole "
+        f"z = {places[0][2]} is read as {places[0][2].replace(',', '.')}, though x,y are whole "
         "numbers; if the sign stands between thousands, export plain decimals"
     ]
 
@@ -153,9 +151,10 @@ def check_names(path, layout, before, rows, names, width, advice):
     """
     rows = [" ".join(row) for row in rows if len(row) == width]
     if layout.separator == "," and are_parted_by_commas(rows):
-        raise FileError(f"{path}: {COMMAS_TWICE}")
-    if not names and len(rows) > 1 and all(re.fullmatch(SEXAGESIMAL, row) for row in rows):
-        if any(re.match(WITH_DECIMALS, row) for row in rows):
+        raise FileError(f"{path}: {known().refusals['commas twice']}")
+    patterns = known().patterns
+    if not names and len(rows) > 1 and all(re.fullmatch(patterns["sexagesimal"], row) for row in rows):
+        if any(re.match(patterns["with decimals"], row) for row in rows):
             raise FileError(
                 f"{path}: the columns look like degrees, minutes and seconds; export degrees as plain "
                 f"decimals; {advice}"
@@ -170,7 +169,7 @@ def check_names(path, layout, before, rows, names, width, advice):
         own = other.separator and other.separator == layout.separator
         meanings = [meaning(name) for name in found]
         others = [name for m, name in zip(meanings, found) if not m.axis and not m.role]
-        if own or NEXT_TO_AXES.issuperset(plain(" ".join(others))):
+        if own or known().words["beside axes"].issuperset(plain(" ".join(others))):
             degrees = any(m.rank == 3 for m in meanings) and width in (5, 7)
             why = "export degrees as plain decimals, if minutes have columns of their own, or " if degrees else ""
             if layout.separator == "," and len(found) < width:
@@ -190,16 +189,16 @@ def are_parted_by_commas(rows):
 
     These are whole, all of the same length, and one of them begins with 0, as no number does.
     """
-    if len(rows) < 2 or not all(re.fullmatch(PAIRS, row) for row in rows):
+    if len(rows) < 2 or not all(re.fullmatch(known().patterns["pairs"], row) for row in rows):
         return False
-    behind = list(zip(*(row.split()[1::2] for row in rows)))
-    are_even = all(len(set(map(len, column))) == 1 for column in behind)
-    return are_even and any(re.match(r"0\d", word) for column in behind for word in column)
+    behind = [row.split()[1::2] for row in rows]
+    are_even = all(len(set(map(len, column))) == 1 for column in zip(*behind))
+    return are_even and any(re.match(r"0\d", word) for row in behind for word in row)
 
 
 def splittings(layout, line):
     """Yields (Layout, names) of a line of names, with the separator of the data and with others."""
-    for other in [layout, *LAYOUTS[: len(SEPARATORS)]]:
+    for other in [layout, *with_points()]:
         yield other, [unquoted(word) for word in other.words(line)]
 
 
@@ -212,15 +211,13 @@ def find_names(layout, head, width, one_may_lack=True):
     They stand in one line, with the separator of the data or another; or a line each, numbered as
     "3: X", or below their count as GSLIB has them, or between BEGIN HEADER and END HEADER.
     """
-    if len(head) > 2 and head[1].split()[:1] == [str(width)] and len(head[2:]) == width:
-        return [name.strip() for name in head[2:]]
-    matches = [match for match in map(NUMBERED_NAME.match, head) if match]
-    found = {int(match.group(1)): match.group(2).strip('" ') for match in matches}
+    numbered = filter(None, map(re.compile(known().patterns["numbered name"]).match, head))
+    found = {int(match.group(1)): match.group(2).strip('" ') for match in numbered}
     candidates = [[found[i] for i in range(1, width + 1) if i in found]]
-    upper = [line.upper() for line in head]
-    if "BEGIN HEADER" in upper and "END HEADER" in upper:
-        part = head[upper.index("BEGIN HEADER") + 1 : upper.index("END HEADER")]
-        candidates.append([name.split(",")[-1] for name in part])
+    if len(head) > 2 and head[1].split()[:1] == [str(width)]:
+        candidates.insert(0, head[2:])
+    for part in re.findall(r"(?ims)^begin header\n(.*)\nend header$", "\n".join(head)):
+        candidates.append([name.split(",")[-1] for name in part.split("\n")])
     for line in reversed(head):
         for other, words in splittings(layout, line):
             others = [words]
@@ -233,8 +230,7 @@ def find_names(layout, head, width, one_may_lack=True):
                 others.append(words[:-1])
             # With another separator than the data has, words that mean nothing are a sentence.
             candidates += [names for names in others if other is layout or known_names(names) > 1]
-    candidates = [names for names in candidates if len(names) == width and any(names)]
-    candidates = [names for names in candidates if not all(is_number(name) for name in names)]
+    candidates = [names for names in candidates if len(names) == width and not all(map(is_number, names))]
     return max(candidates, key=known_names, default=None)
 
 
@@ -247,26 +243,21 @@ def unquoted(word):
     return word
 
 
-def doubtful_units(layout, head, names, indices):
+def notes_on_units(layout, head, names, indices):
     """Notes where the header has one unit of length for x and y, and another for z.
 
     The units stand in the names, as in "Z (ft)", in a line of their own, as in "m,m,ft", or where
     Petrel writes them.
     """
-    rows = [[length_unit(name) for name in names or []]]
-    rows += [[length_unit(f"({word.strip('()[]')})") for word in layout.words(line)] for line in head]
-    pattern = re.compile(r"unit in (x and y direction|depth):\s*(\w+)", re.I)
-    petrel = {where.lower(): length_unit(f"({unit})") for where, unit in pattern.findall("\n".join(head))}
-    named = [[row[i] if i < len(row) else "" for i in indices] for row in rows]
-    across = petrel.get("x and y direction", "")
-    for units in [*named, [across, across, petrel.get("depth", "")]]:
+    rows = [names or [], *([f"({word.strip('()[]')})" for word in layout.words(line)] for line in head)]
+    rows = [[row[i] if i < len(row) else "" for i in indices] for row in rows]
+    petrel = dict(re.findall(r"unit in (x and y direction|depth):\s*(\w+)", "\n".join(head).lower()))
+    across, up = (f"({petrel.get(where)})" for where in ("x and y direction", "depth"))
+    for row in [*rows, [across, across, up]]:
+        units = list(map(length_unit, row))
         if all(units) and units[0] == units[1] != units[2]:
             return [
                 f"x and y are in {units[0]} and z is in {units[2]}, by the header: nothing is "
                 "converted, so slopes and distances mix both"
             ]
     return []
-
-
-def is_number(word):
-    return Layout(None).number(word) is not None

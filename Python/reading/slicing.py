@@ -22,8 +22,8 @@ from ..ranks import agreed, rank_and_count, together, total
 from ..selecting import NothingChosen, Selection, as_option, none_chosen
 from . import NAMES_IN_COLUMNS, check_use
 from .formats import FORMATS, recognise
-from .table_words import NULLS
 from .nulls import ALL_WITHOUT_DATA, nulls_in
+from .tables import known
 from .unpacking import STANDARD_INPUT, is_plain, named, unpacked
 from .upwards import notes_on_range
 
@@ -107,7 +107,8 @@ class SlicedFile:
     def check_rest(self):
         """Refuses nulls that fill a part of a file, in which there are no other values."""
         z = self.seen[:, 2]
-        if len(self.seen) and (numpy.isin(z[numpy.isfinite(z)], NULLS).all() or not self.seen.any()):
+        are_nulls = numpy.isin(z[numpy.isfinite(z)], known().nulls["values"]).all()
+        if len(self.seen) and (are_nulls or not self.seen.any()):
             self.check()
 
     def finish(self, facts):

@@ -15,20 +15,18 @@ import numpy
 
 from ..clouds import WHOLE, Cloud, ReadOptions, add_array, make_points
 from .columns import Choice, advice_on_columns
-from .table_words import COMMENT_MARKS, SUMMARY
 from .layouts import (
-    are_touching,
-    check_marks,
     check_names,
-    doubtful_marks,
-    doubtful_units,
     find_layout,
     find_names,
     is_comment,
     known_axes,
+    notes_on_marks,
+    notes_on_units,
     touching_in,
 )
 from .nulls import leave_out
+from .tables import known
 from .text_blocks import Blocks, block_lines, encoding_of
 from ..messages import FileError, counted
 from ..progress import no_progress, items_with_progress
@@ -36,7 +34,6 @@ from ..projecting import note_on_degrees
 from ..selecting import MOST_VALUES, WordReader
 from ..names import option
 
-COMMENTS = re.compile(rb"\n[ \t]*[" + "".join(COMMENT_MARKS).encode() + b"]")
 TAIL = 50  # lines at the end of a block among which summaries are looked for
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED, MOST_SUMMARIES = 3, 5  # that many lines of other kinds, and of summaries, are named
@@ -72,7 +69,7 @@ class Table:
     def __init__(self, path, block, options, needed, advice):
         self.path, self.needed, self.advice = path, needed, advice or advice_on_columns()
         self.encoding = encoding_of(block)
-        lines = self.lines(block)
+        lines = block_lines(block, self.encoding)
         self.skips, self.can_skip, self.bad_lines = options.skip_bad_lines, advice is None, []
         self.layout = find_layout(path, lines[:5000], needed)
         self.head_lines, self.has_summaries = set(), False
@@ -80,7 +77,7 @@ class Table:
         near = self.first + SAMPLE
         behind = lines[self.first : near] + lines[max(near, len(lines) - TAIL) :]
         behind = [line for line in behind if self.is_row(line)]
-        summaries = sum(bool(SUMMARY.match(line)) for line in behind)
+        summaries = sum(bool(re.match(known().patterns["summary"], line)) for line in behind)
         # Points may have such names; then they are many.
         self.has_summaries = summaries < len(behind) and summaries <= 5 + len(behind) // 100
         self.sees_summaries = self.has_summaries and summaries > 0
@@ -96,17 +93,13 @@ class Table:
             path, rows, consecutive, self.layout, head, self.names, self.width, options.columns, needed, advice
         )
         self.indices, self.notes = self.choice.indices, self.choice.notes
-        check_marks(path, rows, self.choice.of_numbers)
+        self.notes += notes_on_marks(path, rows, self.choice.of_numbers, self.indices)
         if needed == 3:
-            self.notes += doubtful_marks(rows, *self.indices)
-            self.notes += doubtful_units(self.layout, head, self.names, self.indices)
+            self.notes += notes_on_units(self.layout, head, self.names, self.indices)
         begin = next((number for number, line in preamble if self.is_data(number, line)), self.first + 1)
         self.first = begin - 1
         before = [line for number, line in preamble if number < begin]
         self.head_lines, self.headers = set(map(str.strip, before)), len(before) - len(self.bad_lines)
-
-    def lines(self, block):
-        return block_lines(block, self.encoding)
 
     def read_head(self, lines):
         """(lines before the data, [(number, line)] of those of them that are not comments). Sets first
@@ -137,19 +130,20 @@ class Table:
         """Whether a line holds enough numbers for a row."""
         return self.layout.numbers(line) >= self.needed
 
-    def holds_numbers(self, line):
-        """Whether a line holds enough numbers for a row, or nothing else."""
-        words = self.layout.words(line)
-        return self.is_like(line) or len(words) > 1 and self.layout.numbers(line) == len(words)
-
     def bad_line(self, number, line, why, advice=""):
         """The error for a line that is not a row."""
-        touching = touching_in(line)
-        if touching:
-            why, advice = are_touching(touching), ""
+        if touching := touching_in(line):
+            why, advice = touching, ""
         elif self.can_skip and not (advice and self.is_like(line)):
             advice = f"{option('skip_bad_lines')} leaves out such lines"
         return BadLine(f"{self.path}, line {number}: {why}" + (advice and "; " + advice))
+
+    def few_words(self, number, line, count):
+        """The error for a line with fewer words than others have."""
+        why = f"{counted(count, 'column')} found where other lines have {self.words}"
+        if not self.layout.separator:
+            why += ", and blanks do not show which one lacks: part columns by commas, or write nan for what is missing"
+        return self.bad_line(number, line, why)
 
     def no_number(self, number, line, words, axis):
         """The error for a line in which x, y or z is a word."""
@@ -173,7 +167,7 @@ class Table:
 
     def summary(self, line):
         """The word of a line that holds the total, mean or such of others; None for data."""
-        match = SUMMARY.match(line) if self.has_summaries else None
+        match = re.match(known().patterns["summary"], line) if self.has_summaries else None
         return match and match.group(1)
 
     def name_columns(self, head, rows):
@@ -191,29 +185,21 @@ class Table:
 
     def is_data(self, number, line):
         """Whether a line before the data is a row that lacks one of its values. One that looks like a row
-        but for a word is no header, but a bad line."""
-        try:
-            return self.lacks_a_value(number, line)
-        except BadLine:
-            if not self.skips:
-                raise
-            self.bad_lines.append([number, line.strip()])
-            return False
-
-    def lacks_a_value(self, number, line):
-        words = self.layout.words(line)
+        but for a word, or but for its end, is no header, but a bad line."""
+        words, error = self.layout.words(line), None
         values = [self.layout.number(word) for word in words]
-        no_words = re.fullmatch(r"[-+\d.,;\seE]+", " ".join(words)) is not None
-        if 2 <= len(words) < self.width and (None not in values or no_words):
-            why = f"{len(words)} columns found where other lines have {self.width}"
-            raise self.bad_line(number, line, f"{why} (mark it with # if it is not a row of data)")
+        chosen = [values[i] for i in self.indices if i < len(words)]
+        good = sum(v is not None and not math.isnan(v) for v in chosen)
         if len(words) < self.width:
-            return False
-        values = [values[i] for i in self.indices]
-        good = sum(v is not None and not math.isnan(v) for v in values)
-        if None in values and good >= len(values) - 1:
-            raise self.no_number(number, line, words, values.index(None))
-        return None not in values and good > 0
+            no_words = None not in values or re.fullmatch(r"[-+\d.,;\seE]+", " ".join(words))
+            error = self.few_words(number, line, len(words)) if len(words) > 1 and no_words else None
+        elif None in chosen and good >= len(chosen) - 1:
+            error = self.no_number(number, line, words, chosen.index(None))
+        if error and not self.skips:
+            raise error
+        if error:
+            self.bad_lines.append([number, line.strip()])
+        return not error and len(words) >= self.width and None not in chosen and good > 0
 
 
 # ---- rows -------------------------------------------------------------------------------------
@@ -233,8 +219,9 @@ class Parser:
         self.table, self.blocks, self.alive, self.named = table, blocks, alive, named
         self.texts = {index: WordReader() for index in table.choice.texts}
         self.used = [*table.indices, *table.choice.extras]
-        self.parts, self.starts = [], []
-        self.line, self.after_blank = 0, True
+        self.comment = re.compile(rb"\n[ \t]*[" + "".join(known().signs["comments"]).encode() + b"]")
+        self.parts, self.line = [], 0
+        self.breaks = [0]  # numbers of lines behind which another line or ring begins
         self.before = None  # lines before this part of the file, once a message needs their number
         first = table.bad_lines if blocks.begin == 0 else []
         self.facts = {
@@ -247,7 +234,7 @@ class Parser:
 
     def add(self, block):
         """Takes the lines of a block."""
-        table, lines = self.table, self.table.lines(block)
+        table, lines = self.table, block_lines(block, self.table.encoding)
         skip = table.first if self.line == 0 and self.blocks.begin == 0 else 0  # lines that are not data
         odd = [i for i in self.odd_lines(block, lines) if i >= skip and table.is_row(lines[i])]
         words = {i: table.layout.words(lines[i]) for i in odd}
@@ -272,34 +259,31 @@ class Parser:
         return numpy.flatnonzero(counts != expected).tolist()
 
     def is_short(self, words):
-        """Whether blanks part fewer words than others have, unless only text lacks behind numbers."""
+        """Whether x, y or z lacks, or blanks part fewer words than others have, unless only text lacks behind
+        numbers."""
         table = self.table
-        return len(words) < table.words and not table.layout.separator and any(
-            column >= len(words) or table.layout.number(words[column]) is None
-            for column in table.choice.of_numbers
-        )
+        needed = table.indices if table.layout.separator else {*table.indices, *table.choice.of_numbers}
+        are_there = (i < len(words) and table.layout.number(words[i]) is not None for i in needed)
+        return len(words) < table.words and not all(are_there)
 
     def rows_among(self, block, lines, skip):
-        """The places of the rows. Counts other lines, and notes where a row follows a blank line."""
+        """The places of the rows. Counts other lines, and keeps the breaks between rows."""
         table, facts = self.table, self.facts
-        plain = not skip and not is_comment(lines[0]) and not COMMENTS.search(block)
+        plain = not skip and not is_comment(lines[0]) and not self.comment.search(block)
         plain = plain and not table.sees_summaries and not any(map(table.summary, lines[-TAIL:]))
         if plain and all(map(str.strip, lines)):
-            self.starts += [facts["count"]] * self.after_blank
-            self.after_blank = False
             return range(len(lines))
         rows = []
         for i, line in enumerate(items_with_progress(lines, self.alive, len(lines), 20_000)):
             kind = table.kind(line) if i >= skip else "head"
             if kind == "row":
-                self.starts += [facts["count"] + len(rows)] * self.after_blank
-                self.after_blank = False
                 rows.append(i)
             elif kind == "summary":
                 facts["summary"].append([self.number(i), table.summary(line)])
             elif kind in ("comment", "repeated"):
                 facts[kind] += 1
-            self.after_blank |= kind == "blank" or kind == "comment" and line.lstrip().startswith(">")
+            if kind == "blank" or kind == "comment" and line.lstrip().startswith(">"):
+                self.breaks.append(self.line + 1 + i)
         return rows
 
     def add_rows(self, lines, places, short, quoted):
@@ -363,18 +347,10 @@ class Parser:
         table = self.table
         words = table.layout.words(line)
         for axis, index in enumerate(table.indices):
-            if index >= len(words):
-                why = f"{counted(len(words), 'column')} found, but {'xyz'[axis]} is column {index + 1}"
-                raise table.bad_line(self.number(i), line, why)
-            if table.layout.number(words[index]) is None:
+            if index < len(words) and table.layout.number(words[index]) is None:
                 raise table.no_number(self.number(i), line, words, axis)
         if self.is_short(words):
-            why = (
-                f"{counted(len(words), 'column')} found where {table.words} are expected, and "
-                "blanks do not show which one lacks; part the columns by commas or write nan for "
-                "what is missing"
-            )
-            raise table.bad_line(self.number(i), line, why)
+            raise table.few_words(self.number(i), line, len(words))
         row = [table.layout.number(words[index]) if index < len(words) else math.nan for index in self.used]
         for index, value in zip(self.used, row):
             if value is None:
@@ -415,9 +391,8 @@ class Parser:
                 "blanks do not part the columns of this table; export it as .csv"
             )
         notes, seen = table.notes, [f"separated by {table.layout}"]
-        for count, what in ((table.headers, "header"), (facts["comment"] + table.comments, "comment")):
-            if count:
-                seen.append(counted(count, f"{what} line"))
+        counts = {"header line": table.headers, "comment line": facts["comment"] + table.comments}
+        seen += [counted(count, what) for what, count in counts.items() if count]
         if not any(" as x" in note or ", y = " in note for note in notes):
             columns = ", ".join(str(index + 1) for index in table.indices)
             notes.insert(0, f"{', '.join('xyz'[:table.needed])} are in columns {columns}")
@@ -479,7 +454,8 @@ def read_table(path, needed=3, progress=no_progress):
     """
     advice = f"a header line with {', '.join(('easting', 'northing', 'elevation')[:needed])} names the columns"
     parser, rows, numbers, notes = parse(path, ReadOptions(progress=progress), needed, advice)
-    return rows[:, :needed].copy(), numbers, parser.starts, notes
+    starts = numpy.unique(numpy.searchsorted(numbers, parser.breaks))
+    return rows[:, :needed].copy(), numbers, starts[starts < len(rows)].tolist(), notes
 
 
 def read_line_table(path, progress):

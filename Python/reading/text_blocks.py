@@ -7,20 +7,19 @@ import os
 import re
 
 from .column_names import known_names
-from .table_words import ENCODINGS
+from .tables import known
 from ..clouds import WHOLE, Part
 from ..messages import FileError
 
 END_MARKS = b"\0\x1a\r\n "  # what DOS and full disks write behind the last line
-LINE_END = re.compile(rb"\r?\n|\r(?=[^\n])")
 BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
 
 
 class Blocks:
     """The whole lines of a text file as bytes, some 8 MB at once: iterate to get (block, fraction).
 
-    UTF-16 with its mark becomes UTF-8; the mark of UTF-8 is taken away. A part of a file has some of
-    the blocks of the whole file: a line is in the block in which it begins.
+    UTF-16 with its mark becomes UTF-8; the mark of UTF-8 is taken away. A part of a file has the lines that
+    begin in some of the blocks of the whole file.
 
     begin  where the first line begins
     """
@@ -30,40 +29,40 @@ class Blocks:
         self.size = os.fstat(stream.fileno()).st_size
         head = self.read(0, 4096)
         if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
-            text = self.read(0, self.size).decode("utf-16", "replace")
-            self.stream = io.BytesIO(text.encode())
-            self.size = len(self.stream.getbuffer())
+            self.take(self.read(0, self.size).decode("utf-16", "replace").encode())
         elif b"\0" in (head.rstrip(END_MARKS) or head):
             raise FileError(f"{path}: is not a text file")
+        elif b"\r" in head and b"\n" not in head:  # of old Macintoshes
+            self.take(plain(self.read(0, self.size)))
         self.count = max(1, -(-self.size // BLOCK))
         self.blocks = part.rows(self.count)
-        self.begin = self.line_begin(self.blocks.start * BLOCK)
+        self.begin, self.end = (self.line_begin(at * BLOCK) for at in (self.blocks.start, self.blocks.stop))
+
+    def take(self, data):
+        self.stream, self.size = io.BytesIO(data), len(data)
 
     def __iter__(self):
-        first, last, begin = self.blocks.start, self.blocks.stop, self.begin
-        for number in range(first + 1, last + 1):
-            end = begin if begin >= number * BLOCK else self.line_begin(number * BLOCK)
-            data = plain(self.read(begin, end - begin).removeprefix(b"\xef\xbb\xbf" if begin == 0 else b""))
-            if data:
-                yield data, (number - first) / (last - first)
-            begin = end
+        at = self.begin
+        while at < self.end:
+            data = self.read(at, min(BLOCK, self.end - at))
+            block = plain(data.removeprefix(b"\xef\xbb\xbf" if at == 0 else b""))
+            at += len(data)
+            if block:
+                yield block, (at - self.begin) / (self.end - self.begin)
 
     def read(self, at, count):
+        """So many bytes, and the rest of the line in which they end."""
         try:
             self.stream.seek(at)
-            return self.stream.read(count)
+            data = self.stream.read(count)
+            return data if data.endswith(b"\n") else data + self.stream.readline()
         except OSError as error:
             raise FileError(f"{self.path}: cannot be read: {error.strerror}") from None
 
     def line_begin(self, at):
         """Where the first line begins that does so at a place or behind it."""
-        place = at - 1
-        while at and (data := self.read(place, 4096)):
-            found = LINE_END.search(data)
-            if found:
-                return place + found.end()
-            place += max(len(data) - 1, 1)
-        return self.size if at else 0
+        at = min(at, self.size)
+        return at and at - 1 + len(self.read(at - 1, 1))
 
     def lines_before(self):
         """How many lines there are before this part."""
@@ -84,10 +83,11 @@ def plain(data):
 def encoding_of(block):
     """The encoding in which most words of a header mean something, of text that is not UTF-8."""
     head = b" ".join(line for line in block.split(b"\n", 20)[:20] if not re.search(rb"\d[.,]\d", line))
-    if head.isascii():
-        return ENCODINGS[0]  # it reads the same in all of them
-    texts = {encoding: head.decode(encoding, "replace") for encoding in ENCODINGS}
-    return max(texts, key=lambda encoding: known_names(re.split(r"[\s,;|]+", texts[encoding])))
+
+    def meant(encoding):
+        return known_names(re.split(r"[\s,;|]+", head.decode(encoding, "replace")))
+
+    return max(known().signs["encodings"], key=meant)
 
 
 def block_lines(block, encoding):
@@ -96,7 +96,4 @@ def block_lines(block, encoding):
         text = block.decode("utf-8")
     except UnicodeDecodeError:
         text = block.decode(encoding, "replace")
-    lines = text.split("\n")
-    if not lines[-1]:
-        lines.pop()
-    return lines
+    return text.removesuffix("\n").split("\n")

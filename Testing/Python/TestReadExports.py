@@ -2,12 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The text exports that people have: names in nine languages, and tables without names."""
 
+import configparser
+import os
 import re
+import subprocess
 import sys
 import unittest
 
 from text_tables import COUNT, Tables, columns_of
-from vtkelevationsurface.reading.column_names import meaning
+from vtkelevationsurface.reading import tables
+from vtkelevationsurface.reading.column_names import meaning, plain
 
 # Program, head of the file, separator, what the columns hold, words of the notes.
 EXPORTS = (
@@ -169,6 +173,25 @@ class Exports(Tables):
             self.read(text),
             [(5000.25, 7000.5, 12.1), (5003.75, 7001.25, 12.4), (5001.5, 7004.75, 12.9)],
         )
+
+
+class Known(unittest.TestCase):
+    """tables.ini."""
+
+    def test_a_word_has_one_meaning_and_is_written_as_names_are_compared(self):
+        parser = configparser.ConfigParser(interpolation=None, delimiters="=")
+        parser.optionxform = str
+        path = os.path.join(os.path.dirname(tables.__file__), "tables.ini")
+        parser.read(path, encoding="utf-8")
+        for section in ("axes", "roles", "colours", "units of length"):
+            words = " ".join(parser[section].values()).split()
+            self.assertEqual(sorted(set(words)), sorted(words), section)
+            self.assertEqual([word for word in words if "".join(plain(word)) != word], [], section)
+
+    def test_it_is_not_read_before_a_table_is(self):
+        code = ("import vtkelevationsurface.command, vtkelevationsurface.reading.tables as tables;"
+                "print(tables.known.cache_info().currsize)")
+        self.assertEqual(subprocess.check_output([sys.executable, "-c", code]).split(), [b"0"])
 
 
 if __name__ == "__main__":

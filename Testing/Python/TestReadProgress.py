@@ -12,7 +12,7 @@ from unittest import mock
 import numpy
 from in_folder import InFolder
 from vtkelevationsurface import algorithms, clouds, progress, reading
-from vtkelevationsurface.reading import horizons, las, nulls, rasters, text_blocks
+from vtkelevationsurface.reading import blunders, horizons, las, nulls, rasters, text_blocks
 from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
@@ -21,7 +21,7 @@ COUNT = 5000
 SIDE = 60  # of grids
 # So that small files have several slices.
 SLICES = (
-    (progress, "BYTES", 1000), (text_blocks, "BLOCK", 10000), (las, "AT_ONCE", 500), (nulls, "CHUNK", 500),
+    (progress, "BYTES", 1000), (text_blocks, "BLOCK", 10000), (las, "AT_ONCE", 500), (blunders, "CHUNK", 500),
     (rasters, "AT_ONCE", 10 * SIDE), (horizons, "AT_ONCE", 2000),
 )
 

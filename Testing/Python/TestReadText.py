@@ -112,7 +112,7 @@ class Parsing(Tables):
             for short in ("6.5 1.25      120.5\n", "6.5 1.25 3.125\n"):
                 text = head + "".join([*rows, short, *rows, "1 2 3 4 5\n"])
                 error = self.refusal(text)
-                self.assertIn(f"line {41 + bool(head)}: 3 columns found where 4 are", error)
+                self.assertIn(f"line {41 + bool(head)}: 3 columns found where other lines have 4", error)
         error = self.refusal("x y z q c\n1 2 3 4 a\n4 5 7 b\n8 8 8 8 c\n")
         self.assertIn("line 3: 4 columns", error)
         # Text behind the numbers may have fewer words; with other separators a field is empty.

@@ -1,0 +1,62 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is known of tables of text: tables.ini as Python has it. The head of that file explains it."""
+
+import configparser
+import functools
+import os
+import types
+
+
+@functools.lru_cache(maxsize=None)
+def known():
+    """The tables, read when the first of them is asked for.
+
+    axes         {name: (axis, rank, direction)}
+    not_tables   [(pattern, words of an error)]; grids are such, too
+    not_numbers  [(pattern, share of lines, words of an error)]
+    """
+    parser = configparser.ConfigParser(interpolation=None, delimiters="=")
+    parser.optionxform = str  # names as they are written
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "tables.ini")
+    with open(path, encoding="utf-8") as stream:
+        parser.read_file(stream)
+
+    def each(section, convert=str):
+        return {name: convert(text) for name, text in parser[section].items()}
+
+    def words(text):
+        return frozenset(text.split())
+
+    def numbers(text):
+        return tuple(map(float, text.split()))
+
+    def lines(text):
+        return text.strip().split("\n")
+
+    refusals = each("refusals", lambda text: " ".join(lines(text)))
+    axes = [(key.split(), names.split()) for key, names in parser["axes"].items()]
+    shares = [(name.rsplit(" ", 1)[0], *lines(text)) for name, text in parser["not numbers"].items()]
+    return types.SimpleNamespace(
+        axes={name: (axis, int(rank), "".join(what)) for (axis, rank, *what), names in axes for name in names},
+        words=each("other words", words),
+        roles=each("roles", words),
+        colours=each("colours", words),
+        lengths=each("units of length", words),
+        letters=str.maketrans(each("letters")),
+        lines=each("lines", words),
+        finnish=each("finnish"),
+        x_is_north=each("x is north"),
+        signs=each("signs", lambda text: tuple(text.split())),
+        separators={sign.replace("\\t", "\t") or None: name for name, sign in parser["separators"].items()},
+        refusals=refusals,
+        not_tables=[(begin, " ".join(said)) for begin, *said in each("not tables", lines).values()],
+        not_numbers=[("".join(parts), float(share), refusals[name]) for name, share, *parts in shares],
+        patterns=each("patterns", lambda text: "".join(lines(text))),
+        nulls=each("nulls", numbers),
+        weights=each("weights", float),
+        figures=each("figures", float),
+        earth=numbers(parser["earth"]["figures"]),
+        parts_of_time=each("parts of time", numbers),
+        times=[line.split(", ") for line in lines(parser["times"]["orders"])],
+    )
