@@ -41,13 +41,12 @@ const std::vector<std::string>& BoxNames()
   return names;
 }
 
-// Points that came twice go; so counts are known only when all are there. In files none can come
-// twice where ids are indices, and nothing is read.
+// Points that came twice go; so counts are known only when all are there. Where ids are indices,
+// none comes twice, and all are in order, rank after rank.
 void PartStore::Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const Progress& progress)
 {
-  this->Part.OwnPoints = PointTable(this->Part.Kinds);
   this->Part.Others = PointTable(this->Part.Kinds);
-  if (!this->Crew.IsInFiles() || areIdsGiven)
+  if (areIdsGiven)
   {
     std::fill(counts.begin(), counts.end(), 0);
     this->Crew.ForEach(progress, [&](int part, const Progress& ofPart) {
@@ -64,8 +63,6 @@ void PartStore::Number(std::vector<vtkIdType>&& counts, bool areIdsGiven, const 
         return;
       }
       // A step of memory alone: the one part of this rank.
-      this->Part.OwnPoints.Unpack(this->Crew.At(part, OwnPoints).Take());
-      Report(ofPart, 0.5);
       SortOwn(this->Part);
       counts[part] = static_cast<vtkIdType>(this->Part.OwnPoints.Count());
     });
@@ -248,13 +245,15 @@ void PartStore::ForgetOthers(int part)
 void PartStore::PutTogether(int part, const Progress& progress, SurfacePart& whole) const
 {
   const GlobalId first = this->FirstOf(part);
+  const auto allChanged = ValuesIn<ChangedTriangle>(this->Crew.At(part, Changed));
+  whole.OwnCorners = allChanged.empty() ? whole.Result.Triangles.size() : 0;
   whole.OtherNumbers = this->ListOthersOf(part);
   whole.Others = PointTable(whole.Kinds);
   whole.Others.Unpack(this->Crew.At(part, Corners).Copy());
   this->CheckCount(whole.OwnPoints.Count() + whole.Others.Count());
   AppendTriangles(ValuesIn<GlobalTriangle>(this->Crew.At(part, FromSeams)), first, progress, whole);
   // After the seams' triangles: an index counts them too. Lines change corners, never the number.
-  for (const ChangedTriangle& changed : ValuesIn<ChangedTriangle>(this->Crew.At(part, Changed)))
+  for (const ChangedTriangle& changed : allChanged)
   {
     std::transform(changed.Corners.begin(), changed.Corners.end(),
       whole.Result.Triangles.data() + 3 * changed.Triangle,

@@ -13,7 +13,8 @@
  * anew whenever it is asked for. The boxes:
  *
  *   box        what is in it                          written by           read by
- *   OwnPoints  rows of points                         pass 1, lines        2, 6, for output
+ *   OwnPoints  rows of points                         pass 1, lines, in    2, 6, for output
+ *                                                     files
  *   Settled    unused points; then corners, as        pass 2, in files     6, for output
  *              indices among the own points
  *   OnSeam     indices of the seam's points, and      pass 2, lines, in    5
@@ -74,7 +75,8 @@ const std::vector<std::string>& BoxNames();
  * What there is of the parts of this rank between the passes of TriangulateParts.h. The calls, in
  * their order:
  *
- *     Number()                                     after pass 1 has filled OwnPoints
+ *     Number()                                     after pass 1 has filled OwnPoints, the box or,
+ *                                                  in memory, those of Part
  *     AddOwn()                                     with lines, which Bases then count
  *     WithOwn(), KeepSettled()                     each part, pass 2; again without a lattice
  *     ForgetOthers(), ListOthersOf(),              pass 5, and once more when lines have changed
@@ -106,7 +108,6 @@ public:
    *     numbers     0 1 2 3          4 5 6
    *     Bases     { 0,        4,     4,     7 }
    *
-   * The rows that pass 1 has sent leave their box where parts are in memory.
    * @param[in] counts  of the points that this rank has sent to each part
    * @param[in] areIdsGiven  so that one may have come twice; such a point counts once
    */

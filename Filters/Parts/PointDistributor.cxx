@@ -41,6 +41,8 @@ constexpr const char* IdsName = "GlobalPointIds";
 constexpr vtkIdType PointsInStretch = 1 << 20; // of slices, and in a file
 constexpr std::size_t MostSampled = 1 << 19;   // of slices
 constexpr vtkIdType SamplePerPart = 1000;      // of points that come at once
+// Among few parts, what one has more than another is most of what ranks wait for: a larger sample.
+constexpr vtkIdType SampleOfFewParts = 1 << 14, PointsPerSample = 64;
 
 /** An index of the stretch [0, size) by such a rule. */
 vtkIdType IndexInStretch(vtkIdType stretch, vtkIdType size)
@@ -283,6 +285,7 @@ void PointDistributor::Read(vtkPointSet* points, const std::string& idsName, vtk
   this->Rows.Read(points, first);
   vtkDataArray* const ids =
     this->AreGiven ? points->GetPointData()->GetArray(idsName.c_str()) : nullptr;
+  this->Rows.Ids.Resize(ids ? this->Rows.Count() : 0);
   for (vtkIdType at = 0; ids && at < ids->GetNumberOfTuples(); ++at)
   {
     this->Rows.Ids[at] = IdAt(ids, at);
@@ -299,7 +302,9 @@ std::vector<double> PointDistributor::SampleAtOnce(vtkIdType parts) const
   std::vector<vtkIdType> all = { count };
   // The same stretch on all ranks: each point of all has the same chance, whatever rank it is on.
   this->AllRanks.Sum(all);
-  const vtkIdType stretch = std::max<vtkIdType>(1, all[0] / (SamplePerPart * parts));
+  const vtkIdType sample =
+    std::max(SamplePerPart * parts, std::min(SampleOfFewParts, all[0] / PointsPerSample));
+  const vtkIdType stretch = std::max<vtkIdType>(1, all[0] / sample);
   std::vector<double> coordinates;
   this->AllRanks.Agree([&]() {
     for (vtkIdType i = 0; i * stretch < count; ++i)
@@ -352,8 +357,8 @@ Cuts PointDistributor::CutPlane(int parts)
 }
 
 /**
- * Sends own points, in their order; then there are none. Memory is given back as rows are packed,
- * part by part.
+ * Sends own points, in their order. Memory is given back as rows are packed, part by part. Where
+ * parts are in memory, what goes to that of this rank is not packed: an empty list stands for it.
  */
 void PointDistributor::SendSlice(const Cuts& plane, Engine& engine, int box,
   const Progress& progress, std::vector<vtkIdType>& counts)
@@ -361,7 +366,8 @@ void PointDistributor::SendSlice(const Cuts& plane, Engine& engine, int box,
   // First the parts alone, so that the indices of each take no more memory than they need.
   const int firstOwn = engine.FirstOwn();
   const std::uint64_t ownCount = static_cast<std::uint64_t>(engine.EndOwn() - firstOwn);
-  std::vector<int> partOf(this->Rows.Count(), None);
+  Buffer<int> partOf;
+  partOf.Resize(this->Rows.Count());
   std::vector<std::size_t> sizes(counts.size(), 0);
   vtkUnsignedCharArray* const marks = this->Rows.Marks();
   for (std::size_t at = 0; at < partOf.size(); ++at)
@@ -369,6 +375,7 @@ void PointDistributor::SendSlice(const Cuts& plane, Engine& engine, int box,
     ReportStep(progress, at, partOf.size(), 1 << 16);
     if (IsCopy(marks, static_cast<vtkIdType>(at)))
     {
+      partOf[at] = None;
       continue;
     }
     const double* const p = this->Rows.At(at);
@@ -376,7 +383,7 @@ void PointDistributor::SendSlice(const Cuts& plane, Engine& engine, int box,
     // the id, not by the index: where a point goes must not depend on how slices were cut.
     partOf[at] = this->Rows.IsFinite(at)
       ? plane.OwnerOf({ p[0], p[1] })
-      : firstOwn + static_cast<int>(static_cast<std::uint64_t>(this->Rows.Ids[at]) % ownCount);
+      : firstOwn + static_cast<int>(static_cast<std::uint64_t>(this->Rows.IdOf(at)) % ownCount);
     ++sizes[partOf[at]];
   }
   std::vector<std::vector<vtkIdType>> indices(counts.size());
@@ -395,13 +402,38 @@ void PointDistributor::SendSlice(const Cuts& plane, Engine& engine, int box,
   for (std::size_t part = 0; part < indices.size(); ++part)
   {
     Report(progress, 1.0);
-    if (!indices[part].empty())
+    if (!this->IsInFile() && engine.IsOwn(static_cast<int>(part)))
+    {
+      this->Staying = std::exchange(indices[part], {});
+      engine.Send(static_cast<int>(part), box, this->Rows.Pack({}));
+    }
+    else if (!indices[part].empty())
     {
       engine.Send(static_cast<int>(part), box, this->Rows.Pack(indices[part]));
       indices[part] = std::vector<vtkIdType>();
     }
   }
-  this->Rows = PointTable();
+}
+
+/** Where parts are in memory: the points of that of this rank, from all ranks in their order. */
+void PointDistributor::JoinOwn(Engine& engine, int box, PointTable& own)
+{
+  for (int part = engine.FirstOwn(); part < engine.EndOwn(); ++part)
+  {
+    std::vector<Bytes> fromRanks = engine.At(part, box).Take();
+    const auto add = [](std::size_t sum, const Bytes& rows) {
+      return sum + PointTable::CountIn(rows);
+    };
+    own.Resize(std::accumulate(fromRanks.begin(), fromRanks.end(), this->Staying.size(), add));
+    std::size_t next = 0;
+    for (Bytes& rows : fromRanks)
+    {
+      next = PointTable::CountIn(rows) == 0 ? own.Copy(this->Rows, this->Staying, next)
+                                            : own.Unpack(rows, next);
+      rows = Bytes();
+    }
+    this->Staying = std::vector<vtkIdType>();
+  }
 }
 
 /*
@@ -440,6 +472,14 @@ Cuts PointDistributor::Distribute(Engine& engine, int box, const Progress& progr
       this->SendSlice(plane, engine, box, ofSlice.Between(begin, end), counts);
     });
     engine.Deliver();
+    this->AllRanks.Agree([&]() {
+      if (!this->IsInFile())
+      {
+        common.OwnPoints = PointTable(common.Kinds);
+        this->JoinOwn(engine, box, common.OwnPoints);
+      }
+      this->Rows = PointTable();
+    });
     // At once, there is no stretch: one round.
     isMore = IsOnAny(this->AllRanks, next != this->Stretches.end());
   }

@@ -69,8 +69,9 @@ public:
 
   /**
    * Passes 2 to 4, on all ranks. The points are no longer here.
-   * @param[in] box  of each part, for its points
-   * @param[out] common  gets what parts have in common: kinds of arrays and so on
+   * @param[in] box  of each part in files, for its points
+   * @param[out] common  gets what parts have in common: kinds of arrays and so on; in memory, also
+   *             the points, rank after rank
    * @param[out] counts  of the points that this rank has sent to each part
    * @throws Error, Aborted on all ranks when any of them fails
    */
@@ -99,6 +100,7 @@ private:
   /** Pass 4. */
   void SendSlice(const Cuts& plane, Engine& engine, int box, const Progress& progress,
     std::vector<vtkIdType>& counts);
+  void JoinOwn(Engine& engine, int box, PointTable& own);
 
   const Ranks& AllRanks;
   vtkIdType OwnCount = 0, First = 0; // the number of the first
@@ -116,6 +118,7 @@ private:
   std::uint64_t SampleMask = 0;
   // What is written or sent next:
   PointTable Rows;
+  std::vector<vtkIdType> Staying; // of these, in memory: those that go to no other rank
 };
 
 } // namespace elevation

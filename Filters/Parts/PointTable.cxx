@@ -16,7 +16,6 @@
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
-#include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -25,7 +24,6 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <numeric>
 #include <tuple>
@@ -198,12 +196,9 @@ vtkUnsignedCharArray* PointTable::Marks() const
     : nullptr;
 }
 
-bool PointTable::IsFinite(std::size_t index) const
+bool PointTable::IsHidden(std::size_t index) const
 {
-  const double* const p = this->At(index);
-  vtkUnsignedCharArray* const marks = this->Marks();
-  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]) &&
-    !(marks && (marks->GetValue(index) & vtkDataSetAttributes::HIDDENPOINT));
+  return this->Marks()->GetValue(static_cast<vtkIdType>(index)) & vtkDataSetAttributes::HIDDENPOINT;
 }
 
 void PointTable::Read(vtkPointSet* points, vtkIdType first)
@@ -219,8 +214,8 @@ void PointTable::Read(vtkPointSet* points, vtkIdType first)
     this->Owner = converted;
   }
   this->Given = vtkDoubleArray::FastDownCast(this->Owner)->GetPointer(0);
-  this->Ids.Resize(static_cast<std::size_t>(points->GetNumberOfPoints()));
-  std::iota(this->Ids.begin(), this->Ids.end(), first);
+  this->GivenCount = static_cast<std::size_t>(points->GetNumberOfPoints());
+  this->FirstId = first;
   this->View(points->GetPointData());
 }
 
@@ -346,7 +341,8 @@ Bytes PointTable::Pack(const std::vector<vtkIdType>& indices) const
   }
   for (const vtkIdType index : indices)
   {
-    std::memcpy(to, &this->Ids[index], 8);
+    const vtkIdType id = this->IdOf(index);
+    std::memcpy(to, &id, 8);
     to += 8;
   }
   for (std::size_t i = 0; i < this->Kinds.size(); ++i)
@@ -364,60 +360,81 @@ void PointTable::Unpack(const std::vector<Bytes>& packed)
 void PointTable::Unpack(const Bytes* packed, std::size_t count)
 {
   // All counts first, then each array is made as large as it gets, once.
-  vtkIdType first = static_cast<vtkIdType>(this->Count()), all = first;
+  std::size_t first = this->Count(), all = first;
   for (const Bytes* bytes = packed; bytes != packed + count; ++bytes)
   {
-    const char* from = bytes->data();
-    vtkIdType ofBytes = 0;
-    TakeFrom(from, &ofBytes, bytes->empty() ? 0 : 1);
-    all += ofBytes;
+    all += CountIn(*bytes);
   }
-  this->Coordinates.Resize(3 * static_cast<std::size_t>(all));
-  this->Ids.Resize(static_cast<std::size_t>(all));
-  // With the rows that are there already, which keep their values.
+  this->Resize(all);
+  for (const Bytes* bytes = packed; bytes != packed + count; ++bytes)
+  {
+    first = this->Unpack(*bytes, first);
+  }
+}
+
+std::size_t PointTable::Unpack(const Bytes& packed, std::size_t first)
+{
+  const std::size_t count = CountIn(packed);
+  const char* from = packed.data() + (packed.empty() ? 0 : sizeof(vtkIdType));
+  TakeFrom(from, this->Coordinates.data() + 3 * first, 3 * count);
+  TakeFrom(from, this->Ids.data() + first, count);
+  for (std::size_t i = 0; i < this->Kinds.size() && count > 0; ++i)
+  {
+    UnpackArray(this->Kinds[i], static_cast<vtkIdType>(first), static_cast<vtkIdType>(count), from,
+      this->Arrays[i]);
+  }
+  return first + count;
+}
+
+std::size_t PointTable::CountIn(const Bytes& packed)
+{
+  const char* from = packed.data();
+  vtkIdType count = 0;
+  TakeFrom(from, &count, packed.empty() ? 0 : 1);
+  return static_cast<std::size_t>(count);
+}
+
+void PointTable::Resize(std::size_t count)
+{
+  this->Coordinates.Resize(3 * count);
+  this->Ids.Resize(count);
   for (const auto& array : this->Arrays)
   {
+    const vtkIdType all = static_cast<vtkIdType>(count);
     ReserveTuples(array, all); // keeps the values, unlike the next
     SetTuples(all, array);
   }
-  for (const Bytes* bytes = packed; bytes != packed + count; ++bytes)
+}
+
+std::size_t PointTable::Copy(
+  const PointTable& from, const std::vector<vtkIdType>& indices, std::size_t first)
+{
+  double* to = this->Coordinates.data() + 3 * first;
+  vtkIdType* id = this->Ids.data() + first;
+  for (const vtkIdType index : indices)
   {
-    if (bytes->empty())
-    {
-      continue;
-    }
-    const char* from = bytes->data();
-    vtkIdType ofBytes = 0;
-    TakeFrom(from, &ofBytes, 1);
-    TakeFrom(from, this->Coordinates.data() + 3 * first, 3 * static_cast<std::size_t>(ofBytes));
-    TakeFrom(from, this->Ids.data() + first, static_cast<std::size_t>(ofBytes));
-    for (std::size_t i = 0; i < this->Kinds.size(); ++i)
-    {
-      UnpackArray(this->Kinds[i], first, ofBytes, from, this->Arrays[i]);
-    }
-    first += ofBytes;
+    std::memcpy(to, from.At(index), 24);
+    to += 3;
+    *id++ = from.IdOf(index);
   }
+  // Array by array, as they come from other ranks.
+  const vtkIdType count = static_cast<vtkIdType>(indices.size());
+  for (std::size_t i = 0; i < this->Kinds.size(); ++i)
+  {
+    Bytes column;
+    PackArray(this->Kinds[i], from.Arrays[i], indices, column);
+    const char* bytes = column.data();
+    UnpackArray(this->Kinds[i], static_cast<vtkIdType>(first), count, bytes, this->Arrays[i]);
+  }
+  return first + indices.size();
 }
 
 void PointTable::Choose(const std::vector<vtkIdType>& indices)
 {
   // A new table: an array that is the input's own must not change.
   PointTable chosen(this->Kinds);
-  chosen.Coordinates.Resize(3 * indices.size());
-  chosen.Ids.Resize(indices.size());
-  vtkNew<vtkIdList> from;
-  from->SetNumberOfIds(static_cast<vtkIdType>(indices.size()));
-  for (std::size_t i = 0; i < indices.size(); ++i)
-  {
-    std::memcpy(chosen.Coordinates.data() + 3 * i, this->At(indices[i]), 24);
-    chosen.Ids[i] = this->Ids[indices[i]];
-    from->SetId(static_cast<vtkIdType>(i), indices[i]);
-  }
-  for (std::size_t i = 0; i < this->Kinds.size(); ++i)
-  {
-    chosen.Arrays[i] = MakeArray(this->Kinds[i], static_cast<vtkIdType>(indices.size()));
-    this->Arrays[i]->GetTuples(from, chosen.Arrays[i]);
-  }
+  chosen.Resize(indices.size());
+  chosen.Copy(*this, indices, 0);
   *this = std::move(chosen);
 }
 

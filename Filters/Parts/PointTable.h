@@ -58,7 +58,7 @@ bool HaveSameArrays(const Ranks& ranks, vtkPointSet* own);
 /**
  * Points: positions, global ids and the values of arrays, those of each kind. Positions are double
  * whatever the data set has: float values come through unchanged. A table of the points of an input
- * shares its arrays; one that is unpacked has its own.
+ * shares its arrays, and numbers its points where it has no ids; one that is unpacked has its own.
  */
 class PointTable
 {
@@ -67,18 +67,32 @@ public:
   /** Of no points. */
   explicit PointTable(const std::vector<ArrayKind>& kinds);
 
-  std::size_t Count() const { return this->Ids.size(); }
+  std::size_t Count() const { return this->Given ? this->GivenCount : this->Ids.size(); }
   const double* At(std::size_t index) const
   {
     return (this->Given ? this->Given : this->Coordinates.data()) + 3 * index;
   }
 
+  vtkIdType IdOf(std::size_t index) const
+  {
+    return this->Ids.empty() ? this->FirstId + static_cast<vtkIdType>(index) : this->Ids[index];
+  }
+
   /** Whether it has a place, and is not hidden. Only such a point goes to the part of its cell. */
-  bool IsFinite(std::size_t index) const;
+  bool IsFinite(std::size_t index) const
+  {
+    const double* const p = this->At(index);
+    // x - x is 0 for finite x, else NaN.
+    return (p[0] - p[0]) + (p[1] - p[1]) + (p[2] - p[2]) == 0.0 &&
+      (this->MarksIndex == this->Arrays.size() || !this->IsHidden(index));
+  }
   /** The flags of ghosts, or nullptr. */
   vtkUnsignedCharArray* Marks() const;
 
-  /** Views points, numbered from @a first, and their arrays. The table is then for Pack() alone. */
+  /**
+   * Views points, numbered from @a first, and their arrays. The table is then for Pack() and Copy()
+   * alone.
+   */
   void Read(vtkPointSet* points, vtkIdType first);
 
   /** The chosen points as bytes: 32 a point, and the values of the arrays. */
@@ -91,8 +105,17 @@ public:
   /** Keeps the chosen points, in the order given. */
   void Choose(const std::vector<vtkIdType>& indices);
 
+  /** Room for so many points; those that are there stay, new ones are not set. */
+  void Resize(std::size_t count);
+  /** Sets points from @a first on to the chosen ones of another table. @return the point behind */
+  std::size_t Copy(
+    const PointTable& from, const std::vector<vtkIdType>& indices, std::size_t first);
+  /** Sets them to what Pack() has packed. */
+  std::size_t Unpack(const Bytes& packed, std::size_t first);
+  static std::size_t CountIn(const Bytes& packed);
+
   Buffer<double> Coordinates; ///< x, y, z of each point; none after Read()
-  Buffer<vtkIdType> Ids;
+  Buffer<vtkIdType> Ids;      ///< none after Read(): then points are numbered
   std::vector<ArrayKind> Kinds;
   std::vector<vtkSmartPointer<vtkAbstractArray>> Arrays; ///< one of each kind
 
@@ -102,8 +125,11 @@ private:
    * another; converted ones else; zeros, for ghost flags that this rank has not.
    */
   void View(vtkPointData* data);
+  bool IsHidden(std::size_t index) const;
   vtkSmartPointer<vtkDataArray> Owner; // of the positions after Read()
   const double* Given = nullptr;       // these
+  std::size_t GivenCount = 0;
+  vtkIdType FirstId = 0;
   std::size_t MarksIndex = 0; // among the arrays; their number: there are none
 };
 

@@ -60,25 +60,61 @@ Point2 SurfacePart::PointAt(std::size_t index) const
   return { p[0], p[1] };
 }
 
+namespace
+{
+constexpr std::size_t MostRuns = 1024; // more are no order
+
+/**
+ * Indices by increasing ids; of equal ids, the one that comes first stays so. What each rank has
+ * sent is in order, most often: such runs are merged, two and two.
+ * @param[in] runs  where they begin, and the end
+ */
+std::vector<vtkIdType> MergeRuns(const Buffer<vtkIdType>& ids, std::vector<std::size_t> runs)
+{
+  const auto isBefore = [&ids](vtkIdType a, vtkIdType b) { return ids[a] < ids[b]; };
+  std::vector<vtkIdType> indices(ids.size());
+  std::iota(indices.begin(), indices.end(), vtkIdType(0));
+  if (runs.size() > MostRuns)
+  {
+    std::stable_sort(indices.begin(), indices.end(), isBefore);
+    return indices;
+  }
+  while (runs.size() > 2)
+  {
+    std::vector<std::size_t> merged;
+    for (std::size_t i = 0; i + 1 < runs.size(); i += 2)
+    {
+      const auto at = [&](std::size_t run) {
+        return indices.begin() + runs[std::min(run, runs.size() - 1)];
+      };
+      std::inplace_merge(at(i), at(i + 1), at(i + 2), isBefore);
+      merged.push_back(runs[i]);
+    }
+    merged.push_back(runs.back());
+    runs = std::move(merged);
+  }
+  return indices;
+}
+} // namespace
+
 void SortOwn(SurfacePart& part)
 {
   PointTable& own = part.OwnPoints;
-  // Most often all is in order: from one rank, or sorted in a pass before. Then nothing is copied.
-  const auto isIncreasing = [&own](std::size_t i) { return own.Ids[i] < own.Ids[i + 1]; };
-  std::size_t i = 0;
-  while (i + 1 < own.Count() && isIncreasing(i))
+  std::vector<std::size_t> runs(1, 0);
+  for (std::size_t i = 0; i + 1 < own.Count() && runs.size() < MostRuns; ++i)
   {
-    ++i;
+    if (own.Ids[i] >= own.Ids[i + 1])
+    {
+      runs.push_back(i + 1);
+    }
   }
-  if (i + 1 >= own.Count())
+  runs.push_back(own.Count());
+  // Most often all is in order: from one rank, or sorted in a pass before. Then nothing is copied.
+  if (runs.size() == 2)
   {
     return;
   }
-  std::vector<vtkIdType> indices(own.Count());
-  std::iota(indices.begin(), indices.end(), vtkIdType(0));
-  // Stable: of points with one id, the one that came first stays.
-  std::stable_sort(indices.begin(), indices.end(),
-    [&own](vtkIdType a, vtkIdType b) { return own.Ids[a] < own.Ids[b]; });
+  std::vector<vtkIdType> indices = MergeRuns(own.Ids, std::move(runs));
   const auto isSame = [&part, &own](vtkIdType a, vtkIdType b) {
     const double *const p = own.At(a), *const q = own.At(b);
     // Points without a place are in no place that could differ.
@@ -233,7 +269,7 @@ void KeepCorners(SurfacePart& part)
   std::vector<Index> indexOf(others.Count(), None);
   std::vector<vtkIdType> order;
   std::vector<std::size_t> ofOthers; // indices among the corners
-  for (std::size_t i = 0; i < corners.size(); ++i)
+  for (std::size_t i = part.OwnCorners; i < corners.size(); ++i)
   {
     if (corners[i] < ownCount)
     {

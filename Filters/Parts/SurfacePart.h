@@ -57,6 +57,7 @@ struct SurfacePart
 
   /** Corners are indices in OwnPoints, followed by Others. Unused points are indices in OwnPoints. */
   Triangulation Result;
+  std::size_t OwnCorners = 0; ///< so many first ones are known to be own points
 
   int OwnerOf(GlobalId number) const { return elevation::OwnerOf(number, this->Bases); }
   /**

@@ -285,6 +285,7 @@ SurfacePart TriangulateParts::Take(int part, const Progress& progress)
   if (this->Options.MaximumEdgeLength > 0.0)
   {
     taken.Result.Triangles = WithinLimit(this->Options.MaximumEdgeLength, taken, stages.Next());
+    taken.OwnCorners = 0;
   }
   KeepCorners(taken);
   taken.Result.LatticeFound = this->Total.LatticeFound;

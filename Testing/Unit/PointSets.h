@@ -249,7 +249,8 @@ inline std::string FindingsOf(const Cloud& cloud, const elevation::Triangulation
   elevation::ValidateOptions options;
   options.UnusedPoints = &triangulation.UnusedPoints;
   const Index used = cloud.Count() - static_cast<Index>(triangulation.UnusedPoints.size());
-  std::string text = ToString(Validate(MeshOf(cloud, triangulation), options));
+  elevation::Mesh mesh = MeshOf(cloud, triangulation);
+  std::string text = ToString(Validate(mesh, options));
   const std::size_t expected =
     2 * static_cast<std::size_t>(used) - 2 - triangulation.NumberOfHullPoints;
   if (triangulation.Triangles.size() != 3 * expected)
@@ -257,6 +258,18 @@ inline std::string FindingsOf(const Cloud& cloud, const elevation::Triangulation
     text += std::to_string(triangulation.Triangles.size() / 3) +
       " triangles instead of 2n-2-h = " + std::to_string(expected) + "\n";
   }
+  mesh.ConnectTwins();
+  std::vector<Index> border, hull = triangulation.HullPoints;
+  for (Index h = 0; h < static_cast<Index>(mesh.Triangles.size()); ++h)
+  {
+    if (mesh.Twins[h] == elevation::Mesh::Border)
+    {
+      border.push_back(mesh.Triangles[h]);
+    }
+  }
+  std::sort(border.begin(), border.end());
+  std::sort(hull.begin(), hull.end());
+  text += border == hull ? "" : "The points of the hull are not those of the border.\n";
   return text;
 }
 

@@ -146,6 +146,9 @@ private:
     this->Groups = ((bins.Rows - 1) >> shift) + 1;
     this->Ranges = NumberOfRanges(this->Points.Count, RangePoints);
     this->InGroup.assign(this->Ranges * this->Groups, 0);
+    // A little more, which no page is used for: room for triangles that a piece gets from others,
+    // as this memory will be that of the triangles.
+    this->Memory.Reserve(static_cast<std::size_t>(this->Count) + this->Count / 64);
     this->Memory.Resize(this->Count);
     ForEachRange(
       this->Points.Count, this->Threads, progress,

@@ -13,6 +13,8 @@
 #include "BinGrid.h"
 #include "Kernel/Base/Base.h"
 
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 namespace elevation
@@ -62,6 +64,18 @@ Hull FindHull(const Buffer<Index>& candidates, const Turn& turn, const Progress&
 
 /** The hull of the points of a grid, at least one, as slots. */
 Hull FindHull(const BinGrid& grid, const Progress& progress);
+
+/** Lists the points of a hull, which is no line. @param idOf  the id of a vertex of the chains */
+template <typename IdOf>
+void SetHullPoints(const Hull& hull, const IdOf& idOf, Triangulation& triangulation)
+{
+  // The left chain has both ends of the right one, too.
+  std::vector<Index>& ids = triangulation.HullPoints;
+  std::transform(hull.RightChain.begin(), hull.RightChain.end(), std::back_inserter(ids), idOf);
+  std::transform(
+    hull.LeftChain.begin() + 1, hull.LeftChain.end() - 1, std::back_inserter(ids), idOf);
+  triangulation.NumberOfHullPoints = static_cast<Index>(ids.size());
+}
 
 } // namespace elevation
 

@@ -98,6 +98,7 @@ struct Triangulation
   // In the order of Triangulate.h, each beginning with its lowest vertex.
   Buffer<Index> Triangles;         ///< three point ids per triangle, counter-clockwise
   Index NumberOfHullPoints = 0;    ///< on the border of the convex hull, with collinear points
+  std::vector<Index> HullPoints;   ///< their ids, in no order; not listed where points are chosen
   std::vector<Index> UnusedPoints; ///< ids, increasing
   std::vector<UnusedReason> UnusedReasons; ///< one per unused point
   Index NumberOfDuplicates = 0;

@@ -76,18 +76,6 @@ void Cuts::Cut(Iterator first, Iterator last, int begin, int end)
   this->Cut(cut, last, middle, end);
 }
 
-int Cuts::OwnerOf(Point2 p) const
-{
-  int begin = 0, end = this->Count();
-  while (end - begin > 1)
-  {
-    const int middle = MiddleOf(begin, end);
-    const Line& line = this->Lines[middle];
-    (Coordinate(p, line.IsY) < line.Value ? end : begin) = middle;
-  }
-  return begin;
-}
-
 Cell Cuts::CellOf(int begin, int end) const
 {
   // From the whole plane down to the node: each cut on the way is a side of it.

@@ -46,7 +46,20 @@ public:
   int Count() const { return static_cast<int>(this->Lines.size()); }
 
   /** The cell that a finite point lies in. Takes log(count) steps. */
-  int OwnerOf(Point2 p) const;
+  int OwnerOf(Point2 p) const
+  {
+    int begin = 0, end = this->Count();
+    while (end - begin > 1)
+    {
+      const int middle = MiddleOf(begin, end);
+      const Line& line = this->Lines[middle];
+      // Products instead of a branch, which nothing could predict for points in no order.
+      const int isLower = (line.IsY ? p.Y : p.X) < line.Value ? 1 : 0;
+      begin += (1 - isLower) * (middle - begin);
+      end -= isLower * (end - middle);
+    }
+    return begin;
+  }
 
   /** The part of the plane that cells [begin, end) cover; the range must be a node of the tree. */
   Cell CellOf(int begin, int end) const;

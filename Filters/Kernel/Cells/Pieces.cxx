@@ -8,8 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <iterator>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -95,25 +95,28 @@ void CheckAbort(const Progress& progress, std::size_t step)
 }
 
 // The passes, in SettleCell() and SettleSeams(): Triangulated() with what is covered,
-// MarkSettled(), SeamOf(), KeepSettled().
+// MarkSettled(), SeamOf(), KeepSettled(). Of a large cell they look at few triangles, those of
+// Near.
 
-/** The mesh of points, with the state of its triangles. */
+/** The mesh of points, with the state of those of its triangles that may not be settled. */
 struct SettledMesh
 {
   enum State : char
   {
-    Inner,   // not looked at, for it is settled if what is nearer to the border is
     Open,    // to be settled by a larger cell
     Covered, // lies where triangles have been settled before
     Settled  // by this cell
   };
+
   PointView Points;
   Triangulation Result;
-  std::vector<State> States;    // of each triangle
-  std::vector<Edge> Seam;       // edges of triangles that have been settled before, sorted
-  std::vector<char> IsOnBorder; // of each point: whether it is on the border of the mesh
+  IdSet Border;              // the points on the border of the mesh
+  std::vector<Index> Near;   // triangles, increasing; all others are settled
+  std::vector<State> States; // of each of these
+  std::vector<Edge> Seam;    // edges of triangles that have been settled before, sorted
 
-  const Index* CornersOf(std::size_t t) const { return this->Result.Triangles.data() + 3 * t; }
+  Index TriangleCount() const { return static_cast<Index>(this->Result.Triangles.size() / 3); }
+  const Index* CornersOf(Index t) const { return this->Result.Triangles.data() + 3 * t; }
 
   /** Whether a half-edge has a triangle on its left that a smaller cell has settled. */
   bool IsOnSeam(Index halfEdge) const
@@ -127,6 +130,14 @@ struct SettledMesh
     return { this->Result.Triangles[halfEdge], this->Result.Triangles[next] };
   }
 };
+
+/** Of seams: all triangles may be open; none has been looked at. */
+void TakeAll(SettledMesh& mesh)
+{
+  mesh.Near.resize(static_cast<std::size_t>(mesh.TriangleCount()));
+  std::iota(mesh.Near.begin(), mesh.Near.end(), Index(0));
+  mesh.States.assign(mesh.Near.size(), SettledMesh::Open);
+}
 
 /** Marks what lies to the left of edges of the piece, as far as the next such edges. */
 void MarkCovered(SettledMesh& mesh)
@@ -181,53 +192,22 @@ void MarkCovered(SettledMesh& mesh)
 }
 
 /**
- * Marks the vertices on the border of the mesh. Around any other vertex, the ends of the edges that
- * leave it are those from which edges come in, so that their sums are equal.
+ * Triangulates. The border of what is made is the hull.
+ * @param[in] isFilled  the points are all those of a cell: mostly a lattice well filled
  */
-std::vector<char> FindBorder(
-  Index numberOfPoints, const Buffer<Index>& triangles, const Progress& progress)
-{
-  // Around a vertex of the border, the sum is the difference of the two ends of its fan: never 0.
-  // Unsigned, as sums may wrap around.
-  std::vector<std::uint32_t> sums(static_cast<std::size_t>(numberOfPoints), 0);
-  for (std::size_t i = 0; i < triangles.size(); i += 3)
-  {
-    CheckAbort(progress, i);
-    const Index a = triangles[i], b = triangles[i + 1], c = triangles[i + 2];
-    sums[a] += static_cast<std::uint32_t>(b - c);
-    sums[b] += static_cast<std::uint32_t>(c - a);
-    sums[c] += static_cast<std::uint32_t>(a - b);
-  }
-  std::vector<char> isOnBorder(sums.size());
-  std::transform(sums.begin(), sums.end(), isOnBorder.begin(),
-    [](std::uint32_t sum) { return static_cast<char>(sum != 0); });
-  return isOnBorder;
-}
-
-/**
- * Triangulates, and finds what is covered and the border.
- * @param[in] edges  of a Piece; empty: the points are all those of a cell
- */
-SettledMesh Triangulated(const PointView& points, const std::vector<Index>& edges,
-  DelaunayOptions options, const SharedLattice* lattice)
+SettledMesh Triangulated(
+  const PointView& points, DelaunayOptions options, const SharedLattice* lattice, bool isFilled)
 {
   options.MaximumEdgeLength = 0.0;
   options.UseLattice = LatticeMode::Off;
-  SettledMesh mesh;
-  mesh.Points = points;
-  // Edges come with seams only.
-  const bool areAll = edges.empty(); // points of a cell: mostly a lattice well filled
-  mesh.Result =
-    lattice ? TriangulateNodes(points, *lattice, options, areAll) : Triangulate(points, options);
-  mesh.States.assign(mesh.Result.Triangles.size() / 3, SettledMesh::Inner);
-  for (std::size_t i = 0; i < edges.size(); i += 2)
+  Triangulation result =
+    lattice ? TriangulateNodes(points, *lattice, options, isFilled) : Triangulate(points, options);
+  IdSet border(points.Count);
+  for (const Index point : result.HullPoints)
   {
-    mesh.Seam.emplace_back(edges[i], edges[i + 1]);
+    border.Add(point);
   }
-  std::sort(mesh.Seam.begin(), mesh.Seam.end());
-  MarkCovered(mesh);
-  mesh.IsOnBorder = FindBorder(points.Count, mesh.Result.Triangles, options.Monitor);
-  return mesh;
+  return { points, std::move(result), std::move(border), {}, {}, {} };
 }
 
 /** Whether a sorted list has an edge in this direction. */
@@ -246,20 +226,14 @@ std::vector<Edge> FindSeamEdges(
   const std::vector<Edge>& open, const SettledMesh& mesh, const Progress& progress)
 {
   std::vector<Edge> across; // edges between vertices of the border: those of the border, and others
-  const char* const isOnBorder = mesh.IsOnBorder.data();
-  for (std::size_t t = 0; t < mesh.States.size(); ++t)
+  // Any triangle with a corner there is near.
+  for (std::size_t i = 0; i < mesh.Near.size(); ++i)
   {
-    CheckAbort(progress, t);
-    const Index* const c = mesh.CornersOf(t);
-    if (mesh.States[t] == SettledMesh::Inner ||
-      isOnBorder[c[0]] + isOnBorder[c[1]] + isOnBorder[c[2]] < 2)
+    CheckAbort(progress, i);
+    for (Index h = 3 * mesh.Near[i], k = 0; k < 3; ++k)
     {
-      continue;
-    }
-    for (int k = 0; k < 3; ++k)
-    {
-      const Edge ends{ c[k], c[(k + 1) % 3] };
-      if (isOnBorder[ends.first] && isOnBorder[ends.second])
+      const Edge ends = mesh.EndsOf(h + k);
+      if (mesh.Border.Has(ends.first) && mesh.Border.Has(ends.second))
       {
         across.push_back(ends);
       }
@@ -285,48 +259,58 @@ std::vector<Edge> FindSeamEdges(
 
 /**
  * The corners of open triangles, and the edges between settled ones and these or the outside. Ids
- * are places of points.
+ * are places of points, increasing.
  */
 Piece SeamOf(const SettledMesh& mesh, const Progress& progress)
 {
-  std::vector<Index> placeOf(static_cast<std::size_t>(mesh.Points.Count), None);
-  Piece seam;
-  const auto place = [&](Index vertex) {
-    if (placeOf[vertex] == None)
-    {
-      // A vertex enters the seam when it is first asked for.
-      placeOf[vertex] = seam.Count();
-      const Point2 p = mesh.Points.At(vertex);
-      seam.Coordinates.insert(seam.Coordinates.end(), { p.X, p.Y, mesh.Points.Elevation(vertex) });
-      seam.Ids.push_back(vertex);
-    }
-    return placeOf[vertex];
-  };
-  // Sorted, so that places in the seam depend on the points, not on the order of triangles.
   std::vector<Edge> open;
-  for (std::size_t t = 0; t < mesh.States.size(); ++t)
+  for (std::size_t i = 0; i < mesh.Near.size(); ++i)
   {
-    for (Index h = 3 * static_cast<Index>(t), k = 0; mesh.States[t] == SettledMesh::Open && k < 3;
-         ++k)
+    for (Index h = 3 * mesh.Near[i], k = 0; mesh.States[i] == SettledMesh::Open && k < 3; ++k)
     {
       open.push_back(mesh.EndsOf(h + k));
     }
   }
   std::sort(open.begin(), open.end());
-  std::for_each(open.begin(), open.end(), [&](const Edge& edge) { place(edge.first); });
-  for (const Edge& edge : FindSeamEdges(open, mesh, progress))
+  const std::vector<Edge> edges = FindSeamEdges(open, mesh, progress);
+  Piece seam;
+  const auto add = [&seam](Index vertex) {
+    // Each corner comes several times, one after another, as edges are sorted.
+    if (seam.Ids.empty() || seam.Ids.back() != vertex)
+    {
+      seam.Ids.push_back(vertex);
+    }
+  };
+  std::for_each(open.begin(), open.end(), [&add](const Edge& edge) { add(edge.first); });
+  for (const Edge& edge : edges)
   {
-    const Index first = place(edge.first);
-    seam.Edges.insert(seam.Edges.end(), { first, place(edge.second) });
+    add(edge.first);
+    add(edge.second);
   }
   const std::vector<Index>& unused = mesh.Result.UnusedPoints;
   // On a line, or fewer than three.
-  for (Index i = 0; mesh.States.empty() && i < mesh.Points.Count; ++i)
+  for (Index i = 0; mesh.Result.Triangles.empty() && i < mesh.Points.Count; ++i)
   {
     if (!std::binary_search(unused.begin(), unused.end(), i))
     {
-      place(i);
+      add(i);
     }
+  }
+  std::sort(seam.Ids.begin(), seam.Ids.end());
+  seam.Ids.erase(std::unique(seam.Ids.begin(), seam.Ids.end()), seam.Ids.end());
+  const auto placeOf = [&seam](Index vertex) {
+    const auto at = std::lower_bound(seam.Ids.begin(), seam.Ids.end(), GlobalId(vertex));
+    return static_cast<Index>(at - seam.Ids.begin());
+  };
+  for (const Edge& edge : edges)
+  {
+    seam.Edges.insert(seam.Edges.end(), { placeOf(edge.first), placeOf(edge.second) });
+  }
+  for (const GlobalId id : seam.Ids)
+  {
+    const Index vertex = static_cast<Index>(id);
+    const Point2 p = mesh.Points.At(vertex);
+    seam.Coordinates.insert(seam.Coordinates.end(), { p.X, p.Y, mesh.Points.Elevation(vertex) });
   }
   return seam;
 }
@@ -350,52 +334,76 @@ bool HoldsCircleOf(
   return isHeld;
 }
 
-/** Marks what is settled. */
+/** Marks what is settled, among the triangles of Near. */
 void MarkSettled(
   const Cell& cell, const SharedLattice* lattice, const Progress& progress, SettledMesh& mesh)
 {
-  for (std::size_t t = 0; t < mesh.States.size(); ++t)
+  constexpr std::size_t ahead = 16; // corners are anywhere in memory
+  for (std::size_t i = 0; i < mesh.Near.size(); ++i)
   {
-    CheckAbort(progress, t);
-    if (mesh.States[t] == SettledMesh::Inner)
+    CheckAbort(progress, i);
+    const Index* const soon = mesh.CornersOf(mesh.Near[std::min(i + ahead, mesh.Near.size() - 1)]);
+    std::for_each(soon, soon + 3, [&mesh](Index corner) {
+      const std::size_t x = 3 * static_cast<std::size_t>(corner);
+      mesh.Points.Double ? Prefetch(mesh.Points.Double + x) : Prefetch(mesh.Points.Float + x);
+    });
+    if (mesh.States[i] == SettledMesh::Open &&
+      HoldsCircleOf(cell, mesh, mesh.CornersOf(mesh.Near[i]), lattice))
     {
-      const bool isHeld = HoldsCircleOf(cell, mesh, mesh.CornersOf(t), lattice);
-      mesh.States[t] = isHeld ? SettledMesh::Settled : SettledMesh::Open;
+      mesh.States[i] = SettledMesh::Settled;
+    }
+  }
+}
+
+/** Looks at all triangles of a cell. Near has those that are open, or at the border. */
+void MarkAllSettled(
+  const Cell& cell, const SharedLattice* lattice, const Progress& progress, SettledMesh& mesh)
+{
+  mesh.Near.clear();
+  mesh.States.clear();
+  for (Index t = 0; t < mesh.TriangleCount(); ++t)
+  {
+    CheckAbort(progress, static_cast<std::size_t>(t));
+    const Index* const corners = mesh.CornersOf(t);
+    const bool isHeld = HoldsCircleOf(cell, mesh, corners, lattice);
+    if (!isHeld || mesh.Border.HasAny(corners))
+    {
+      mesh.Near.push_back(t);
+      mesh.States.push_back(isHeld ? SettledMesh::Settled : SettledMesh::Open);
     }
   }
 }
 
 /**
  * The points on the border of the mesh, or near that of its box: few, if they are spread evenly.
- * The distance is half the fourth root of their number n, in spacings, so that some n^(3/4) points
- * are near.
+ * The distance is a quarter of the fourth root of their number n, in spacings, so that n^(3/4)
+ * points are near.
  */
-std::vector<char> FindNear(const SettledMesh& mesh)
+IdSet FindNear(const SettledMesh& mesh)
 {
-  std::vector<char> isNear = mesh.IsOnBorder;
+  IdSet near = mesh.Border;
   Box box;
-  for (Index i = 0; i < mesh.Points.Count; ++i)
+  for (const Index point : mesh.Result.HullPoints)
   {
-    if (mesh.IsOnBorder[i])
-    {
-      box.Add(mesh.Points.At(i));
-    }
+    box.Add(mesh.Points.At(point));
   }
   const double count = static_cast<double>(std::max(1, mesh.Points.Count));
-  const double distance = 0.5 * std::sqrt(box.Width() * box.Height() / std::sqrt(count));
+  const double distance = 0.25 * std::sqrt(box.Width() * box.Height() / std::sqrt(count));
   const Box inner{ { box.Low.X + distance, box.Low.Y + distance },
     { box.High.X - distance, box.High.Y - distance } };
   for (Index i = 0; i < mesh.Points.Count; ++i)
   {
-    isNear[i] |= inner.Contains(mesh.Points.At(i)) ? 0 : 1;
+    if (!inner.Contains(mesh.Points.At(i)))
+    {
+      near.Add(i);
+    }
   }
-  return isNear;
+  return near;
 }
 
 /**
- * Does the same to the mesh of all points of a cell, none of it covered, and looks at few circles:
- * those of triangles that have a corner which is near, as FindNear() says. Where one is found to be
- * open, its other corners count as near, too.
+ * Does the same, and looks at few circles: those of triangles that have a corner which is near, as
+ * FindNear() says. Where one is found to be open, its other corners count as near, too.
  *
  * The others are settled. For let the circle of a triangle, with its rim, reach a place that is not
  * inside the cell. As the cell is convex and has all points, that place is not inside the mesh
@@ -411,38 +419,39 @@ std::vector<char> FindNear(const SettledMesh& mesh)
  */
 void MarkSettledInCell(const Cell& cell, const Progress& progress, SettledMesh& mesh)
 {
-  constexpr int mostRounds = 8; // then all triangles are looked at; mostly two are enough
-  std::vector<char> isNear = FindNear(mesh);
-  char* const near = isNear.data();
-  const Index* const corners = mesh.CornersOf(0);
-  const std::size_t count = mesh.States.size();
+  constexpr int mostRounds = 8; // then all triangles are looked at; mostly one or two are enough
+  IdSet near = FindNear(mesh);
+  const Index count = mesh.TriangleCount();
   bool hasSpread = true;
-  for (int round = 0; hasSpread; ++round)
+  for (int round = 0; hasSpread && round < mostRounds; ++round)
   {
-    if (round == mostRounds)
+    mesh.Near.clear();
+    for (Index t = 0; t < count; ++t)
     {
-      std::fill(isNear.begin(), isNear.end(), char(1));
-    }
-    hasSpread = false;
-    for (std::size_t t = 0; t < count; ++t)
-    {
-      CheckAbort(progress, t);
-      const Index* const c = corners + 3 * t;
-      // By bytes and bits, without branches: nearly all triangles of a large cell are passed over
-      // here.
-      const char isAny = near[c[0]] | near[c[1]] | near[c[2]];
-      if (!isAny || mesh.States[t] != SettledMesh::Inner)
+      CheckAbort(progress, static_cast<std::size_t>(t));
+      if (near.HasAny(mesh.CornersOf(t)))
       {
-        continue;
+        mesh.Near.push_back(t);
       }
-      const bool isHeld = HoldsCircleOf(cell, mesh, c, nullptr);
-      mesh.States[t] = isHeld ? SettledMesh::Settled : SettledMesh::Open;
-      if (!isHeld && !(near[c[0]] & near[c[1]] & near[c[2]]))
+    }
+    // What a round before has looked at is looked at again: few.
+    mesh.States.assign(mesh.Near.size(), SettledMesh::Open);
+    MarkSettled(cell, nullptr, progress, mesh);
+    hasSpread = false;
+    for (std::size_t i = 0; i < mesh.Near.size(); ++i)
+    {
+      const Index* const corners = mesh.CornersOf(mesh.Near[i]);
+      if (mesh.States[i] == SettledMesh::Open &&
+        !std::all_of(corners, corners + 3, [&near](Index corner) { return near.Has(corner); }))
       {
         hasSpread = true;
-        near[c[0]] = near[c[1]] = near[c[2]] = 1;
+        near.AddAll(corners);
       }
     }
+  }
+  if (hasSpread)
+  {
+    MarkAllSettled(cell, nullptr, progress, mesh);
   }
 }
 
@@ -451,14 +460,20 @@ void KeepSettled(const Progress& progress, SettledMesh& mesh)
 {
   Buffer<Index>& triangles = mesh.Result.Triangles;
   Index* to = triangles.data();
-  for (std::size_t t = 0; t < mesh.States.size(); ++t)
+  const Index* from = to; // where a stretch of settled triangles begins
+  const auto moveUntil = [&](Index t) {
+    to = std::copy(from, mesh.CornersOf(t), to);
+    Report(progress, 1.0);
+  };
+  for (std::size_t i = 0; i < mesh.Near.size(); ++i)
   {
-    CheckAbort(progress, t);
-    if (mesh.States[t] == SettledMesh::Settled || mesh.States[t] == SettledMesh::Inner)
+    if (mesh.States[i] != SettledMesh::Settled)
     {
-      to = std::copy_n(mesh.CornersOf(t), 3, to);
+      moveUntil(mesh.Near[i]);
+      from = mesh.CornersOf(mesh.Near[i] + 1);
     }
   }
+  moveUntil(mesh.TriangleCount());
   triangles.Resize(static_cast<std::size_t>(to - triangles.data()));
 }
 } // namespace
@@ -466,10 +481,10 @@ void KeepSettled(const Progress& progress, SettledMesh& mesh)
 SettledCell SettleCell(const PointView& points, GlobalId first, const Cell& cell,
   const DelaunayOptions& options, const SharedLattice* lattice)
 {
-  SettledMesh mesh = Triangulated(points, {}, options, lattice);
+  SettledMesh mesh = Triangulated(points, options, lattice, true);
   if (lattice)
   {
-    MarkSettled(cell, lattice, options.Monitor, mesh);
+    MarkAllSettled(cell, lattice, options.Monitor, mesh);
   }
   else
   {
@@ -487,7 +502,14 @@ Piece SettleSeams(const Piece& seams, const Cell& cell, const DelaunayOptions& o
   PointView points;
   points.Double = seams.Coordinates.data();
   points.Count = seams.Count();
-  SettledMesh mesh = Triangulated(points, seams.Edges, options, lattice);
+  SettledMesh mesh = Triangulated(points, options, lattice, seams.Edges.empty());
+  for (std::size_t i = 0; i < seams.Edges.size(); i += 2)
+  {
+    mesh.Seam.emplace_back(seams.Edges[i], seams.Edges[i + 1]);
+  }
+  std::sort(mesh.Seam.begin(), mesh.Seam.end());
+  TakeAll(mesh);
+  MarkCovered(mesh);
   MarkSettled(cell, lattice, options.Monitor, mesh);
   Piece seam = SeamOf(mesh, options.Monitor);
   const auto idOf = [&seams](GlobalId place) { return seams.Ids[place]; };

@@ -303,7 +303,11 @@ Buffer<Index> GrowAll(Growth& growth, const Hull& hull, Index vertices,
         ThrowFault("triangles are missing");
       }
       triangles.Resize(static_cast<std::size_t>(end - triangles.begin()));
-      triangles.Shrink();
+      // A little stays, as growing by a little would copy all.
+      if (triangles.capacity() - triangles.size() > triangles.size() / 16)
+      {
+        triangles.Shrink();
+      }
       return triangles;
     }
     catch (const CannotGrow&)

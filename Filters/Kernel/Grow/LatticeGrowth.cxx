@@ -482,7 +482,8 @@ bool GrowOnLattice(const PointView& points, LatticeNodes& nodes, const LatticeMe
   {
     return false;
   }
-  result.NumberOfHullPoints = static_cast<Index>(hull.NumberOfPoints());
+  SetHullPoints(
+    hull, [&nodes](Index node) { return nodes.Ids[nodes.RankOf(node)]; }, result);
   return true;
 }
 } // namespace

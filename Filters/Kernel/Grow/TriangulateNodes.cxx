@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -107,11 +108,18 @@ Triangulation TriangulateSparse(
       { static_cast<double>(one.Node.I - lowest.I), static_cast<double>(one.Node.J - lowest.J) });
   }
   result.Triangles = DivideAndConquer(nodes, stages.Next(), &lattice.Metric());
-  const Index triangles = static_cast<Index>(result.Triangles.size() / 3);
-  if (triangles > 0)
+  // Without a triangle there is no border.
+  if (!result.Triangles.empty())
   {
-    // Euler's formula, solved for the border; without a triangle there is no border.
-    result.NumberOfHullPoints = 2 * static_cast<Index>(placed.size()) - 2 - triangles;
+    Buffer<Index> all;
+    all.Resize(nodes.size());
+    std::iota(all.begin(), all.end(), Index(0));
+    const auto turn = [&nodes](Index p, Index q, Index r) {
+      return Orientation(nodes[p], nodes[q], nodes[r]);
+    };
+    SetHullPoints(
+      FindHull(all, turn, Progress()), [&placed](Index node) { return placed[node].Point; },
+      result);
   }
   for (Index& corner : result.Triangles)
   {

@@ -62,7 +62,8 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
   {
     return result;
   }
-  result.NumberOfHullPoints = static_cast<Index>(hull.NumberOfPoints());
+  SetHullPoints(
+    hull, [&grid](Index slot) { return grid.Ids[slot]; }, result);
   options.Monitor = stages.Next();
   result.Triangles = GrowOverGrid(grid, hull, options, threads);
   Report(options.Monitor, 1.0);
