@@ -93,9 +93,9 @@ using elevation::Mesh;
 using elevation::Report;
 using elevation::Stages;
 
-/** Fills a block in memory. */
-FillResult FillBlock(
-  FillOptions options, bool interpolates, double openEdgeLength, elevation::Block& block)
+/** Fills a block in memory. @param[in] isSingle  whether its output is to have float points */
+FillResult FillBlock(FillOptions options, bool isSingle, bool interpolates, double openEdgeLength,
+  elevation::Block& block)
 {
   const elevation::Progress& progress = block.Progress;
   Stages stages(progress, { 15, 25, 10, 5, 45 });
@@ -105,8 +105,8 @@ FillResult FillBlock(
   elevation::CheckArrays(input);
   std::vector<elevation::Message> warnings;
   const bool areFloat = elevation::HasFloatPoints(input);
-  options.SinglePrecision = options.SinglePrecision || areFloat;
-  options.Chosen = elevation::ToAreas(block.Second, options, progress.Between(0.0, 0.0), warnings);
+  options.Chosen = elevation::ToAreas(
+    block.Second, options, isSingle || areFloat, progress.Between(0.0, 0.0), warnings);
   const elevation::DataSetPoints points = elevation::ViewPoints(input);
   const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
   Mesh mesh;
@@ -217,8 +217,8 @@ int vtkFillElevationHoles::RequestData(
   call.CleanedOutputs = this->RemoveUnusedPoints ? 1 : 0;
   call.Precision = this->OutputPointsPrecision;
   call.Sums = { &this->NumberOfHoles, &this->NumberOfFilledHoles };
-  FillOptions options = elevation::OptionsOf(this);
-  options.SinglePrecision = this->OutputPointsPrecision == vtkAlgorithm::SINGLE_PRECISION;
+  const FillOptions options = elevation::OptionsOf(this);
+  const bool isSingle = this->OutputPointsPrecision == vtkAlgorithm::SINGLE_PRECISION;
   const bool interpolates = this->InterpolatePointData != 0;
   const auto addCounts = [this](const FillResult& patches) {
     this->NumberOfHoles += patches.Found.Count();
@@ -233,10 +233,10 @@ int vtkFillElevationHoles::RequestData(
     vtkPolyData* const part = vtkPolyData::SafeDownCast(block.Input);
     const bool areDouble =
       part && part->GetNumberOfPoints() > 0 && !elevation::HasFloatPoints(part);
-    chosen.SinglePrecision = options.SinglePrecision || !elevation::IsOnAny(ranks, areDouble);
+    const bool areFloat = isSingle || !elevation::IsOnAny(ranks, areDouble);
     ranks.Agree([&] {
-      chosen.Chosen =
-        elevation::ToAreas(block.Second, chosen, block.Progress.Between(0.0, 0.0), warnings);
+      chosen.Chosen = elevation::ToAreas(
+        block.Second, chosen, areFloat, block.Progress.Between(0.0, 0.0), warnings);
     });
     if (!elevation::FillOnRanks(ranks, chosen, interpolates, this->OpenEdgeLength, block, patches))
     {
@@ -254,7 +254,7 @@ int vtkFillElevationHoles::RequestData(
     return true;
   };
   return call.Run([&](elevation::Block& block) {
-    addCounts(FillBlock(options, interpolates, this->OpenEdgeLength, block));
+    addCounts(FillBlock(options, isSingle, interpolates, this->OpenEdgeLength, block));
   });
 }
 

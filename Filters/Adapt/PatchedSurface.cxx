@@ -392,11 +392,10 @@ void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& o
 
 namespace
 {
-/** The levels of lines, by the cell array that the options name; none without a name. */
+/** The levels of lines, by a cell array; none without its name. @param[in] areFloat  as ToAreas() */
 std::vector<double> LevelsOf(
-  vtkPolyData* lines, const BoundaryLines& read, const FillOptions& options)
+  vtkPolyData* lines, const BoundaryLines& read, const std::string& name, bool areFloat)
 {
-  const std::string& name = options.LevelArray;
   std::vector<double> levels;
   if (name.empty())
   {
@@ -418,12 +417,13 @@ std::vector<double> LevelsOf(
     }
     throw MakeError<sentences::NoLevelArray>(name, isText ? ", which is text" : "", known);
   }
-  constexpr double largestFloat = std::numeric_limits<float>::max();
+  const double largest =
+    areFloat ? std::numeric_limits<float>::max() : std::numeric_limits<double>::max();
   for (Index line = 0; line < read.Lines.Count(); ++line)
   {
     levels.push_back(array->GetComponent(read.Cells[line], 0));
     const double size = std::fabs(levels.back());
-    if (size > (options.SinglePrecision ? largestFloat : std::numeric_limits<double>::max()))
+    if (size > largest)
     {
       throw MakeError<sentences::InfiniteLevel>(name, NameOf(read, line),
         std::isinf(size) ? std::string()
@@ -435,7 +435,7 @@ std::vector<double> LevelsOf(
 }
 } // namespace
 
-std::shared_ptr<const Areas> ToAreas(vtkPolyData* lines, const FillOptions& options,
+std::shared_ptr<const Areas> ToAreas(vtkPolyData* lines, const FillOptions& options, bool areFloat,
   const Progress& progress, std::vector<Message>& warnings)
 {
   if (!options.LevelArray.empty() && !(lines && options.Mode == AreaMode::FillOnly))
@@ -449,7 +449,8 @@ std::shared_ptr<const Areas> ToAreas(vtkPolyData* lines, const FillOptions& opti
   CheckArrays(lines, std::string("The ") + AreaInputName + "'s");
   Message repeated;
   const BoundaryLines read = ToBoundaryLines(lines, progress, AreaInputName);
-  auto areas = std::make_shared<const Areas>(read, LevelsOf(lines, read, options), &repeated);
+  auto areas = std::make_shared<const Areas>(
+    read, LevelsOf(lines, read, options.LevelArray, areFloat), &repeated);
   if (!repeated.IsEmpty())
   {
     warnings.push_back(repeated);

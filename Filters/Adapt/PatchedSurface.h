@@ -55,11 +55,11 @@ constexpr const char* AreaInputName = "area input";
 /**
  * The areas that lines and polygons bound, with their levels if the options name these; nullptr:
  * none.
- * @param[in] options  SinglePrecision: that of the output, whose points are to hold the levels
+ * @param[in] areFloat  whether the points of the output, which are to hold the levels, are float
  * @param[out] warnings  one is added where rings are there more than once
  * @throws Error naming the cell, point or array, or that levels would not be used
  */
-std::shared_ptr<const Areas> ToAreas(vtkPolyData* lines, const FillOptions& options,
+std::shared_ptr<const Areas> ToAreas(vtkPolyData* lines, const FillOptions& options, bool areFloat,
   const Progress& progress, std::vector<Message>& warnings);
 
 /** Warnings about holes that failed, about areas that choose nothing or have no level, about contacts. */

@@ -395,9 +395,8 @@ void ReconstructParts::Fill(const Progress& progress)
   std::vector<Message> warnings;
   this->Do(true, [&]() {
     this->AllRanks->Agree([&]() {
-      this->Set.Fill.SinglePrecision = this->Work->AreFloat();
-      this->Set.Fill.Chosen =
-        ToAreas(this->AreaLines, this->Set.Fill, progress.Between(0.0, 0.0), warnings);
+      this->Set.Fill.Chosen = ToAreas(this->AreaLines, this->Set.Fill, this->Work->AreFloat(),
+        progress.Between(0.0, 0.0), warnings);
     });
     this->Set.Fill.Monitor = progress;
     const auto make = [this](int part, const Progress& ofPart) {

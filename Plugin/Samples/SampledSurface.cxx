@@ -90,6 +90,27 @@ bool IsFirstRank(vtkInformation* request)
   return !controller || controller->GetLocalProcessId() == 0;
 }
 
+void MakeSamples(vtkAlgorithm* filter, vtkInformation* request, vtkDataObject* output,
+  const std::function<void()>& make)
+{
+  try
+  {
+    make();
+  }
+  catch (const Aborted&)
+  {
+    output->Initialize();
+  }
+  catch (const std::exception& failure)
+  {
+    output->Initialize();
+    if (IsFirstRank(request))
+    {
+      vtkErrorWithObjectMacro(filter, << failure.what());
+    }
+  }
+}
+
 bool SampledSurface::IsAlone() const
 {
   return !this->Controller || this->Controller->GetNumberOfProcesses() < 2;

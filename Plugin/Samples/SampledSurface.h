@@ -17,6 +17,7 @@
 #include <string>
 
 class vtkAlgorithm;
+class vtkDataObject;
 class vtkDoubleArray;
 class vtkInformation;
 class vtkMultiProcessController;
@@ -77,6 +78,13 @@ private:
 
 /** Whether this rank speaks for all that work on the request of an output. */
 bool IsFirstRank(vtkInformation* request);
+
+/**
+ * Makes the output of a filter. If that throws, the output is empty, and the first rank reports why;
+ * an abort is no error.
+ */
+void MakeSamples(vtkAlgorithm* filter, vtkInformation* request, vtkDataObject* output,
+  const std::function<void()>& make);
 
 /** Progress and abort of a filter of the plugin. */
 Progress ProgressOfSampling(vtkAlgorithm* filter);

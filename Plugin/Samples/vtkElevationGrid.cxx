@@ -18,7 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
+#include <string>
 
 vtkStandardNewMacro(vtkElevationGrid);
 
@@ -87,17 +87,13 @@ int vtkElevationGrid::RequestData(
   output->Initialize();
   const int columns = this->Dimensions[0], rows = this->Dimensions[1];
   vtkInformation* const request = outputVector->GetInformationObject(0);
-  if (columns < 2 || rows < 2 || static_cast<vtkIdType>(columns) * rows > MostNodes)
-  {
-    if (elevation::IsFirstRank(request))
+  elevation::MakeSamples(this, request, output, [&] {
+    if (columns < 2 || rows < 2 || static_cast<vtkIdType>(columns) * rows > MostNodes)
     {
-      vtkErrorMacro(<< "Dimensions are " << columns << " and " << rows
-                    << "; they must be 2 or more each, and " << MostNodes << " nodes at most.");
+      throw elevation::Error("Dimensions are " + std::to_string(columns) + " and " +
+        std::to_string(rows) + "; they must be 2 or more each, and " + std::to_string(MostNodes) +
+        " nodes at most.");
     }
-    return 1;
-  }
-  try
-  {
     const elevation::SampledSurface surface(vtkPolyData::GetData(inputVector[0]), request);
     const elevation::Box& bounds = surface.Bounds();
     const double dx = (bounds.High.X - bounds.Low.X) / (columns - 1);
@@ -123,19 +119,7 @@ int vtkElevationGrid::RequestData(
       // Of several ranks each has all nodes, and passes on its part.
       output->Crop(request->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()));
     });
-  }
-  catch (const elevation::Aborted&)
-  {
-    output->Initialize();
-  }
-  catch (const std::exception& failure)
-  {
-    output->Initialize();
-    if (elevation::IsFirstRank(request))
-    {
-      vtkErrorMacro(<< failure.what());
-    }
-  }
+  });
   return 1;
 }
 

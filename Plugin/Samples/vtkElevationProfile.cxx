@@ -24,8 +24,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
+#include <string>
 #include <vector>
 
 vtkStandardNewMacro(vtkElevationProfile);
@@ -203,17 +203,12 @@ int vtkElevationProfile::RequestData(
 {
   vtkPolyData* const output = vtkPolyData::GetData(outputVector);
   vtkInformation* const request = outputVector->GetInformationObject(0);
-  if (this->Resolution < 1 || this->Resolution > MostSteps)
-  {
-    if (elevation::IsFirstRank(request))
+  elevation::MakeSamples(this, request, output, [&] {
+    if (this->Resolution < 1 || this->Resolution > MostSteps)
     {
-      vtkErrorMacro(<< "Resolution is " << this->Resolution << "; it must be 1 to " << MostSteps
-                    << ".");
+      throw Error("Resolution is " + std::to_string(this->Resolution) + "; it must be 1 to " +
+        std::to_string(MostSteps) + ".");
     }
-    return 1;
-  }
-  try
-  {
     const elevation::SampledSurface surface(vtkPolyData::GetData(inputVector[0]), request);
     const elevation::Box& bounds = surface.Bounds();
     vtkNew<vtkDoubleArray> corners;
@@ -239,7 +234,7 @@ int vtkElevationProfile::RequestData(
     if (!elevation::IsFirstRank(request))
     {
       output->Initialize(); // the first rank has it
-      return 1;
+      return;
     }
     PassLines(samples, output);
     if (found == 0)
@@ -250,19 +245,7 @@ int vtkElevationProfile::RequestData(
                       << " to " << bounds.High.X << ", y " << bounds.Low.Y << " to "
                       << bounds.High.Y << ".");
     }
-  }
-  catch (const elevation::Aborted&)
-  {
-    output->Initialize();
-  }
-  catch (const std::exception& failure)
-  {
-    output->Initialize();
-    if (elevation::IsFirstRank(request))
-    {
-      vtkErrorMacro(<< failure.what());
-    }
-  }
+  });
   return 1;
 }
 
