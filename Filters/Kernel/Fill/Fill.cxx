@@ -142,9 +142,12 @@ public:
     this->PlanAll(stages.Next());
     this->GrantPoints();
     const Progress ranging = stages.Next();
-    this->Range = this->Context.Elevations.IsEmpty()
-      ? RangeOf(this->Surface, this->GivenHoles, this->Points, ranging)
-      : this->Context.Elevations;
+    this->Range = this->Context.Elevations;
+    if (this->Range.IsEmpty() &&
+      this->GivenHoles.NumberOfRegions() > 0) // only theirs are drawn back
+    {
+      this->Range = RangeOf(this->Surface, this->GivenHoles, this->Points, ranging);
+    }
     // They may be there already, for the plans.
     const bool makesStars = this->AllWork > 0.0 && needsStars && !this->Stars;
     Stages later(stages.Next(), { makesStars ? 4.0 : 0.0, 94 });
