@@ -625,13 +625,6 @@ def are_among(values, few):
     return few[numpy.minimum(numpy.searchsorted(few, values), len(few) - 1)] == values
 
 
-def corner_flags(triangles, count):
-    """(count,) of bool: which points are corners of triangles."""
-    flags = numpy.zeros(count, dtype=bool)
-    flags[triangles.ravel()] = True
-    return flags
-
-
 def rounding_note(coordinates, why="VTK reads this format"):
     """A line for the user when 32-bit coordinates are coarse for the spacing, else None."""
     xy = coordinates[:, :2]

@@ -20,7 +20,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import reading
-from .clouds import Cloud, corner_flags, faults_note, heights_of, make_points, set_crs, slices
+from .clouds import Cloud, faults_note, heights_of, make_points, set_crs, slices
 from .description import DESCRIBED
 from .draping import check_given_z
 from .given_lines import check_z, in_system
@@ -28,6 +28,7 @@ from .holes import BridgedVoids, hole_report
 from .lattice import lattice_of
 from .mending import mended
 from .messages import ElevationSurfaceError, FileError, Messages
+from .passes import corner_flags
 from .properties import option_of, set_properties
 from .ranks import agreed, by_first, collected, rank_and_count, together, total
 from .reading.formats import recognise

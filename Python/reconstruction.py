@@ -20,7 +20,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkRectilinearGrid,
 )
 
-from .clouds import Cloud, check_ids, coordinates_of, make_lines, make_points
+from .clouds import Cloud, check_ids, coordinates_of, make_lines, make_points, slices
 from .description import KINDS, listing, view_angles
 from .given_lines import RINGS, fitted
 from .several_heights import check_heights, heights_on_ranks
@@ -556,9 +556,11 @@ def reconstruct(
 
 def least_reach(points, ranks=None):
     """The larger of |x| and |y| of the point where that is least; infinity without points."""
-    xy = coordinates_of(points)[:, :2]
-    xy = xy[numpy.isfinite(xy).all(axis=1)]
-    return extremes(ranks, numpy.abs(xy).max(axis=1))[0]
+    xyz, least = coordinates_of(points), [numpy.inf]
+    for rows in slices(len(xyz)):
+        reach = numpy.maximum(*numpy.abs(xyz[rows, :2].T))  # NaN where one is
+        least.append(reach[numpy.isfinite(reach)].min(initial=numpy.inf))
+    return extremes(ranks, numpy.array(least))[0]
 
 
 def check_spacing(reach, spacing):

@@ -14,8 +14,9 @@ from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints, vtkUnsignedCharA
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
-from .clouds import cells_of, corner_flags, joined, marked_points, some_points
+from .clouds import cells_of, joined, marked_points, some_points
 from .messages import ElevationSurfaceError, Messages
+from .passes import corner_flags
 from .ranks import agreed, all_values, before, collected, packed, shared, together, total, unpacked
 from .vtkElevationSurface import vtkTrimOutwardTriangles
 

@@ -15,7 +15,7 @@ from in_folder import InFolder, draws
 from vtkelevationsurface import distance, reconstruct, writing
 from vtkelevationsurface.picture import screen_mesh
 from vtkelevationsurface.writing import xml_writer
-from vtkelevationsurface.clouds import cells_of, corner_flags, make_points
+from vtkelevationsurface.clouds import cells_of, make_points
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_ID_TYPE
 from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
