@@ -248,6 +248,8 @@ class Run:
         result.boundary_name, result.faults_name = options.boundary, options.faults
         self.progress("measuring", 0.0)
         result.report  # pylint: disable=pointless-statement  (all ranks make it)
+        if result.removes_unused and not ranks:
+            result.drop_unused(frees=True)
         gather_surface(ranks, result)
         self.times.update(result.times)
         result.times = self.times

@@ -215,6 +215,13 @@ class Reconstruction:
 
         return make_report(self)
 
+    def drop_unused(self, frees=False):
+        """Makes surface of complete, without the points that it does not use; frees: complete is None then."""
+        last = last_id(self.ranks, self.cloud.points)
+        self.surface = without_unused(self.ranks, self.complete, self.used, last, frees)
+        if frees:
+            self.complete = None
+
     def measuring(self, fraction):
         """Progress of the report."""
         if self.progress:
@@ -372,7 +379,8 @@ def run_chain(
     ranks  the controller of those that run it together, or None. Each has some of the points; lines
            may be on one or on all, but all have the same names. Each gets its part
     heights  what check_heights() has given where one rank had all points
-    keep_steps  False frees the triangles of a filter's output once the next has run
+    keep_steps  False frees the triangles of a filter's output once the next has run, and leaves
+           drop_unused() to the caller, unless there are ranks
     kept  None, or the Kept of the last run on the same cloud
     """
     result = Reconstruction(cloud, ranks)
@@ -433,7 +441,8 @@ def run_chain(
         if strict and replaced:
             raise ElevationSurfaceError(replaced[0])
         result.notes += replaced
-        result.surface = without_unused(ranks, result.complete, result.used, last_id(ranks, cloud.points))
+        if keep_steps or ranks:
+            result.drop_unused()
     if cloud.plane:
         turn_back(result)
     return result

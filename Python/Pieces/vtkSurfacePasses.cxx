@@ -479,6 +479,48 @@ bool vtkSurfacePasses::FlagCorners(vtkDataArray* corners, vtkUnsignedCharArray* 
   return true;
 }
 
+bool vtkSurfacePasses::KeepTuples(
+  vtkDataArray* array, vtkUnsignedCharArray* flags, vtkDataArray* kept)
+{
+  const std::size_t size =
+    static_cast<std::size_t>(array->GetDataTypeSize()) * array->GetNumberOfComponents();
+  const char* const from = static_cast<const char*>(array->GetVoidPointer(0));
+  char* to = static_cast<char*>(kept->GetVoidPointer(0));
+  const unsigned char* const flag = flags->GetPointer(0);
+  const unsigned char* const end = flag + flags->GetNumberOfValues();
+  for (const unsigned char *first = flag, *last; first < end; first = last)
+  {
+    first = std::find(first, end, 1);
+    last = std::find(first, end, 0);
+    to = std::copy(from + size * (first - flag), from + size * (last - flag), to);
+  }
+  return true;
+}
+
+bool vtkSurfacePasses::Renumber(
+  vtkDataArray* corners, vtkUnsignedCharArray* flags, vtkIntArray* renumbered)
+{
+  return Try([&]() {
+    std::vector<Index> places(static_cast<std::size_t>(flags->GetNumberOfValues()));
+    Index next = 0;
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      places[i] = next;
+      next += flags->GetValue(static_cast<vtkIdType>(i));
+    }
+    renumbered->SetNumberOfValues(corners->GetNumberOfValues());
+    Index* const result = renumbered->GetPointer(0);
+    WithIds(corners, [&](const auto* ids) {
+      vtkSMPTools::For(0, corners->GetNumberOfValues(), AtOnce, [&](vtkIdType i, vtkIdType end) {
+        for (; i < end; ++i)
+        {
+          result[i] = places[ids[i]];
+        }
+      });
+    });
+  });
+}
+
 bool vtkSurfacePasses::FindOutline(vtkDataArray* corners, vtkIntArray* edges)
 {
   return Try([&]() {

@@ -36,6 +36,12 @@ public:
   /** Sets the flags of points that are corners of triangles. */
   static bool FlagCorners(vtkDataArray* corners, vtkUnsignedCharArray* flags);
 
+  /** The tuples of an array that have a flag, in another one of its type, whose tuples are as many. */
+  static bool KeepTuples(vtkDataArray* array, vtkUnsignedCharArray* flags, vtkDataArray* kept);
+
+  /** Corners, all of points with a flag, by their places among these. */
+  static bool Renumber(vtkDataArray* corners, vtkUnsignedCharArray* flags, vtkIntArray* renumbered);
+
   /**
    * The edges that belong to one triangle only, as pairs of the lower and the higher id, in order.
    * Triangles turn the same way round.

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tables of numbers in text files: separator, header, comments and columns are found out here.
 
-A file is read in blocks of whole lines. numpy parses a block at once, exactly, some two million
-lines a second. What numpy does not take is parsed line by line, so that an error can name the line.
+A file is read in blocks of whole lines. vtkTextRows parses a block of nothing but rows of numbers,
+several million lines a second; numpy any other, exactly as well, but for blanks and comments. What
+numpy does not take is parsed line by line, so that an error can name the line.
 """
 
 import collections
@@ -12,10 +13,14 @@ import math
 import re
 
 import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkDoubleArray
 
 from ..clouds import WHOLE, Cloud, ReadOptions, add_array, make_points
 from .columns import Choice, advice_on_columns
 from .table_words import COMMENT_MARKS, SUMMARY
+from ..passes import in_vtk
+from ..vtkElevationSurfacePieces import vtkTextRows
 from .layouts import (
     are_touching,
     check_marks,
@@ -38,6 +43,7 @@ from ..names import option
 
 COMMENTS = re.compile(rb"\n[ \t]*[" + "".join(COMMENT_MARKS).encode() + b"]")
 TAIL = 50  # lines at the end of a block among which summaries are looked for
+TAIL_LENGTH = 50_000  # characters, in which these are
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED, MOST_SUMMARIES = 3, 5  # that many lines of other kinds, and of summaries, are named
 MOST_UNEVEN = 0.5, 0.08  # lines of numbers that are longer than others or left out, as a share of rows
@@ -247,8 +253,11 @@ class Parser:
 
     def add(self, block):
         """Takes the lines of a block."""
-        table, lines = self.table, self.table.lines(block)
+        table = self.table
         skip = table.first if self.line == 0 and self.blocks.begin == 0 else 0  # lines that are not data
+        if self.add_plain(block, skip):
+            return
+        lines = table.lines(block)
         odd = [i for i in self.odd_lines(block, lines) if i >= skip and table.is_row(lines[i])]
         words = {i: table.layout.words(lines[i]) for i in odd}
         longer = [i for i in odd if len(words[i]) > table.words]
@@ -257,6 +266,35 @@ class Parser:
         short = {i for i in odd if self.is_short(words[i])}
         self.add_rows(lines, self.rows_among(block, lines, skip), short, b'"' in block)
         self.line += len(lines)
+
+    def add_plain(self, block, skip):
+        """Takes a block of nothing but rows of numbers, the usual case, many times as fast as others.
+        Returns whether it is one."""
+        table, layout, rows = self.table, self.table.layout, vtkDoubleArray()
+        if self.texts or layout.decimal_comma or table.sees_summaries or b'"' in block or not block.isascii():
+            return False
+        tail = block[-TAIL_LENGTH:].decode().split("\n")[-TAIL - 1 :] if table.has_summaries else []
+        first = 0
+        for _ in range(skip):
+            first = block.find(b"\n", first) + 1
+        plain = not any(map(table.summary, tail)) and vtkTextRows.Parse(
+            block, first, layout.separator or "", table.words, in_vtk(numpy.array(self.used, dtype="i4")),
+            "".join(COMMENT_MARKS), rows,
+        )
+        if not plain or not rows.GetNumberOfTuples():
+            return False
+        self.starts += [self.facts["count"]] * self.after_blank
+        self.after_blank = False
+        self.add_numbers(vtk_to_numpy(rows), range(skip, skip + rows.GetNumberOfTuples()))
+        self.line += skip + rows.GetNumberOfTuples()
+        return True
+
+    def add_numbers(self, rows, places):
+        """Adds rows, given the places of their lines in the block."""
+        last = self.line + (places[-1] if len(places) else 0)
+        at = numpy.arange(places.start, places.stop) if isinstance(places, range) else numpy.array(places)
+        self.parts.append((rows, (self.line + 1 + at).astype("i4" if last < 2**31 - 1 else "i8")))
+        self.facts["count"] += len(rows)
 
     def odd_lines(self, block, lines):
         """The places of lines that may have more or fewer words than the others."""
@@ -305,10 +343,8 @@ class Parser:
     def add_rows(self, lines, places, short, quoted):
         """Adds the lines at some places of a block. numpy reads all or none: then a tenth at once, and the
         last one by one. Those that are too short it would read wrongly."""
-        if isinstance(places, range):  # the usual case, many times as fast
-            chosen, at = lines[places.start : places.stop], numpy.arange(places.start, places.stop)
-        else:
-            chosen, at = [lines[i] for i in places], places
+        at = places
+        chosen = lines[at.start : at.stop] if isinstance(at, range) else [lines[i] for i in at]
         rows = self.load(chosen, quoted) if short.isdisjoint(places) else None
         if rows is None and len(places) > 10:
             step = -(-len(places) // 10)
@@ -323,8 +359,7 @@ class Parser:
             return
         if self.texts:
             self.keep_words(chosen)
-        self.parts.append((rows, self.line + 1 + numpy.array(at, dtype="i8")))
-        self.facts["count"] += len(rows)
+        self.add_numbers(rows, at)
 
     def load(self, lines, quoted):
         """numpy's rows of some lines, or None where a word is not a number."""
@@ -402,7 +437,11 @@ class Parser:
 
     def take(self):
         """(rows, line numbers) since the last call. There must be some."""
-        rows, numbers = map(numpy.concatenate, zip(*self.parts))
+        count, at = sum(len(rows) for rows, _ in self.parts), 0
+        rows, numbers = numpy.empty((count, len(self.used))), numpy.empty(count, dtype=self.parts[-1][1].dtype)
+        for some, lines in self.parts:
+            rows[at : at + len(some)], numbers[at : at + len(some)] = some, lines
+            at += len(some)
         self.parts = []
         return rows, numbers
 
@@ -501,7 +540,7 @@ def read_text(path, options):
     """
     parser, rows, numbers, notes = parse(path, options)
     choice = parser.table.choice
-    cloud = Cloud(make_points(rows[:, :3]), notes, lines=numbers)
+    cloud = Cloud(make_points(rows[:, :3], copy=False), notes, lines=numbers)
     add_arrays(cloud.points, choice.extras, rows[:, 3:])
     cloud.z_name, cloud.is_horizon, cloud.angles = choice.z_name, choice.is_horizon, choice.angles
     cloud.words = parser.take_words()
