@@ -13,7 +13,6 @@ import os
 import re
 import shutil
 import tempfile
-from xml.sax.saxutils import quoteattr
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -42,7 +41,7 @@ from .spreading import IN_NO_TRIANGLE
 from .steps import STEPS, concerns_constraints, in_our_names, rings_of
 from .supervisor import note_partial_file, rank_and_size
 from .vtkElevationSurfacePieces import vtkReconstructPieces
-from .writing.xml_writer import write_vtp
+from .writing.xml_writer import quoteattr, write_vtp
 
 AT_ONCE = 1_000_000  # points given to the filter at a time
 SUFFIX = ".vtpd"
