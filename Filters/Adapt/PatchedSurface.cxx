@@ -270,8 +270,10 @@ void AddErrors(vtkPolyData* input, const FillResult& patches, vtkPolyData* outpu
     output->GetPointData()->RemoveArray(name);
     output->GetPointData()->AddArray(array);
   };
-  vtkDataArray* const points = output->GetPoints()->GetData();
-  const auto heightOf = [doubles = vtkDoubleArray::FastDownCast(points), points](vtkIdType i) {
+  // Without points there may be no array; then it is not asked.
+  vtkDataArray* const points = output->GetPoints() ? output->GetPoints()->GetData() : nullptr;
+  auto* const doubles = vtkDoubleArray::SafeDownCast(points);
+  const auto heightOf = [doubles, points](vtkIdType i) {
     return doubles ? doubles->GetValue(3 * i + 2) : points->GetComponent(i, 2);
   };
   const auto end = [&](double sign) {

@@ -37,7 +37,7 @@ def take_out(cloud, options, ranks=None):
     Returns the cloud. What is taken out is counted in its left_out, what is doubtful is in its
     notes. A cloud of nothing but nulls stays as it is.
     """
-    axes, progress = numpy.array(coordinates_of(cloud.points).T, dtype="f8"), options.progress
+    axes, progress = coordinates_of(cloud.points).T.astype("f8", copy=False), options.progress
     null, counts = numpy.zeros(axes.shape[1], dtype=bool), {}
     for name, value, found in nulls_in(*axes, ranks, share(progress, 0.0, 0.35)):
         count = count_set(ranks, found & ~null)
@@ -131,7 +131,7 @@ def doubts(x, y, z, numbers, progress):
             f"{count:,} points have z = {value:.9g}, far from all others; if that means no data: "
             f"{option('no_data')} {value:.9g}"
         )
-        z[z == value] = numpy.nan
+        z = numpy.where(z == value, numpy.nan, z)
     notes += far_off(x, y, z, numbers)
     single = blunders(x, y, z, numbers, share(progress, 0.25, 1.0))
     if single:
@@ -176,7 +176,9 @@ def body(values, ranks=None):
 
 def limits(values, ranks=None):
     """The least and the greatest value that is finite; (inf, -inf) where none is."""
-    return extremes(ranks, values[numpy.isfinite(values)])
+    ends = values[:0] if not len(values) else numpy.array((values.min(), values.max()))
+    are_finite = numpy.isfinite(ends).all()  # NaN would be both
+    return extremes(ranks, ends if are_finite else values[numpy.isfinite(values)])
 
 
 def stands_apart(value, count, others, width, ranks):
@@ -199,7 +201,7 @@ def usual_nulls(values, is_place=False, ranks=None):
     for value in NULLS:
         slack = 1e-5 * abs(value) if abs(value) >= 1e20 else 0.0  # as text or single precision wrote it
         if low - slack <= value <= high + slack:
-            found = numpy.abs(values - value) <= slack
+            found = numpy.abs(values - value) <= slack if slack else values == value
             present.update({value: found} if count_set(ranks, found) else {})
     if not present:
         return []
