@@ -123,9 +123,9 @@ def why_not_drawn(x, y, z):
 
 
 def columns(points, used):
-    """x, y and z of the used points, one after another."""
+    """(x and y, z) of the used points."""
     points = points if used.all() else points[used]
-    return (points[:, i].astype("f8") for i in range(3))
+    return points[:, :2].T.astype("f8", copy=False), numpy.ascontiguousarray(points[:, 2], dtype="f8")
 
 
 def common_range(z):
@@ -313,7 +313,7 @@ def render(
     real = vtk_to_numpy(surface.GetPoints().GetData())
     triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     used = corner_flags(triangles, len(real))
-    x, y, z = columns(real, used)
+    (x, y), z = columns(real, used)
     reason = why_not_drawn(x, y, z)
     if reason:
         raise PictureError(path, reason)
