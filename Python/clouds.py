@@ -14,7 +14,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 from .messages import ElevationSurfaceError, counted
 from .names import argument, option
 from .progress import no_progress
-from .ranks import extremes
+from .ranks import extremes, finite_extremes
 from .selecting import Words, conditions_of, joined_words
 
 AT_ONCE = 2_000_000  # rows worked on at a time: what bounds the memory taken
@@ -536,7 +536,7 @@ def marked_points(data, mark):
 def heights_of(data, ranks=None):
     """(lowest, highest) finite z, or None."""
     z = coordinates_of(data)[:, 2]
-    low, high = extremes(ranks, z[numpy.isfinite(z)])
+    low, high = finite_extremes(ranks, z)
     return (low, high) if low <= high else None
 
 
@@ -558,12 +558,13 @@ def faults_note(heights, faults):
 
 def antimeridian_note(points, ranks=None):
     """A line for the user when longitudes lie on both sides of 180 degrees, else None."""
-    x, y = (axis[numpy.isfinite(axis)] for axis in coordinates_of(points)[:, :2].T)
-    south, north = extremes(ranks, y)
-    (first, west), (east, last) = (extremes(ranks, some) for some in (x[x < 0], x[x >= 0]))
-    if not (-180 <= first <= west and east <= last <= 180 and -90 <= south <= north <= 90):
+    x, y = coordinates_of(points)[:, :2].T
+    (west, east), (south, north) = (finite_extremes(ranks, axis) for axis in (x, y))
+    if not (-180 <= west <= east <= 180 and -90 <= south <= north <= 90):
         return None
-    if east - west < 180:
+    x = x[numpy.isfinite(x)]
+    (first, west), (east, last) = (extremes(ranks, some) for some in (x[x < 0], x[x >= 0]))
+    if not first <= west or not east <= last or east - west < 180:
         return None
     return (
         "x looks like degrees on both sides of the antimeridian, so the surface runs around the "

@@ -16,7 +16,7 @@ from .table_words import NULL_ROWS, NULLS
 from ..messages import FileError, Reason, counted, counted_reason
 from ..names import option
 from ..progress import items_with_progress, no_progress, share
-from ..ranks import all_values, before, extremes, summed, total
+from ..ranks import all_values, before, finite_extremes, summed, total
 from ..spreading import ids_of, places_of
 
 SAMPLE = 200_000
@@ -174,13 +174,6 @@ def body(values, ranks=None):
     return float(high - low)
 
 
-def limits(values, ranks=None):
-    """The least and the greatest value that is finite; (inf, -inf) where none is."""
-    ends = values[:0] if not len(values) else numpy.array((values.min(), values.max()))
-    are_finite = numpy.isfinite(ends).all()  # NaN would be both
-    return extremes(ranks, ends if are_finite else values[numpy.isfinite(values)])
-
-
 def stands_apart(value, count, others, width, ranks):
     """Whether a value that occurs count times has almost no others near it.
 
@@ -196,7 +189,7 @@ def usual_nulls(values, is_place=False, ranks=None):
 
     is_place  x or y: these are apart where they are twice as far as the others are wide
     """
-    low, high = limits(values, ranks)
+    low, high = finite_extremes(ranks, values)
     present = {}
     for value in NULLS:
         slack = 1e-5 * abs(value) if abs(value) >= 1e20 else 0.0  # as text or single precision wrote it
@@ -234,7 +227,7 @@ def null_rows(x, y, z, ranks=None):
 def repeated_extremes(z, progress, ranks):
     """[(value, count)]: the least and the greatest value, where it is repeated and stands apart."""
     result = []
-    for i, value in enumerate(limits(z, ranks)):
+    for i, value in enumerate(finite_extremes(ranks, z)):
         progress(0.5 * i)
         is_it = z == value
         count = count_set(ranks, is_it)
