@@ -146,6 +146,9 @@ def doubts(x, y, z, numbers, progress):
 
 def far_off(x, y, z, numbers):
     """A note on points with a coordinate of FAR or more: blunders() does not look at them."""
+    ranges = [finite_extremes(numbers.ranks, values) for values in (x, y, z)]
+    if not any(-numpy.inf < low <= -FAR or FAR <= high < numpy.inf for low, high in ranges):
+        return []
     far = numpy.zeros(len(z), dtype=bool)
     for values in (x, y, z):
         far |= (abs(values) >= FAR) & numpy.isfinite(values)
