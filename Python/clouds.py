@@ -263,9 +263,13 @@ def coordinates_of(data):
 
 def make_points(coordinates, copy=True):
     """(n, 3) float64 coordinates -> vtkPolyData with points only. Without copy it uses the array."""
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(numpy.ascontiguousarray(coordinates, dtype="f8"), deep=copy))
-    data = vtkPolyData()
+    return points_of(numpy_to_vtk(numpy.ascontiguousarray(coordinates, dtype="f8"), deep=copy))
+
+
+def points_of(array):
+    """An array of VTK of x, y and z -> vtkPolyData with points only."""
+    points, data = vtkPoints(), vtkPolyData()
+    points.SetData(array)
     data.SetPoints(points)
     return data
 

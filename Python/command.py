@@ -250,6 +250,9 @@ class Run:
         result.report  # pylint: disable=pointless-statement  (all ranks make it)
         if result.removes_unused and not ranks:
             result.drop_unused(frees=True)
+        if not ranks:
+            cloud.points = vtkPolyData()
+            result.free_points()
         gather_surface(ranks, result)
         self.times.update(result.times)
         result.times = self.times

@@ -222,6 +222,16 @@ class Reconstruction:
         if frees:
             self.complete = None
 
+    def free_points(self):
+        """Frees the points and what the filters hold, which nothing but the report needs."""
+        self.cloud.points, self.points = vtkPolyData(), None
+        kept = self.surface, self.boundary, self.holes
+        for step in filter(None, (self.delaunay, self.trim, self.fill, *(self.outlined or ()))):
+            step.SetInputDataObject(0, None)
+            for port in range(step.GetNumberOfOutputPorts()):
+                if not any(step.GetOutput(port) is one for one in kept):
+                    step.GetOutput(port).Initialize()
+
     def measuring(self, fraction):
         """Progress of the report."""
         if self.progress:

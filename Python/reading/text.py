@@ -13,10 +13,10 @@ import math
 import re
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDoubleArray
 
-from ..clouds import WHOLE, Cloud, ReadOptions, add_array, make_points
+from ..clouds import WHOLE, Cloud, ReadOptions, add_array, points_of
 from .columns import Choice, advice_on_columns
 from .table_words import COMMENT_MARKS, SUMMARY
 from ..passes import in_vtk
@@ -239,7 +239,7 @@ class Parser:
         self.table, self.blocks, self.alive, self.named = table, blocks, alive, named
         self.texts = {index: WordReader() for index in table.choice.texts}
         self.used = [*table.indices, *table.choice.extras]
-        self.parts, self.starts = [], []
+        self.parts, self.starts, self.array = [], [], None
         self.line, self.after_blank = 0, True
         self.before = None  # lines before this part of the file, once a message needs their number
         first = table.bad_lines if blocks.begin == 0 else []
@@ -436,9 +436,13 @@ class Parser:
         return {self.table.choice.texts[index]: reader.take() for index, reader in self.texts.items()}
 
     def take(self):
-        """(rows, line numbers) since the last call. There must be some."""
+        """(rows, line numbers) since the last call. There must be some. The rows are those of array."""
         count, at = sum(len(rows) for rows, _ in self.parts), 0
-        rows, numbers = numpy.empty((count, len(self.used))), numpy.empty(count, dtype=self.parts[-1][1].dtype)
+        self.array = vtkDoubleArray()
+        self.array.SetNumberOfComponents(len(self.used))
+        self.array.SetNumberOfTuples(count)
+        rows = vtk_to_numpy(self.array).reshape(count, -1)
+        numbers = numpy.empty(count, dtype=self.parts[-1][1].dtype)
         for some, lines in self.parts:
             rows[at : at + len(some)], numbers[at : at + len(some)] = some, lines
             at += len(some)
@@ -540,7 +544,8 @@ def read_text(path, options):
     """
     parser, rows, numbers, notes = parse(path, options)
     choice = parser.table.choice
-    cloud = Cloud(make_points(rows[:, :3], copy=False), notes, lines=numbers)
+    array = parser.array if rows.shape[1] == 3 else numpy_to_vtk(numpy.ascontiguousarray(rows[:, :3]), deep=True)
+    cloud = Cloud(points_of(array), notes, lines=numbers)
     add_arrays(cloud.points, choice.extras, rows[:, 3:])
     cloud.z_name, cloud.is_horizon, cloud.angles = choice.z_name, choice.is_horizon, choice.angles
     cloud.words = parser.take_words()
