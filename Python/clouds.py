@@ -26,7 +26,7 @@ class Cloud:
     points   vtkPointSet with point data
     notes    what was found out or assumed, one line each, for the user
     left_out {reason: count} of what is not taken as a point, such as pixels without data
-    lines    for text files, the line of each point in the file, else None
+    lines    for text files, the line of each point in the file, an array or a range; else None
     crs      the coordinate reference system as WKT or AUTHORITY:CODE, or None where it is not known
     largest_cell  of points from a grid of unequal steps: the diagonal of its largest cell, else 0
     z_name   what z is called where it is from, with its unit, or ""
@@ -580,9 +580,14 @@ def keep_points(cloud, keep):
     """Leaves only the points with the given ids (a numpy array) in a Cloud."""
     cloud.points = some_points(cloud.points, keep)
     if cloud.lines is not None:
-        cloud.lines = numpy.asarray(cloud.lines)[keep]
+        cloud.lines = lines_at(cloud.lines, keep)
     cloud.words = {name: column.some(keep) for name, column in cloud.words.items()}
     cloud.files = cloud.files and cloud.files.some(keep)
+
+
+def lines_at(lines, ids):
+    """The lines of the points with some ids (a numpy array), of those of a Cloud."""
+    return lines.start + ids if isinstance(lines, range) else numpy.asarray(lines)[ids]
 
 
 def turn_over(cloud):

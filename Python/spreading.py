@@ -167,7 +167,10 @@ def keep_flagged(surface, flags):
 
 
 def places_of(ranks, wanted, ids):
-    """The places of points among those of all ranks by their ids; ids: those of this rank."""
+    """The places of points among those of all ranks by their ids; ids: those of this rank. Of one rank,
+    ids are places."""
+    if ranks is None:
+        return numpy.asarray(wanted)
     ids = numpy.sort(ids, kind="stable")
     return numpy.sum(collected(ranks, numpy.searchsorted(ids, wanted)), axis=0)
 

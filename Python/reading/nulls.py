@@ -11,7 +11,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_FLOAT
 
-from ..clouds import coordinates_of, keep_points, slices
+from ..clouds import coordinates_of, keep_points, lines_at, slices
 from .table_words import NULL_ROWS, NULLS
 from ..messages import FileError, Reason, counted, counted_reason
 from ..names import option
@@ -118,7 +118,7 @@ class Numbers:
     def named(self, ids, words, count):
         """"line 7 has z = 1, ..." of the words for the first points of so many."""
         numbers = places_of(self.ranks, ids, self.ids)
-        numbers = numbers if self.lines is None else numpy.asarray(self.lines)[numbers]
+        numbers = numbers if self.lines is None else lines_at(self.lines, numbers)
         named = [f"{self.noun} {number} has {one}" for number, one in zip(numbers.tolist(), words)]
         return ", ".join(named) + ", ..." * (count > len(named))
 

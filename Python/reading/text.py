@@ -16,7 +16,7 @@ import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDoubleArray
 
-from ..clouds import WHOLE, Cloud, ReadOptions, add_array, points_of
+from ..clouds import WHOLE, Cloud, ReadOptions, add_array, lines_at, points_of
 from .columns import Choice, advice_on_columns
 from .table_words import COMMENT_MARKS, SUMMARY
 from ..passes import in_vtk
@@ -291,9 +291,12 @@ class Parser:
 
     def add_numbers(self, rows, places):
         """Adds rows, given the places of their lines in the block."""
-        last = self.line + (places[-1] if len(places) else 0)
-        at = numpy.arange(places.start, places.stop) if isinstance(places, range) else numpy.array(places)
-        self.parts.append((rows, (self.line + 1 + at).astype("i4" if last < 2**31 - 1 else "i8")))
+        first = self.line + 1
+        if isinstance(places, range):
+            numbers = range(first + places.start, first + places.stop)
+        else:
+            numbers = first + numpy.array(places, dtype="i8")
+        self.parts.append((rows, numbers))
         self.facts["count"] += len(rows)
 
     def odd_lines(self, block, lines):
@@ -436,18 +439,21 @@ class Parser:
         return {self.table.choice.texts[index]: reader.take() for index, reader in self.texts.items()}
 
     def take(self):
-        """(rows, line numbers) since the last call. There must be some. The rows are those of array."""
+        """(rows, line numbers) since the last call. There must be some. The rows are those of array, the
+        numbers an array or a range."""
         count, at = sum(len(rows) for rows, _ in self.parts), 0
         self.array = vtkDoubleArray()
         self.array.SetNumberOfComponents(len(self.used))
         self.array.SetNumberOfTuples(count)
         rows = vtk_to_numpy(self.array).reshape(count, -1)
-        numbers = numpy.empty(count, dtype=self.parts[-1][1].dtype)
-        for some, lines in self.parts:
-            rows[at : at + len(some)], numbers[at : at + len(some)] = some, lines
+        for some, _ in self.parts:
+            rows[at : at + len(some)] = some
             at += len(some)
-        self.parts = []
-        return rows, numbers
+        numbers, self.parts = [numbers for _, numbers in self.parts], []
+        if all(isinstance(some, range) for some in numbers):
+            if all(one.stop == other.start for one, other in zip(numbers, numbers[1:])):
+                return rows, range(numbers[0].start, numbers[-1].stop)
+        return rows, numpy.concatenate([lines_at(some, numpy.arange(len(some))) for some in numbers])
 
     def final_notes(self):
         """Notes, once all lines are read. Raises FileError where many rows have other numbers of columns."""
