@@ -121,11 +121,10 @@ std::vector<Index> Selected(vtkIdType count, const Select& select)
 }
 
 /** A number for each point, of which all bits are well mixed. */
-std::uint64_t MixedNumber(std::uint64_t point)
+std::uint32_t MixedNumber(std::uint64_t point)
 {
   point = (point + 1) * 0x9E3779B97F4A7C15ull;
-  point = (point ^ (point >> 32)) * 0xD6E8FEB86659FD93ull;
-  return point ^ (point >> 32);
+  return static_cast<std::uint32_t>((point ^ (point >> 32)) * 0xD6E8FEB86659FD93ull >> 32);
 }
 
 /** The edges of one triangle only: see FindOutline(). */
@@ -136,11 +135,11 @@ std::vector<Index> OutlineOf(const Id* corners, vtkIdType triangles)
   const std::size_t points =
     size == 0 ? 0 : static_cast<std::size_t>(*std::max_element(corners, corners + size)) + 1;
   // Around a point inside, every neighbour is once the next corner and once the one before, so that
-  // the differences of any numbers of theirs add up to 0.
-  std::vector<std::uint64_t> sums(points, 0);
+  // the differences of any numbers of theirs add up to 0. Elsewhere hardly ever, of mixed ones.
+  std::vector<std::uint32_t> sums(points, 0);
   for (vtkIdType i = 0; i < size; i += 3)
   {
-    const std::uint64_t a = MixedNumber(corners[i]), b = MixedNumber(corners[i + 1]),
+    const std::uint32_t a = MixedNumber(corners[i]), b = MixedNumber(corners[i + 1]),
                         c = MixedNumber(corners[i + 2]);
     sums[corners[i]] += b - c;
     sums[corners[i + 1]] += c - a;
@@ -148,7 +147,7 @@ std::vector<Index> OutlineOf(const Id* corners, vtkIdType triangles)
   }
   std::vector<char> isOuter(points);
   std::transform(sums.begin(), sums.end(), isOuter.begin(), [](auto sum) { return sum != 0; });
-  sums = std::vector<std::uint64_t>();
+  sums = std::vector<std::uint32_t>();
   const std::vector<Index> pairs =
     Selected(triangles, [&](vtkIdType begin, vtkIdType end, std::vector<Index>& list) {
       for (vtkIdType i = 3 * begin; i < 3 * end; i += 3)

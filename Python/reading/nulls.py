@@ -164,12 +164,22 @@ def far_off(x, y, z, numbers):
     return [f"{counted(count, 'point')} cannot be a place on earth; take it out of the file: {named}"]
 
 
-def body(values, ranks=None):
-    """The width of the range that holds 98 % of values, from a sample of them."""
-    count = total(ranks, len(values))
+def body(values, ranks=None, among=None):
+    """The width of the range that holds 98 % of values, from a sample of them.
+
+    among  None, or (n,) of bool: of these values
+    """
+    own = len(values) if among is None else numpy.count_nonzero(among)
+    count = total(ranks, own)
     if count > SAMPLE:
-        wanted = SAMPLE * len(values) // count
-        values = values[numpy.random.default_rng(1).integers(0, max(len(values), 1), wanted)]
+        rows = numpy.random.default_rng(1).integers(0, max(own, 1), SAMPLE * own // count)
+        if among is not None:
+            # The places of these rows: each value that does not count moves those behind it on by one.
+            others = numpy.flatnonzero(~among)
+            rows += numpy.searchsorted(others - numpy.arange(len(others)), rows, "right")
+        values = values[rows]
+    elif among is not None:
+        values = values[among]
     values = all_values(ranks, values[numpy.isfinite(values)], "f8")
     if not len(values):
         return 0.0
@@ -177,13 +187,13 @@ def body(values, ranks=None):
     return float(high - low)
 
 
-def stands_apart(value, count, others, width, ranks):
-    """Whether a value that occurs count times has almost no others near it.
+def stands_apart(value, count, values, others, width, ranks):
+    """Whether a value that occurs count times has almost no others, of bool, near it.
 
     Near is half the width that most others span; a tenth where the value occurs often, as nulls do.
     """
     reach = max((0.1 if count > 2 else 0.5) * width, 0.05 * abs(value))
-    near = count_set(ranks, (others > value - reach) & (others < value + reach))
+    near = count_set(ranks, others & (values > value - reach) & (values < value + reach))
     return near <= count // 20
 
 
@@ -201,13 +211,13 @@ def usual_nulls(values, is_place=False, ranks=None):
             present.update({value: found} if count_set(ranks, found) else {})
     if not present:
         return []
-    others = values[numpy.isfinite(values) & ~numpy.logical_or.reduce(list(present.values()))]
-    width = body(others, ranks) * (20.0 if is_place else 1.0)
-    if not total(ranks, len(others)) or is_place and width == 0:
+    others = numpy.isfinite(values) & ~numpy.logical_or.reduce(list(present.values()))
+    width = body(values, ranks, others) * (20.0 if is_place else 1.0)
+    if not count_set(ranks, others) or is_place and width == 0:
         return []
     return [
         (value, found) for value, found in present.items()
-        if stands_apart(value, count_set(ranks, found), others, width, ranks)
+        if stands_apart(value, count_set(ranks, found), values, others, width, ranks)
     ]
 
 
@@ -221,7 +231,7 @@ def null_rows(x, y, z, ranks=None):
             near = others.copy()
             if count_set(ranks, found) and count_set(ranks, others):
                 for values in (x, y):
-                    near &= numpy.abs(values - value) < max(reach * body(values[others], ranks), 1e-300)
+                    near &= numpy.abs(values - value) < max(reach * body(values, ranks, others), 1e-300)
             if count_set(ranks, found) and not count_set(ranks, near):
                 result.append((name, value, found))
     return result
@@ -235,8 +245,7 @@ def repeated_extremes(z, progress, ranks):
         is_it = z == value
         count = count_set(ranks, is_it)
         if 3 <= count < total(ranks, len(z)) // 2:
-            others = z[~is_it]
-            if stands_apart(value, 1, others, body(others, ranks), ranks):
+            if stands_apart(value, 1, z, ~is_it, body(z, ranks, ~is_it), ranks):
                 result.append((value, count))
     return result
 
