@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Passes over millions of points or triangles, by vtkSurfacePasses: of numpy they would be many, with
-as many temporary arrays."""
+"""Passes over millions of points or triangles, by vtkSurfacePasses: of numpy they would be many,
+with as many temporary arrays."""
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -77,8 +77,11 @@ def outline(triangles):
 
 
 def stand_ins(points, used, turn, cells, shape):
-    """(n,): for each used point, the one near the middle of its cell that stands for it; cells: x and y
-    of their lowest corner in the plane that turn leads to, and how wide they are; shape: how many."""
+    """(n,): for each used point, the one near the middle of its cell that stands for it.
+
+    cells  x and y of their lowest corner in the plane that turn leads to, and how wide they are
+    shape  how many columns and rows
+    """
     arrays = reals(points), in_vtk(used), numpy.ravel(turn).tolist(), cells, *shape.tolist()
     return found(vtkSurfacePasses.FindStandIns, *arrays)
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfacePasses.h"
 
-#include "Kernel/Base/Points.h"
+#include "Kernel/Base/Base.h"
 
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -93,14 +93,15 @@ std::vector<Index> Selected(vtkIdType count, const Select& select)
 {
   std::vector<std::vector<Index>> lists(static_cast<std::size_t>((count + AtOnce - 1) / AtOnce));
   std::vector<char> failed(lists.size(), 0);
-  vtkSMPTools::For(0, static_cast<vtkIdType>(lists.size()), 1, [&](vtkIdType first, vtkIdType last) {
-    for (vtkIdType i = first; i < last; ++i)
-    {
-      failed[i] = !Try([&]() {
-        select(i * AtOnce, std::min(count, (i + 1) * AtOnce), lists[static_cast<std::size_t>(i)]);
-      });
-    }
-  });
+  vtkSMPTools::For(
+    0, static_cast<vtkIdType>(lists.size()), 1, [&](vtkIdType first, vtkIdType last) {
+      for (vtkIdType i = first; i < last; ++i)
+      {
+        failed[i] = !Try([&]() {
+          select(i * AtOnce, std::min(count, (i + 1) * AtOnce), lists[static_cast<std::size_t>(i)]);
+        });
+      }
+    });
   if (std::count(failed.begin(), failed.end(), 0) < static_cast<std::ptrdiff_t>(failed.size()))
   {
     throw std::bad_alloc();
@@ -167,7 +168,8 @@ std::vector<Index> OutlineOf(const Id* corners, vtkIdType triangles)
   std::vector<std::uint64_t> keys(pairs.size() / 2);
   for (std::size_t i = 0; i < keys.size(); ++i)
   {
-    keys[i] = static_cast<std::uint64_t>(pairs[2 * i]) << 32 | static_cast<std::uint64_t>(pairs[2 * i + 1]);
+    keys[i] =
+      static_cast<std::uint64_t>(pairs[2 * i]) << 32 | static_cast<std::uint64_t>(pairs[2 * i + 1]);
   }
   std::sort(keys.begin(), keys.end());
   std::vector<Index> edges;
@@ -400,15 +402,16 @@ public:
   }
   void Prefetch(std::size_t hash) const
   {
-#if defined(__GNUC__) || defined(__clang__)
-    __builtin_prefetch(&this->Words[hash >> 6 & this->Mask]);
-#endif
+    elevation::Prefetch(&this->Words[hash >> 6 & this->Mask]);
   }
   bool Has(std::size_t hash) const
   {
     return this->Words[hash >> 6 & this->Mask] >> (hash & 63) & 1;
   }
-  void Set(std::size_t hash) { this->Words[hash >> 6 & this->Mask] |= std::uint64_t(1) << (hash & 63); }
+  void Set(std::size_t hash)
+  {
+    this->Words[hash >> 6 & this->Mask] |= std::uint64_t(1) << (hash & 63);
+  }
 
 private:
   std::vector<std::uint64_t> Words;
@@ -641,8 +644,8 @@ bool vtkSurfacePasses::Sample(
   });
 }
 
-bool vtkSurfacePasses::FlagEdges(vtkDataArray* points, vtkDataArray* corners,
-  vtkDoubleArray* edges, vtkUnsignedCharArray* flags)
+bool vtkSurfacePasses::FlagEdges(
+  vtkDataArray* points, vtkDataArray* corners, vtkDoubleArray* edges, vtkUnsignedCharArray* flags)
 {
   return Try([&]() {
     const elevation::PointHash hash;

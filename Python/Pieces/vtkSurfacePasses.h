@@ -4,10 +4,10 @@
  * @class   vtkSurfacePasses
  * @brief   single passes over millions of points or triangles
  *
- * Private to the Python package, for which each of these would be many passes of numpy, with as many
- * temporary arrays. Points are tuples of x, y and z, floats or doubles; corners are the point ids of
- * triangles, three a triangle, of 32 or 64 bits; results have 32 bits. Flags are one byte each. All
- * ids have to exist.
+ * Private to the Python package, for which each of these would be many passes of numpy, with as
+ * many temporary arrays. Points are tuples of x, y and z, floats or doubles; corners are the point
+ * ids of triangles, three a triangle, of 32 or 64 bits; results have 32 bits. Flags are one byte
+ * each. All ids have to exist.
  *
  * A method returns false where there is not enough memory.
  */
@@ -36,7 +36,7 @@ public:
   /** Sets the flags of points that are corners of triangles. */
   static bool FlagCorners(vtkDataArray* corners, vtkUnsignedCharArray* flags);
 
-  /** The tuples of an array that have a flag, in another one of its type, whose tuples are as many. */
+  /** The tuples of an array with a flag, in another one of its type, whose tuples are as many. */
   static bool KeepTuples(vtkDataArray* array, vtkUnsignedCharArray* flags, vtkDataArray* kept);
 
   /** Corners, all of points with a flag, by their places among these. */
@@ -58,7 +58,7 @@ public:
   static bool FindStandIns(vtkDataArray* points, vtkUnsignedCharArray* flags, const double turn[4],
     const double cells[3], int columns, int rows, vtkIntArray* standIns);
 
-  /** The corners of triangles whose stand-ins are three points: these, in the order of triangles. */
+  /** The stand-ins of the corners of triangles, where they are three points; in their order. */
   static bool Collapse(vtkDataArray* corners, vtkIntArray* standIns, vtkIntArray* kept);
 
   /**

@@ -42,7 +42,7 @@ public:
     }
     for (std::size_t word = 0; word < this->Places.size(); ++word)
     {
-      // There is a word: at the end of the line only one that a separator stands before may be empty.
+      // Between blanks there is no empty word.
       if (!this->Separator && (at == end || *at == '\n'))
       {
         return false;
@@ -114,7 +114,7 @@ private:
 #endif
   }
 
-  const char Separator; ///< 0: blanks
+  const char Separator;           ///< 0: blanks
   const std::vector<int>& Places; ///< of each word in a row, or -1
   const std::string& Comments;
 };
@@ -147,8 +147,7 @@ try
   std::vector<const char*> starts{ begin };
   while (starts.back() < end)
   {
-    const char* const least =
-      starts.back() + std::min<std::size_t>(AtOnce, end - starts.back());
+    const char* const least = starts.back() + std::min<std::size_t>(AtOnce, end - starts.back());
     const char* const line = std::find(least - 1, end, '\n');
     starts.push_back(line == end ? end : line + 1);
   }

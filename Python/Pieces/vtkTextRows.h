@@ -4,8 +4,8 @@
  * @class   vtkTextRows
  * @brief   the numbers of lines of text that are rows of a table and nothing else
  *
- * Private to the Python package, whose reader of text asks it first and numpy where a block of lines
- * holds anything unusual. Numbers are the nearest doubles, as numpy's are.
+ * Private to the Python package, whose reader of text asks it first, and numpy where a block of
+ * lines holds anything unusual. Numbers are the nearest doubles, as numpy's are.
  */
 #ifndef vtkTextRows_h
 #define vtkTextRows_h
@@ -37,8 +37,8 @@ public:
    * @param columns    the places of the wanted ones among them, each once
    * @param comments   no line begins with one of these characters
    * @param rows       gets a tuple for each line
-   * @return whether all lines are such, and the wanted words finite decimal numbers. If not, rows are
-   *         not valid
+   * @return whether all lines are such, and the wanted words finite decimal numbers. If not, rows
+   *         are not valid
    */
   static bool Parse(const std::string& text, vtkIdType first, const std::string& separator,
     int words, vtkIntArray* columns, const std::string& comments, vtkDoubleArray* rows);

@@ -4,7 +4,7 @@
 
 A usual null value is taken out where it stands apart: almost no other value is near it. So -9999
 goes from a terrain of 0 to 3000, and stays in a trench of -10,500 to -9,000. All costs are linear;
-ten million points take some two seconds.
+ten million points take a second.
 """
 
 import numpy
