@@ -139,6 +139,10 @@ FillResult FillBlock(FillOptions options, bool isSingle, bool interpolates, doub
   options.Monitor = later.Next();
   FillResult patches =
     elevation::FillHoles(isOpened ? opened : mesh, points.View, std::move(found), options);
+  // The surface needs the triangles alone, and memory for its own arrays.
+  opened = Mesh();
+  mesh.Points = decltype(mesh.Points)();
+  mesh.Twins = decltype(mesh.Twins)();
   // After filling: the kernel numbers holes from 0.
   patches.FirstNumber = elevation::NextHole(input);
 

@@ -14,7 +14,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 from .messages import ElevationSurfaceError, counted
 from .names import argument, option
 from .progress import no_progress
-from .ranks import extremes
+from .ranks import extremes, finite_extremes
 from .selecting import Words, conditions_of, joined_words
 
 AT_ONCE = 2_000_000  # rows worked on at a time: what bounds the memory taken
@@ -26,7 +26,7 @@ class Cloud:
     points   vtkPointSet with point data
     notes    what was found out or assumed, one line each, for the user
     left_out {reason: count} of what is not taken as a point, such as pixels without data
-    lines    for text files, the line of each point in the file, else None
+    lines    for text files, the line of each point in the file, an array or a range; else None
     crs      the coordinate reference system as WKT or AUTHORITY:CODE, or None where it is not known
     largest_cell  of points from a grid of unequal steps: the diagonal of its largest cell, else 0
     z_name   what z is called where it is from, with its unit, or ""
@@ -263,9 +263,13 @@ def coordinates_of(data):
 
 def make_points(coordinates, copy=True):
     """(n, 3) float64 coordinates -> vtkPolyData with points only. Without copy it uses the array."""
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(numpy.ascontiguousarray(coordinates, dtype="f8"), deep=copy))
-    data = vtkPolyData()
+    return points_of(numpy_to_vtk(numpy.ascontiguousarray(coordinates, dtype="f8"), deep=copy))
+
+
+def points_of(array):
+    """An array of VTK of x, y and z -> vtkPolyData with points only."""
+    points, data = vtkPoints(), vtkPolyData()
+    points.SetData(array)
     data.SetPoints(points)
     return data
 
@@ -536,7 +540,7 @@ def marked_points(data, mark):
 def heights_of(data, ranks=None):
     """(lowest, highest) finite z, or None."""
     z = coordinates_of(data)[:, 2]
-    low, high = extremes(ranks, z[numpy.isfinite(z)])
+    low, high = finite_extremes(ranks, z)
     return (low, high) if low <= high else None
 
 
@@ -558,12 +562,13 @@ def faults_note(heights, faults):
 
 def antimeridian_note(points, ranks=None):
     """A line for the user when longitudes lie on both sides of 180 degrees, else None."""
-    x, y = (axis[numpy.isfinite(axis)] for axis in coordinates_of(points)[:, :2].T)
-    south, north = extremes(ranks, y)
-    (first, west), (east, last) = (extremes(ranks, some) for some in (x[x < 0], x[x >= 0]))
-    if not (-180 <= first <= west and east <= last <= 180 and -90 <= south <= north <= 90):
+    x, y = coordinates_of(points)[:, :2].T
+    (west, east), (south, north) = (finite_extremes(ranks, axis) for axis in (x, y))
+    if not (-180 <= west <= east <= 180 and -90 <= south <= north <= 90):
         return None
-    if east - west < 180:
+    x = x[numpy.isfinite(x)]
+    (first, west), (east, last) = (extremes(ranks, some) for some in (x[x < 0], x[x >= 0]))
+    if not first <= west or not east <= last or east - west < 180:
         return None
     return (
         "x looks like degrees on both sides of the antimeridian, so the surface runs around the "
@@ -575,9 +580,14 @@ def keep_points(cloud, keep):
     """Leaves only the points with the given ids (a numpy array) in a Cloud."""
     cloud.points = some_points(cloud.points, keep)
     if cloud.lines is not None:
-        cloud.lines = numpy.asarray(cloud.lines)[keep]
+        cloud.lines = lines_at(cloud.lines, keep)
     cloud.words = {name: column.some(keep) for name, column in cloud.words.items()}
     cloud.files = cloud.files and cloud.files.some(keep)
+
+
+def lines_at(lines, ids):
+    """The lines of the points with some ids (a numpy array), of those of a Cloud."""
+    return lines.start + ids if isinstance(lines, range) else numpy.asarray(lines)[ids]
 
 
 def turn_over(cloud):
@@ -623,13 +633,6 @@ def are_among(values, few):
     if not len(few):
         return numpy.zeros(len(values), dtype=bool)
     return few[numpy.minimum(numpy.searchsorted(few, values), len(few) - 1)] == values
-
-
-def corner_flags(triangles, count):
-    """(count,) of bool: which points are corners of triangles."""
-    flags = numpy.zeros(count, dtype=bool)
-    flags[triangles.ravel()] = True
-    return flags
 
 
 def rounding_note(coordinates, why="VTK reads this format"):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command line: python3 -m vtkelevationsurface FILE, which Utilities/reconstruct runs."""
 
+import contextlib
 import copy
 import os
 import sys
@@ -57,6 +58,7 @@ class Run:
         self.times = {}
         self.places = self.other = None  # what --at and --volume ask for
         self.no_picture = None  # why the picture that was asked for is missing
+        self.end = lambda: None  # ends what was started for a picture, if it is not drawn
         if ranks and hasattr(os, "sched_getaffinity"):
             # mpirun may give each of them a core.
             options.properties.setdefault("threads", len(os.sched_getaffinity(0)))
@@ -229,6 +231,7 @@ class Run:
         part = cloud.copy()
         try:
             heights = agreed(ranks, lambda: check_heights(cloud, options.properties.get("duplicates")))
+            self.start_screen()
             part.points = scatter(ranks, cloud.points)
             result = run_chain(
                 part,
@@ -248,6 +251,11 @@ class Run:
         result.boundary_name, result.faults_name = options.boundary, options.faults
         self.progress("measuring", 0.0)
         result.report  # pylint: disable=pointless-statement  (all ranks make it)
+        if result.removes_unused and not ranks:
+            result.drop_unused(frees=True)
+        if not ranks:
+            cloud.points = vtkPolyData()
+            result.free_points()
         gather_surface(ranks, result)
         self.times.update(result.times)
         result.times = self.times
@@ -276,6 +284,15 @@ class Run:
                 ),
             ),
         )
+
+    def start_screen(self):
+        """Starts what a picture needs, which is there then when it is drawn."""
+        if self.is_first and self.options.picture is not None:
+            with contextlib.suppress(ImportError):  # draw() has the same
+                from .picture.display import cancel_screen, start_screen
+
+                start_screen()
+                self.end = cancel_screen
 
     def check(self):
         """Refuses what could not be read, written or drawn, before any work is done."""
@@ -377,6 +394,7 @@ def attempt(options, ranks, work):
     except MemoryError:
         reason, code = f"{options.file}: there is not enough memory", 1
     finally:
+        run.end()
         results.discard()
     run.progress.clear()
     if run.is_first or code != NoPicture.code:

@@ -7,16 +7,15 @@ import math
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDoubleArray
-from vtkmodules.vtkCommonDataModel import vtkStaticPointLocator
 from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
 
-from .clouds import cells_of, coordinates_of, corner_flags, make_points, slices
+from .clouds import cells_of, coordinates_of, make_points, slices
+from .passes import near_triangles
 from .ranks import all_values, collected, extremes, total
 
 MOST_MEASURED = 1_000_000
 AT_ONCE = 20_000  # points between two reports of progress
 FEW = 0.01  # so many points for each triangle: then only triangles near them are searched
-BINS = 1024  # side by side, where triangles near points are looked for
 
 
 def distance_to(surface, used, coordinates, chosen, progress=None, ranks=None, ids=None):
@@ -47,7 +46,7 @@ def distance_to(surface, used, coordinates, chosen, progress=None, ranks=None, i
         order = numpy.argsort(all_values(ranks, ids[away]), kind="stable")
     away = all_values(ranks, coordinates[away].ravel(), "f8").reshape(-1, 3)
     away = away[order] if ranks else away
-    distance = distances(corners, triangles, away, progress, ranks) if others else away[:, 0]
+    distance = distances(corners, used, triangles, away, progress, ranks) if others else away[:, 0]
     count = total(ranks, numpy.count_nonzero(chosen))
     share = others / max(len(away), 1) / count
     maximum = float(distance.max(initial=0.0))
@@ -62,37 +61,42 @@ def distance_to(surface, used, coordinates, chosen, progress=None, ranks=None, i
     }
 
 
-def distances(corners, triangles, away, progress=None, ranks=None):
-    """(n,) distances of the points `away` from the triangles of all ranks."""
-    is_corner = corner_flags(triangles, len(corners))
-    low, high = numpy.transpose([extremes(ranks, corners[is_corner, i]) for i in range(3)])
+def limits_of(ranks, points, used):
+    """The lowest x, y and z of the points with a flag, on all ranks, and the highest."""
+    ends = [numpy.zeros((0, 3), dtype=points.dtype)]
+    for rows in slices(len(points)):
+        some = points[rows] if used[rows].all() else points[rows][used[rows]]
+        ends += [numpy.array([[find(some[:, i]) for i in range(3)]]) for find in (numpy.min, numpy.max) if len(some)]
+    return tuple(zip(*(extremes(ranks, column) for column in numpy.concatenate(ends).T)))
+
+
+def distances(corners, used, triangles, away, progress=None, ranks=None):
+    """(n,) distances of the points `away` from the triangles of all ranks, whose corners are used."""
+    low, high = numpy.array(limits_of(ranks, corners, used))
     # Near the origin, where doubles are finest; beyond 1e100 squares would be infinite.
     middle = 0.5 * low + 0.5 * high
     size = max(float(abs(low).max()), float(abs(high).max()), float(abs(away).max()))
     unit = 2.0 ** math.floor(math.log2(size)) if size > 1e100 else 1.0
     result = numpy.full(len(away), numpy.inf)
     if len(triangles):
-        result = distances_here(corners, is_corner, triangles, away, middle, unit, progress)
+        result = distances_here(corners, triangles, away, middle, unit, progress)
     return numpy.min(collected(ranks, result, "f8"), axis=0)
 
 
-def distances_here(corners, is_corner, triangles, away, middle, unit, progress):
+def distances_here(corners, triangles, away, middle, unit, progress):
     """(n,) distances of points from triangles of this rank, measured from the middle in units."""
     if unit == 1.0 and len(away) < FEW * len(triangles):
-        triangles = triangles[near(corners, is_corner, triangles, away, progress)]
-        is_corner = corner_flags(triangles, len(corners))
-    ids = numpy.flatnonzero(is_corner)
-    places = numpy.zeros(len(corners), dtype="i8")
-    places[ids] = numpy.arange(len(ids))
+        triangles = triangles[near_triangles(corners, triangles, away)]
+    ids, places = numpy.unique(triangles, return_inverse=True)
     bare = make_points(corners[ids] / unit - middle / unit)
-    bare.SetPolys(cells_of(places[triangles]))
+    bare.SetPolys(cells_of(places.reshape(-1, 3)))
     search = vtkImplicitPolyDataDistance()
     search.SetInput(bare)
     away = away / unit - middle / unit
     result = numpy.empty(len(away))
     for i in range(0, len(away), AT_ONCE):
         if progress:
-            progress(0.5 + 0.5 * i / len(away))
+            progress(i / len(away))
         values = vtkDoubleArray()
         some = make_points(away[i : i + AT_ONCE])
         search.EvaluateFunction(some.GetPoints().GetData(), values)
@@ -100,44 +104,3 @@ def distances_here(corners, is_corner, triangles, away, middle, unit, progress):
     # From so far away that triangles shrink to nothing, all of the surface is about as far.
     result = numpy.where(numpy.isnan(result), numpy.linalg.norm(away, axis=1), result)
     return unit * numpy.abs(result)
-
-
-def near(corners, is_corner, triangles, away, progress=None):
-    """(m,) of bool: the triangles among which each point has its closest one, and some more.
-
-    No triangle is closer to a point than its closest corner, but those whose box in x,y meets the
-    square around the point that has that distance.
-    """
-    ids = numpy.flatnonzero(is_corner)
-    locator = vtkStaticPointLocator()
-    points = make_points(corners[ids])
-    locator.SetDataSet(points)
-    closest = [locator.FindClosestPoint(point) for point in away.tolist()]
-    reach = 1.000001 * numpy.linalg.norm(corners[ids[closest]] - away, axis=1)[:, None]
-    low = numpy.array([corners[ids, i].min() for i in (0, 1)])
-    high = numpy.array([corners[ids, i].max() for i in (0, 1)])
-
-    def bins(xy):
-        places = numpy.nan_to_num((xy - low) / (high - low) * BINS)  # no corners, but in the first bin
-        return numpy.clip(places, 0, BINS - 1).astype("i2").T
-
-    # How many squares lie over each bin, and then over all bins before it: sums of differences.
-    over = numpy.zeros((BINS + 1, BINS + 1), dtype="i4")
-    (x0, y0), (x1, y1) = bins(away[:, :2] - reach), bins(away[:, :2] + reach) + 1
-    for x, y, sign in ((x0, y0, 1), (x1, y1, 1), (x0, y1, -1), (x1, y0, -1)):
-        numpy.add.at(over, (x, y), sign)
-    before = numpy.zeros((BINS + 2, BINS + 2), dtype="i4")
-    before[1:, 1:] = (over.cumsum(axis=0).cumsum(axis=1) > 0).cumsum(axis=0).cumsum(axis=1)
-    places = numpy.empty((2, len(corners)), dtype="i2")
-    for rows in slices(len(corners)):
-        places[:, rows] = bins(corners[rows, :2])
-    result = numpy.empty(len(triangles), dtype=bool)
-    for rows in slices(len(triangles)):
-        if progress:
-            progress(0.5 * rows.start / len(triangles))
-        (x0, x1), (y0, y1) = (
-            (numpy.minimum(numpy.minimum(a, b), c), numpy.maximum(numpy.maximum(a, b), c) + 1)
-            for a, b, c in ((at[corners] for corners in triangles[rows].T) for at in places)
-        )
-        result[rows] = before[x1, y1] - before[x0, y1] - before[x1, y0] + before[x0, y0] > 0
-    return result

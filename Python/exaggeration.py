@@ -7,8 +7,9 @@ import math
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import coordinates_of, corner_flags, make_points
+from .clouds import coordinates_of, make_points
 from .messages import Messages
+from .passes import corner_flags
 from .ranks import all_values
 from .vtkElevationSurface import vtkGridDelaunay2D
 
@@ -48,9 +49,10 @@ def choose_exaggeration(points, triangles):
 def steepness(points, triangles):
     """The slope that a tenth of the surface exceeds."""
     a, b, c = (points[triangles[:, i]] for i in range(3))
-    normal = numpy.cross(b - a, c - a)
-    area = numpy.abs(normal[:, 2])
-    order = numpy.argsort(slope := numpy.hypot(normal[:, 0], normal[:, 1]) / (area + 1e-300))
+    (ux, uy, uz), (vx, vy, vz) = (b - a).T, (c - a).T  # numpy.cross() takes several times as long
+    area = numpy.abs(ux * vy - uy * vx)
+    slope = numpy.hypot(uy * vz - uz * vy, uz * vx - ux * vz) / (area + 1e-300)
+    order = numpy.argsort(slope)
     covered = numpy.cumsum(area[order])
     return slope[order[numpy.searchsorted(covered, 0.9 * covered[-1])]]
 

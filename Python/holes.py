@@ -5,9 +5,10 @@
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import are_among, coordinates_of, words_in
+from .clouds import coordinates_of, words_in
 from .messages import counted
 from .names import option
+from .passes import are_edges
 from .properties import INTERPOLATIONS
 from .ranks import all_values, before, summed, together, total
 
@@ -120,20 +121,13 @@ class BridgedVoids:
         starts = vtk_to_numpy(lines.GetOffsetsArray())[self.left]
         ids, places = vtk_to_numpy(lines.GetConnectivityArray()), coordinates_of(outlines)[:, :2]
         ends = places[numpy.stack((ids[starts], ids[starts + 1]), 1)] if len(self.left) else ()
-        self.edges = all_values(ranks, numpy.ravel(ends), "f8").view("c16").reshape(-1, 2)
+        self.edges = all_values(ranks, numpy.ravel(ends), "f8").reshape(-1, 4)
         self.are_there = numpy.zeros(len(self.edges))
 
     def see(self, surface):
         """Takes the triangles of this rank, or some of them."""
-        xy, starts = coordinates_of(surface)[:, :2], self.edges[:, 0]
-        are_starts = are_among(xy[:, 0], starts.real)  # few of them, unless on a lattice
-        are_starts[are_starts] = are_among(complex_places(xy[are_starts]), starts)
-        corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-        corners = corners[are_starts[corners].any(axis=1)]
-        places = complex_places(xy[corners.ravel()])
-        ends = numpy.roll(places.reshape(-1, 3), -1, axis=1)
-        edges = set(zip(places.tolist(), ends.ravel().tolist()))
-        self.are_there += [edge in edges for edge in map(tuple, self.edges.tolist())]
+        triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
+        self.are_there += are_edges(coordinates_of(surface), triangles, self.edges)
 
     def find(self):
         """(n,) bool of the outlines of this rank, once all have seen all triangles."""
@@ -141,13 +135,6 @@ class BridgedVoids:
         found = summed(self.ranks, self.are_there)[own : own + len(self.left)]
         bridged[self.left] = found > 0
         return bridged
-
-
-def complex_places(xy):
-    """x + iy of (n, 2) places."""
-    x, y = xy.astype("f8").T
-    with numpy.errstate(invalid="ignore"):
-        return x + 1j * y
 
 
 def hole_places(lines):

@@ -6,6 +6,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .clouds import coordinates_of
+from .passes import sample
 from .ranks import all_values, together, total
 from .spreading import ids_of
 
@@ -44,9 +45,7 @@ def measured(ranks, surface):
     triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     every = 1 + total(ranks, len(triangles)) // MOST_SAMPLES
     if every > 1:
-        # All triangles with the same least corner: the order of triangles does not matter.
-        least = ids_of(ranks, surface)[triangles].min(axis=1).astype("u8")
-        triangles = triangles[(least * numpy.uint64(0x9E3779B97F4A7C15) >> numpy.uint64(32)) % every == 0]
+        triangles = triangles[sample(triangles, every, ids_of(ranks, surface) if ranks else None)]
     corners = coordinates_of(surface)[:, :2][triangles].astype("f8")
     a, b, c = (corners[:, i] for i in range(3))
     area = 0.5 * numpy.abs(

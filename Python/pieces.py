@@ -13,14 +13,13 @@ import os
 import re
 import shutil
 import tempfile
-from xml.sax.saxutils import quoteattr
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import reading
-from .clouds import Cloud, corner_flags, faults_note, heights_of, make_points, set_crs, slices
+from .clouds import Cloud, faults_note, heights_of, make_points, set_crs, slices
 from .description import DESCRIBED
 from .draping import check_given_z
 from .given_lines import check_z, in_system
@@ -28,6 +27,7 @@ from .holes import BridgedVoids, hole_report
 from .lattice import lattice_of
 from .mending import mended
 from .messages import ElevationSurfaceError, FileError, Messages
+from .passes import corner_flags
 from .properties import option_of, set_properties
 from .ranks import agreed, by_first, collected, rank_and_count, together, total
 from .reading.formats import recognise
@@ -41,7 +41,7 @@ from .spreading import IN_NO_TRIANGLE
 from .steps import STEPS, concerns_constraints, in_our_names, rings_of
 from .supervisor import note_partial_file, rank_and_size
 from .vtkElevationSurfacePieces import vtkReconstructPieces
-from .writing.xml_writer import write_vtp
+from .writing.xml_writer import quoteattr, write_vtp
 
 AT_ONCE = 1_000_000  # points given to the filter at a time
 SUFFIX = ".vtpd"

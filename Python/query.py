@@ -13,9 +13,10 @@ from vtkmodules.util.vtkConstants import VTK_DOUBLE
 from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from .clouds import add_array, cells_of, coordinates_of, corner_flags, crs_of, make_points, slices
+from .clouds import add_array, cells_of, coordinates_of, crs_of, make_points, slices
 from .gdal_common import check_system, is_near, moving, name_of, one_line, same_system
 from .messages import ElevationSurfaceError, FileError
+from .passes import corner_flags
 from .progress import no_progress
 from .properties import METHODS
 from .reading import read

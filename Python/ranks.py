@@ -231,6 +231,13 @@ def extremes(controller, values):
     return widest(controller, values.min(initial=numpy.inf), values.max(initial=-numpy.inf))
 
 
+def finite_extremes(controller, values):
+    """As extremes(), of the values that are finite."""
+    ends = numpy.array((values.min(), values.max())) if len(values) else values
+    are_finite = numpy.isfinite(ends).all()  # NaN would be both
+    return extremes(controller, ends if are_finite else values[numpy.isfinite(values)])
+
+
 def shared(controller, work):
     """The vtkPolyData parts of all ranks, on all of them; work() gives the one of this rank.
 

@@ -20,7 +20,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkRectilinearGrid,
 )
 
-from .clouds import Cloud, check_ids, coordinates_of, make_lines, make_points
+from .clouds import Cloud, check_ids, coordinates_of, make_lines, make_points, slices
 from .description import KINDS, listing, view_angles
 from .given_lines import RINGS, fitted
 from .several_heights import check_heights, heights_on_ranks
@@ -215,6 +215,23 @@ class Reconstruction:
 
         return make_report(self)
 
+    def drop_unused(self, frees=False):
+        """Makes surface of complete, without the points that it does not use; frees: complete is None then."""
+        last = last_id(self.ranks, self.cloud.points)
+        self.surface = without_unused(self.ranks, self.complete, self.used, last, frees)
+        if frees:
+            self.complete = None
+
+    def free_points(self):
+        """Frees the points and what the filters hold, which nothing but the report needs."""
+        self.cloud.points, self.points = vtkPolyData(), None
+        kept = self.surface, self.boundary, self.holes
+        for step in filter(None, (self.delaunay, self.trim, self.fill, *(self.outlined or ()))):
+            step.SetInputDataObject(0, None)
+            for port in range(step.GetNumberOfOutputPorts()):
+                if not any(step.GetOutput(port) is one for one in kept):
+                    step.GetOutput(port).Initialize()
+
     def measuring(self, fraction):
         """Progress of the report."""
         if self.progress:
@@ -372,7 +389,8 @@ def run_chain(
     ranks  the controller of those that run it together, or None. Each has some of the points; lines
            may be on one or on all, but all have the same names. Each gets its part
     heights  what check_heights() has given where one rank had all points
-    keep_steps  False frees the triangles of a filter's output once the next has run
+    keep_steps  False frees the triangles of a filter's output once the next has run, and leaves
+           drop_unused() to the caller, unless there are ranks
     kept  None, or the Kept of the last run on the same cloud
     """
     result = Reconstruction(cloud, ranks)
@@ -433,7 +451,8 @@ def run_chain(
         if strict and replaced:
             raise ElevationSurfaceError(replaced[0])
         result.notes += replaced
-        result.surface = without_unused(ranks, result.complete, result.used, last_id(ranks, cloud.points))
+        if keep_steps or ranks:
+            result.drop_unused()
     if cloud.plane:
         turn_back(result)
     return result
@@ -556,9 +575,11 @@ def reconstruct(
 
 def least_reach(points, ranks=None):
     """The larger of |x| and |y| of the point where that is least; infinity without points."""
-    xy = coordinates_of(points)[:, :2]
-    xy = xy[numpy.isfinite(xy).all(axis=1)]
-    return extremes(ranks, numpy.abs(xy).max(axis=1))[0]
+    xyz, least = coordinates_of(points), [numpy.inf]
+    for rows in slices(len(xyz)):
+        reach = numpy.maximum(*numpy.abs(xyz[rows, :2].T))  # NaN where one is
+        least.append(reach[numpy.isfinite(reach)].min(initial=numpy.inf))
+    return extremes(ranks, numpy.array(least))[0]
 
 
 def check_spacing(reach, spacing):

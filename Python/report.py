@@ -7,12 +7,12 @@ import time
 
 import numpy
 from .clouds import coordinates_of
-from .distance import distance_to
+from .distance import distance_to, limits_of
 from .holes import hole_lines, holes_of
 from .messages import counted, counted_reason
 from .names import option
 from .properties import LATTICE_MODES
-from .ranks import all_values, extremes, total
+from .ranks import all_values, total
 from .spreading import (
     HIDDEN,
     IN_NO_TRIANGLE,
@@ -45,7 +45,7 @@ def make_report(result):
     ids = ids_of(ranks, result.points)[: len(result.reasons)]
     reasons = reasons_unused(result)
     unused = list_unused(ranks, reasons, ids)
-    notes, limits = result.decided + result.notes, limits_of(ranks, result.complete, result.used)
+    notes, limits = result.decided + result.notes, limits_of(ranks, coordinates_of(result.complete), result.used)
     report = facts_of(result, result.number_of_points, notes, limits, unused)
     if delaunay.GetMaximumElevationError() or delaunay.GetMaximumNumberOfPoints():
         report["simplified"] = {
@@ -171,12 +171,6 @@ def list_unused(ranks, reasons, ids):
             places = places_of(ranks, places, ids)
         found[words] = (count, places)
     return found
-
-
-def limits_of(ranks, surface, used):
-    """The lowest x, y and z of the points in triangles, and the highest. used: which these are."""
-    points = coordinates_of(surface)[used]
-    return tuple(zip(*(extremes(ranks, points[:, i]) for i in range(3))))
 
 
 def crs_name(crs):

@@ -26,9 +26,10 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
-from .clouds import are_among, marked_points
+from .clouds import are_among, marked_points, slices
 from .messages import ElevationSurfaceError, counted
 from .names import option
+from .passes import maybe_shared
 from .properties import DUPLICATES
 from .ranks import collected, together, total
 from .reading.blunders import body
@@ -73,13 +74,13 @@ class Several:
 
 @numpy.errstate(over="ignore")
 def shared_places(xyz):
-    """(ids of the points that share x,y with others, by place and z; where places begin; how many
-    distinct places there are). xyz: (n, 3), finite.
+    """(ids of the points that share x,y with others, by place and z; where places begin). xyz: (n, 3);
+    points that are not finite share none.
 
-    A number is made of x and y that is the same for equal ones. What has it alone shares no place,
-    so that almost always one sort of these numbers is all the work: a second for 6 million points.
+    A number is made of x and y that is the same for equal ones. What has it alone shares no place.
     """
-    x, y, z = (numpy.ascontiguousarray(xyz[:, i], dtype="f8") + 0.0 for i in range(3))
+    maybe = maybe_shared(xyz)
+    x, y, z = (xyz[maybe, i].astype("f8") + 0.0 for i in range(3))
     key = x.view("u8") * MIXER
     key ^= key >> numpy.uint64(32)
     key = (key + y.view("u8")) * MIXER
@@ -87,22 +88,20 @@ def shared_places(xyz):
     ordered = numpy.sort(key)
     again = ordered[1:][ordered[1:] == ordered[:-1]]
     if not len(again):
-        return numpy.empty(0, "i8"), numpy.empty(0, "i8"), len(x)
+        return numpy.empty(0, "i8"), numpy.empty(0, "i8")
     ids = numpy.flatnonzero(are_among(key, again))
     ids = ids[numpy.lexsort((z[ids], y[ids], x[ids]))]
     differs = (numpy.diff(x[ids]) != 0) | (numpy.diff(y[ids]) != 0)
     starts = numpy.concatenate(([0], 1 + numpy.flatnonzero(differs)))
-    return ids, starts, len(x) - len(ids) + len(starts)
+    return maybe[ids], starts
 
 
 def several_heights(xyz):
     """The Several of (n, 3) points, or None where each place has one height."""
-    finite = numpy.flatnonzero(numpy.isfinite(xyz).all(axis=1))
-    ids, starts, places = shared_places(xyz[finite])
+    ids, starts = shared_places(xyz)
     if not len(ids):
         return None
-    ids = finite[ids]
-    lengths = numpy.diff(starts, append=len(ids))
+    lengths, many = numpy.diff(starts, append=len(ids)), len(ids) - len(starts)
     z = xyz[ids, 2].astype("f8")
     spans = z[starts + lengths - 1] - z[starts]
     kept = spans > 0
@@ -110,7 +109,8 @@ def several_heights(xyz):
         return None
     points = numpy.repeat(kept, lengths)
     starts = numpy.cumsum(lengths[kept]) - lengths[kept]
-    return Several(ids[points], starts, spans[kept], places)
+    finite = sum(numpy.count_nonzero(numpy.isfinite(xyz[rows]).all(axis=1)) for rows in slices(len(xyz)))
+    return Several(ids[points], starts, spans[kept], int(finite) - many)
 
 
 def usual_step(xyz, several):

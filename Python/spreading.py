@@ -14,8 +14,9 @@ from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints, vtkUnsignedCharA
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
-from .clouds import cells_of, corner_flags, joined, marked_points, some_points
+from .clouds import cells_of, joined, marked_points, some_points
 from .messages import ElevationSurfaceError, Messages
+from .passes import corner_flags, kept_tuples, renumbered
 from .ranks import agreed, all_values, before, collected, packed, shared, together, total, unpacked
 from .vtkElevationSurface import vtkTrimOutwardTriangles
 
@@ -115,44 +116,61 @@ def original_ids(data):
     return values if values.dtype.kind == "i" else None
 
 
-def without_unused(ranks, surface, used, last):
+def without_unused(ranks, surface, used, last, frees=False):
     """A surface without the points that no triangle has, as the filters' RemoveUnusedPoints makes it.
 
-    used  used_points() of it
-    last  last_id() of the input
+    used   used_points() of it
+    last   last_id() of the input
+    frees  True: the surface is empty then, and memory for an array more is all that is needed
     """
-    data, ids = surface.GetPointData(), ids_of(ranks, surface)
-    numbers = original_ids(surface)
-    if numbers is None:
-        given = data.GetGlobalIds()
-        numbers = numpy.where(ids <= last, ids if given is None else vtk_to_numpy(given), -1)
-    original = numpy_to_vtkIdTypeArray(numbers.astype("i8"), deep=True)
-    original.SetName(ORIGINAL_IDS)
+    ids = ids_of(ranks, surface) if ranks else None
+    given, own = surface.GetPointData().GetGlobalIds(), original_ids(surface)
+
+    def numbers_of(places):
+        """In the input, of points of the surface."""
+        if own is not None:
+            return own[places].astype("i8")
+        number = places if ids is None else ids[places]
+        return numpy.where(number <= last, number if given is None else vtk_to_numpy(given)[places], -1)
+
     whole = vtkPolyData()
     whole.ShallowCopy(surface)
-    whole.GetPointData().AddArray(original)
     unused, why = (surface.GetFieldData().GetArray(f"UnusedPoint{what}") for what in ("Ids", "Reasons"))
     if unused:
-        set_unused(whole, vtk_to_numpy(original)[vtk_to_numpy(unused)], vtk_to_numpy(why))
-    return whole if used.all() else with_points(whole, numpy.flatnonzero(used))
+        set_unused(whole, numbers_of(vtk_to_numpy(unused)), vtk_to_numpy(why))
+    original = numpy_to_vtkIdTypeArray(numbers_of(numpy.flatnonzero(used)), deep=True)
+    original.SetName(ORIGINAL_IDS)
+    if frees:
+        surface.Initialize()
+    if not used.all():
+        keep_flagged(whole, used)
+    whole.GetPointData().AddArray(original)
+    return whole
 
 
-def with_points(surface, keep):
-    """A surface with the points that are kept, which are all that its triangles have."""
-    kept = some_points(surface, keep)
-    set_places(kept, vtk_to_numpy(surface.GetPoints().GetData())[keep])
-    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
-    count = surface.GetNumberOfPoints()
-    numbers = numpy.empty(count, dtype="i4" if count < 2**31 else "i8")  # of the kept ones
-    numbers[keep] = numpy.arange(len(keep))
-    kept.SetPolys(cells_of(numbers[corners].reshape(-1, 3)))
-    kept.GetCellData().ShallowCopy(surface.GetCellData())
-    kept.GetFieldData().ShallowCopy(surface.GetFieldData())
-    return kept
+def keep_flagged(surface, flags):
+    """Leaves the points with a flag, which are all that the triangles have: one array after the other."""
+    places = vtkPoints()
+    places.SetData(kept_tuples(surface.GetPoints().GetData(), flags))
+    surface.SetPoints(places)
+    old, new = surface.GetPointData(), vtkPolyData().GetPointData()
+    for i in range(old.GetNumberOfArrays()):
+        kind = old.IsArrayAnAttribute(0)
+        new.AddArray(kept_tuples(old.GetAbstractArray(0), flags))
+        old.RemoveArray(0)
+        if kind >= 0:
+            new.SetActiveAttribute(i, kind)
+    old.ShallowCopy(new)
+    surface.SetPolys(renumbered(surface.GetPolys(), flags))
+    surface.SetVerts(None)
+    surface.SetLines(None)
 
 
 def places_of(ranks, wanted, ids):
-    """The places of points among those of all ranks by their ids; ids: those of this rank."""
+    """The places of points among those of all ranks by their ids; ids: those of this rank. Of one rank,
+    ids are places."""
+    if ranks is None:
+        return numpy.asarray(wanted)
     ids = numpy.sort(ids, kind="stable")
     return numpy.sum(collected(ranks, numpy.searchsorted(ids, wanted)), axis=0)
 

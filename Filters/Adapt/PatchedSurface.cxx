@@ -25,6 +25,7 @@
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
@@ -142,35 +143,52 @@ void PassPoints(vtkPolyData* input, const FillResult& patches, bool interpolate,
  * The triangles of the input that no patch replaces, in order: all, but those of regions that are
  * replaced. A region that failed keeps its triangles.
  */
-std::vector<Index> ListKept(const Mesh& mesh, const FillResult& patches)
+class KeptTriangles
 {
-  const std::vector<Index>& regionOf = patches.Found.RegionOf;
-  std::vector<Index> kept;
-  kept.reserve(mesh.NumberOfTriangles());
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+public:
+  KeptTriangles(const Mesh& mesh, const FillResult& patches)
+    : Number(mesh.NumberOfTriangles())
   {
-    const Index region = regionOf.empty() ? None : regionOf[t];
-    if (region == None || patches.Reports[region].Status != FillStatus::Replaced)
+    const std::vector<Index>& regionOf = patches.Found.RegionOf;
+    if (regionOf.empty())
     {
-      kept.push_back(t);
+      return; // all
     }
+    this->List.reserve(this->Number);
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      const Index region = regionOf[t];
+      if (region == None || patches.Reports[region].Status != FillStatus::Replaced)
+      {
+        this->List.push_back(t);
+      }
+    }
+    this->Number = static_cast<Index>(this->List.size());
   }
-  return kept;
-}
+  Index Count() const { return this->Number; }
+  Index operator[](vtkIdType i) const
+  {
+    return this->List.empty() ? static_cast<Index>(i) : this->List[i];
+  }
+
+private:
+  Index Number;
+  std::vector<Index> List; ///< empty where all are kept
+};
 
 /** The cells of output 0 with their data: those of the input that are kept, then new ones. */
-void PassCells(vtkPolyData* input, const Mesh& mesh, const std::vector<Index>& kept,
+void PassCells(vtkPolyData* input, const Mesh& mesh, const KeptTriangles& kept,
   const FillResult& patches, const Progress& progress, vtkPolyData* output)
 {
   Stages stages(progress, { 50, 50 });
   output->SetVerts(input->GetVerts());
   output->SetLines(input->GetLines());
   Buffer<Index> triangles;
-  triangles.Resize(3 * kept.size() + patches.Triangles.size());
+  triangles.Resize(3 * static_cast<std::size_t>(kept.Count()) + patches.Triangles.size());
   auto end = triangles.begin();
-  for (const Index t : kept)
+  for (Index i = 0; i < kept.Count(); ++i)
   {
-    end = std::copy_n(mesh.Triangles.begin() + 3 * std::ptrdiff_t(t), 3, end);
+    end = std::copy_n(mesh.Triangles.begin() + 3 * std::ptrdiff_t(kept[i]), 3, end);
   }
   std::copy(patches.Triangles.begin(), patches.Triangles.end(), end);
   output->SetPolys(ToCellArray(std::move(triangles)));
@@ -180,12 +198,12 @@ void PassCells(vtkPolyData* input, const Mesh& mesh, const std::vector<Index>& k
   const vtkIdType first = FirstPolygon(input);
   const Progress copying = stages.Next();
   // Only where patches replace triangles do cell data have to be copied.
-  if (static_cast<Index>(kept.size()) < mesh.NumberOfTriangles())
+  if (kept.Count() < mesh.NumberOfTriangles())
   {
     const auto sourceOf = [&](vtkIdType cell) {
       return cell < first ? cell : first + kept[cell - first];
     };
-    CopyTuples(cellData, first + static_cast<vtkIdType>(kept.size()), sourceOf, copying, ofKept);
+    CopyTuples(cellData, first + kept.Count(), sourceOf, copying, ofKept);
     cellData = ofKept;
   }
   PassExtended(
@@ -240,9 +258,10 @@ void AddErrors(vtkPolyData* input, const FillResult& patches, vtkPolyData* outpu
     auto* const earlier =
       vtkDoubleArray::SafeDownCast(input->GetPointData()->GetAbstractArray(name));
     const bool isThere = earlier && earlier->GetNumberOfComponents() == 1;
+    double* const values = array->GetPointer(0);
     for (vtkIdType i = 0; i < before; ++i)
     {
-      array->SetValue(i, isThere ? earlier->GetValue(i) : ofInput(i));
+      values[i] = isThere ? earlier->GetValue(i) : ofInput(i);
     }
     for (vtkIdType i = 0; i < patches.NumberOfPoints(); ++i)
     {
@@ -251,7 +270,12 @@ void AddErrors(vtkPolyData* input, const FillResult& patches, vtkPolyData* outpu
     output->GetPointData()->RemoveArray(name);
     output->GetPointData()->AddArray(array);
   };
-  const auto heightOf = [output](vtkIdType i) { return output->GetPoint(i)[2]; };
+  // Without points there may be no array; then it is not asked.
+  vtkDataArray* const points = output->GetPoints() ? output->GetPoints()->GetData() : nullptr;
+  auto* const doubles = vtkDoubleArray::SafeDownCast(points);
+  const auto heightOf = [doubles, points](vtkIdType i) {
+    return doubles ? doubles->GetValue(3 * i + 2) : points->GetComponent(i, 2);
+  };
   const auto end = [&](double sign) {
     return [&, sign](
              vtkIdType i) { return patches.Points[3 * i + 2] + sign * patches.HalfIntervals[i]; };
@@ -288,13 +312,13 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   AddErrors(input, patches, output);
 
   Report(stages.Next(), 0.0);
-  const std::vector<Index> kept = ListKept(mesh, patches);
+  const KeptTriangles kept(mesh, patches);
   PassCells(input, mesh, kept, patches, stages.Next(), output);
   Report(stages.Next(), 0.0);
   vtkNew<vtkIdTypeArray> holeIds;
   holeIds->SetName(HoleIdName);
   const vtkIdType first = FirstPolygon(input);
-  const vtkIdType ofInput = first + static_cast<vtkIdType>(kept.size());
+  const vtkIdType ofInput = first + kept.Count();
   SetTuples(ofInput + patches.NumberOfTriangles(), holeIds);
   PassEarlier(input->GetCellData(), ofInput, -1,
     [&](vtkIdType cell) { return cell < first ? cell : first + kept[cell - first]; }, holeIds.Get());

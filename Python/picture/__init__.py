@@ -29,11 +29,12 @@ from vtkmodules.vtkRenderingCore import (
     vtkWindowToImageFilter,
 )
 
-from ..clouds import cells_of, corner_flags
+from ..clouds import cells_of
 from .display import screen, why_no_server
 from ..exaggeration import choose_exaggeration, nice_number
 from ..first_view import BEARING, ERROR, FILLED, HEIGHT, LAND, OPEN, SEA
 from ..messages import PictureError
+from ..passes import corner_flags
 from .signs import (
     BOTTOM,
     INK,
@@ -111,12 +112,9 @@ def why_no_picture():
     return None
 
 
-def why_not_drawn(surface):
-    """Why this surface cannot be drawn, or None."""
-    points = vtk_to_numpy(surface.GetPoints().GetData())
-    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
-    used = corner_flags(corners, len(points))
-    low, high = numpy.array([(column.min(), column.max()) for column in columns(points, used)]).T
+def why_not_drawn(x, y, z):
+    """Why a surface of such points cannot be drawn, or None."""
+    low, high = numpy.array([(column.min(), column.max()) for column in (x, y, z)]).T
     if max(abs(low).max(), abs(high).max()) > 1e30:
         return "coordinates beyond 1e30 are too large for it"
     if min(high[:2] - low[:2]) < 1e-30:
@@ -125,8 +123,9 @@ def why_not_drawn(surface):
 
 
 def columns(points, used):
-    """x, y and z of the used points, one after another."""
-    return (points[used, i].astype("f8") for i in range(3))
+    """(x and y, z) of the used points."""
+    points = points if used.all() else points[used]
+    return points[:, :2].T.astype("f8", copy=False), numpy.ascontiguousarray(points[:, 2], dtype="f8")
 
 
 def common_range(z):
@@ -293,9 +292,6 @@ def draw(surface, path, title, subtitle, holes=None, plane=None, **options):
         surface, holes = plane.levelled(surface), plane.levelled(holes) if holes else None
         subtitle += "   \u00b7   drawn over its best plane"
     with screen_for(path):
-        reason = why_not_drawn(surface)
-        if reason:
-            raise PictureError(path, reason)
         return render(surface, path, title, subtitle, holes, plane is not None, **options)
 
 
@@ -317,7 +313,10 @@ def render(
     real = vtk_to_numpy(surface.GetPoints().GetData())
     triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     used = corner_flags(triangles, len(real))
-    x, y, z = columns(real, used)
+    (x, y), z = columns(real, used)
+    reason = why_not_drawn(x, y, z)
+    if reason:
+        raise PictureError(path, reason)
     low, high, is_cut = common_range(z)
     middle = 0.5 * numpy.array((x.min() + x.max(), y.min() + y.max()))
     few = slice(None, None, 1 + len(x) // MOST_SAMPLES)

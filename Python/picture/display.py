@@ -35,33 +35,37 @@ class VirtualDisplay:
 
     def __init__(self):
         self.servers = []
-        self.folder = None
+        self.folder = self.key = None
+        self.reading = None  # where a server that has been started will say its number
         self.connection = None
 
     def open(self):
         """None, or why there is no display."""
         if not sys.platform.startswith("linux"):
             return None
-        program, reason = shutil.which("Xvfb"), why_no_server()
+        reason = why_no_server()
         if reason:
             return reason
         try:
             x11 = ctypes.CDLL("libX11.so.6")
-            self.folder = tempfile.mkdtemp(prefix="reconstruct-display-")
-            key = os.path.join(self.folder, "key")
-            write_key(key)
             for start in range(STARTS):
                 time.sleep(PAUSE if start else 0.0)
-                reason = self.start(program, x11, key)
+                if self.reading is None:
+                    self.start()
+                reason = self.connect(x11)
                 if not reason:
                     return None
             return f"{reason}, asked {STARTS} times"
         except OSError as error:
             return f"Xvfb cannot be used: {error}"
 
-    def start(self, program, x11, key):
-        """None, or why this server is none to draw on."""
-        reading, writing = os.pipe()
+    def start(self):
+        """Starts a server, and does not wait for it. Raises OSError."""
+        if self.folder is None:
+            self.folder = tempfile.mkdtemp(prefix="reconstruct-display-")
+            self.key = os.path.join(self.folder, "key")
+            write_key(self.key)
+        self.reading, writing = os.pipe()
         # A signal that stops this program waits until the server is known, so that it can be ended.
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING)
 
@@ -73,8 +77,8 @@ class VirtualDisplay:
             # A session of its own: Ctrl-C on the terminal is for this program to handle.
             server = subprocess.Popen(
                 [
-                    *(program, "-displayfd", str(writing), "-screen", "0", "1280x1024x24"),
-                    *("-auth", key, "-nolisten", "tcp", "-terminate"),
+                    *("Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x1024x24"),
+                    *("-auth", self.key, "-nolisten", "tcp", "-terminate"),
                 ],
                 pass_fds=(writing,),
                 start_new_session=True,
@@ -87,12 +91,16 @@ class VirtualDisplay:
         finally:
             os.close(writing)
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        number = read_line(reading)
-        os.close(reading)
+
+    def connect(self, x11):
+        """None, or why the server that was started is none to draw on."""
+        number = read_line(self.reading)
+        os.close(self.reading)
+        self.reading = None
         if not number:
             return "Xvfb does not start"
         os.environ["DISPLAY"] = ":" + number
-        os.environ["XAUTHORITY"] = key
+        os.environ["XAUTHORITY"] = self.key
         x11.XOpenDisplay.restype = ctypes.c_void_p
         self.connection = x11.XOpenDisplay(None)
         return None if self.connection else "Xvfb does not answer"
@@ -110,6 +118,9 @@ class VirtualDisplay:
             os.environ.pop("DISPLAY", None)
             os.environ.pop("XAUTHORITY", None)
         self.servers = []
+        if self.reading is not None:
+            os.close(self.reading)
+            self.reading = None
         if self.folder is not None:
             shutil.rmtree(self.folder, ignore_errors=True)
             self.folder = None
@@ -122,10 +133,29 @@ def why_no_server():
     return "Xvfb is not installed"
 
 
+STARTED = []  # at most one VirtualDisplay, whose server is on its way
+
+
+def start_screen():
+    """Starts what screen() will wait for, while other work is done. cancel_screen() ends it."""
+    if os.environ.get("DISPLAY") or why_no_server() or not sys.platform.startswith("linux"):
+        return
+    STARTED.append(VirtualDisplay())
+    try:
+        STARTED[-1].start()
+    except OSError:
+        cancel_screen()  # screen() will say why
+
+
+def cancel_screen():
+    while STARTED:
+        STARTED.pop().close()
+
+
 @contextlib.contextmanager
 def screen():
     """A screen to draw on, while the context lasts; gives None, or why there is none."""
-    display = VirtualDisplay()
+    display = STARTED.pop() if STARTED else VirtualDisplay()
     try:
         yield None if os.environ.get("DISPLAY") else display.open()
     finally:

@@ -16,7 +16,7 @@ from .tables import known
 from ..messages import FileError, Reason, counted, counted_reason
 from ..names import option
 from ..progress import no_progress, share
-from ..ranks import extremes, total
+from ..ranks import finite_extremes, total
 
 ALL_WITHOUT_DATA = "all points have the elevation that marks missing data"
 
@@ -31,7 +31,7 @@ def take_out(cloud, options, ranks=None):
     Returns the cloud. What is taken out is counted in its left_out, what is doubtful is in its
     notes. A cloud of nothing but nulls stays as it is.
     """
-    axes, progress = numpy.array(coordinates_of(cloud.points).T, dtype="f8"), options.progress
+    axes, progress = coordinates_of(cloud.points).T.astype("f8", copy=False), options.progress
     null, counts = numpy.zeros(axes.shape[1], dtype=bool), {}
     for name, value, found in nulls_in(*axes, ranks, share(progress, 0.0, 0.35)):
         count = count_set(ranks, found & ~null)
@@ -51,8 +51,8 @@ def take_out(cloud, options, ranks=None):
             cloud.left_out.update(counts)
             cloud.notes.append(f"usual null values are left out; {option('keep_nulls')} keeps them")
     if not options.keep_nulls:
-        cloud.notes += repeated_extremes(axes[2], share(progress, 0.4, 0.52), ranks)
-        cloud.notes += notes_on_blunders(*axes, cloud, ranks, share(progress, 0.55, 1.0))
+        notes, z = repeated_extremes(axes[2], share(progress, 0.4, 0.52), ranks)
+        cloud.notes += notes + notes_on_blunders(*axes[:2], z, cloud, ranks, share(progress, 0.55, 1.0))
     return cloud
 
 
@@ -94,18 +94,13 @@ def leave_out(path, cloud, no_data, ranks=None, noun="point", none_left=ALL_WITH
         keep_points(cloud, numpy.flatnonzero(keep))
 
 
-def limits(values, ranks=None):
-    """The least and the greatest value that is finite; (inf, -inf) where none is."""
-    return extremes(ranks, values[numpy.isfinite(values)])
-
-
-def stands_apart(value, count, others, width, ranks):
-    """Whether a value that occurs count times has almost no others near it.
+def stands_apart(value, count, values, others, width, ranks):
+    """Whether a value that occurs count times has almost no others, of bool, near it.
 
     Near is half the width that most others span; a tenth where the value occurs often, as nulls do.
     """
     reach = max((0.1 if count > 2 else 0.5) * width, 0.05 * abs(value))
-    near = count_set(ranks, (others > value - reach) & (others < value + reach))
+    near = count_set(ranks, others & (values > value - reach) & (values < value + reach))
     return near <= count // 20
 
 
@@ -114,22 +109,22 @@ def usual_nulls(values, is_place=False, ranks=None):
 
     is_place  x or y: these are apart where they are twice as far as the others are wide
     """
-    low, high = limits(values, ranks)
+    low, high = finite_extremes(ranks, values)
     present = {}
     for value in known().nulls["values"]:
         slack = 1e-5 * abs(value) if abs(value) >= 1e20 else 0.0  # as text or single precision wrote it
         if low - slack <= value <= high + slack:
-            found = numpy.abs(values - value) <= slack
+            found = numpy.abs(values - value) <= slack if slack else values == value
             present.update({value: found} if count_set(ranks, found) else {})
     if not present:
         return []
-    others = values[numpy.isfinite(values) & ~numpy.logical_or.reduce(list(present.values()))]
-    width = body(others, ranks) * (20.0 if is_place else 1.0)
-    if not total(ranks, len(others)) or is_place and width == 0:
+    others = numpy.isfinite(values) & ~numpy.logical_or.reduce(list(present.values()))
+    width = body(values, ranks, others) * (20.0 if is_place else 1.0)
+    if not count_set(ranks, others) or is_place and width == 0:
         return []
     return [
         (value, found) for value, found in present.items()
-        if stands_apart(value, count_set(ranks, found), others, width, ranks)
+        if stands_apart(value, count_set(ranks, found), values, others, width, ranks)
     ]
 
 
@@ -144,25 +139,25 @@ def null_rows(x, y, z, ranks=None):
                 continue
             near = others.copy()
             for values in (x, y):
-                near &= numpy.abs(values - value) < max(times * body(values[others], ranks), 1e-300)
+                near &= numpy.abs(values - value) < max(times * body(values, ranks, others), 1e-300)
             if not count_set(ranks, near):
                 result.append((name, value, found))
     return result
 
 
 def repeated_extremes(z, progress, ranks):
-    """Notes on the least and the greatest value, where it is repeated and stands apart. It becomes NaN."""
-    notes, found = [], numpy.zeros(len(z), dtype=bool)
-    for i, value in enumerate(limits(z, ranks)):
+    """(notes on the least and the greatest value, where it is repeated and stands apart; z with NaN in their
+    place)."""
+    notes, known_z = [], z
+    for i, value in enumerate(finite_extremes(ranks, z)):
         progress(0.5 * i)
         is_it = z == value
-        count, others = count_set(ranks, is_it), z[~is_it]
+        count = count_set(ranks, is_it)
         is_repeated = 3 <= count < total(ranks, len(z)) // 2
-        if is_repeated and stands_apart(value, 1, others, body(others, ranks), ranks):
-            found |= is_it
+        if is_repeated and stands_apart(value, 1, z, ~is_it, body(z, ranks, ~is_it), ranks):
+            known_z = numpy.where(is_it, numpy.nan, known_z)
             notes.append(
                 f"{count:,} points have z = {value:.9g}, far from all others; if that means no data: "
                 f"{option('no_data')} {value:.9g}"
             )
-    z[found] = numpy.nan
-    return notes
+    return notes, known_z

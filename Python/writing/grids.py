@@ -9,9 +9,10 @@ import os
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-from ..clouds import EVEN, Frame, cells_of, check_system, corner_flags, make_points, slices
+from ..clouds import EVEN, Frame, cells_of, check_system, make_points, slices
 from ..gdal_common import gdal_module, reference_of, write_through_memory
 from ..messages import ElevationSurfaceError, FileError
+from ..passes import corner_flags
 from ..paths import check_suffix, plain_stem, suffix_of
 from ..progress import no_progress
 from ..query import Heights

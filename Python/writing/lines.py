@@ -8,9 +8,10 @@ import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkStripper
 
-from ..clouds import corner_flags, make_points
+from ..clouds import make_points
 from ..gdal_common import reference_of, write_through_memory
 from ..messages import ElevationSurfaceError
+from ..passes import corner_flags
 from ..paths import suffix_of
 
 MOST_LEVELS = 10_000

@@ -9,7 +9,8 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
-from ..clouds import cells_of, corner_flags, make_points, slices
+from ..clouds import cells_of, make_points, slices
+from ..passes import corner_flags
 from ..paths import plain_stem
 from .xml_writer import named_arrays
 

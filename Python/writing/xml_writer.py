@@ -10,7 +10,6 @@ copies of the file in memory. This one holds a few megabytes, and a full disk is
 import binascii
 import zlib
 from concurrent.futures import ThreadPoolExecutor
-from xml.sax.saxutils import quoteattr
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -27,6 +26,8 @@ AT_ONCE = 64  # blocks that become text at a time
 # Larger arrays whose first block does not shrink to half are stored: that is some 20 times faster.
 ALWAYS_COMPRESSED = 1 << 25
 TRIANGLE = 5  # VTK_TRIANGLE
+
+MARKS = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
 
 HEAD = """<?xml version="1.0"?>
 <VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt64" \
@@ -90,6 +91,11 @@ def named_arrays(attributes):
                     more += f" ComponentName{j}={quoteattr(array.GetComponentName(j))}"
             result.append((array.GetName() or f"Array{i}", vtk_to_numpy(array), more))
     return result
+
+
+def quoteattr(text):
+    """A text as the value of an attribute; xml.sax has such a function, and takes time to import."""
+    return '"' + text.translate(str.maketrans(MARKS)) + '"'
 
 
 def xml_type(array):
@@ -162,21 +168,32 @@ class Writer:
         sizes = numpy.zeros(3 + len(pieces), dtype="<u8")
         place = self.stream.tell()
         self.stream.write(binascii.b2a_base64(sizes, newline=False))
-        level, waiting = 1, b""
+        level, waiting = 1, bytearray()
         if len(raw) > ALWAYS_COMPRESSED and 2 * len(zlib.compress(raw[:BLOCK], level)) > BLOCK:
             level = 0
+        letters, last = numpy.frombuffer(raw, "u1"), b""
+
+        def compressed(start):
+            """A block, or None where it is the same as the one before."""
+            here, before = letters[start : start + BLOCK], letters[max(start - BLOCK, 0) : start]
+            return None if numpy.array_equal(here, before) else zlib.compress(here, level)
+
         with ThreadPoolExecutor() as threads:
-            for first in range(0, len(pieces), AT_ONCE):
-                some = pieces[first : first + AT_ONCE]
-                blocks = list(threads.map(lambda start: zlib.compress(raw[start : start + BLOCK], level), some))
-                sizes[3 + first : 3 + first + len(blocks)] = [len(block) for block in blocks]
-                waiting += b"".join(blocks)
+            parts = [pieces[first : first + AT_ONCE] for first in range(0, len(pieces), AT_ONCE)]
+            # One part is compressed while the one before becomes text.
+            later = [threads.map(compressed, part) for part in parts[:1]]
+            for number, part in enumerate(parts):
+                later += [threads.map(compressed, more) for more in parts[number + 1 : number + 2]]
+                for entry, block in enumerate(later.pop(0), 3 + number * AT_ONCE):
+                    last = block or last
+                    sizes[entry] = len(last)
+                    waiting += last
                 # Three bytes are four letters.
                 whole = len(waiting) - len(waiting) % 3
-                self.stream.write(binascii.b2a_base64(waiting[:whole], newline=False))
+                self.stream.write(binascii.b2a_base64(memoryview(waiting)[:whole], newline=False))
                 waiting = waiting[whole:]
                 if self.progress:
-                    self.progress(min(1.0, (self.done + some.stop) / self.total))
+                    self.progress(min(1.0, (self.done + part.stop) / self.total))
         self.stream.write(binascii.b2a_base64(waiting, newline=False))
         self.done += len(raw)
         sizes[:3] = len(pieces), BLOCK, len(raw) % BLOCK

@@ -15,7 +15,8 @@ from in_folder import InFolder, draws
 from vtkelevationsurface import distance, reconstruct, writing
 from vtkelevationsurface.picture import screen_mesh
 from vtkelevationsurface.writing import xml_writer
-from vtkelevationsurface.clouds import cells_of, corner_flags, make_points
+from vtkelevationsurface.clouds import cells_of, make_points
+from vtkelevationsurface.passes import corner_flags
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_ID_TYPE
 from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
@@ -240,7 +241,7 @@ class LargeSurfaces(unittest.TestCase):
         away[:2] = (-9, 50, 0), (50, 50, 40)
         points, triangles = result.to_numpy()
         self.assertLess(len(away), distance.FEW * len(triangles))
-        found = distance.distances(points, triangles, away)
+        found = distance.distances(points, corner_flags(triangles, len(points)), triangles, away)
         search = vtkImplicitPolyDataDistance()
         search.SetInput(result.surface)
         expected = [abs(search.EvaluateFunction(point)) for point in away.tolist()]

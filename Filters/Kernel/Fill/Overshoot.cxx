@@ -42,10 +42,20 @@ ElevationRange RangeOf(
       range.Add(points.Elevation(id));
     }
   }
+  // Corners come in no order: the set is small, and elevations are read once, in theirs.
+  IdSet corners(mesh.NumberOfPoints());
   ForEachStretch(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
     std::for_each(mesh.Triangles.begin() + 3 * std::ptrdiff_t(begin),
-      mesh.Triangles.begin() + 3 * std::ptrdiff_t(end),
-      [&](Index id) { range.Add(points.Elevation(id)); });
+      mesh.Triangles.begin() + 3 * std::ptrdiff_t(end), [&](Index id) { corners.Add(id); });
+  });
+  ForEachStretch(mesh.NumberOfPoints(), progress.Between(1.0, 1.0), [&](Index begin, Index end) {
+    for (Index id = begin; id < end; ++id)
+    {
+      if (corners.Has(id))
+      {
+        range.Add(points.Elevation(id));
+      }
+    }
   });
   return range;
 }

@@ -1,0 +1,151 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The passes in C++ over points, triangles and text find what plain loops find."""
+
+import itertools
+import sys
+import unittest
+
+import numpy
+from in_folder import InFolder
+from vtkelevationsurface import ElevationSurfaceError, passes, reconstruct
+from vtkelevationsurface.clouds import cells_of, make_points
+from vtkelevationsurface.reading import text
+from vtkelevationsurface.several_heights import several_heights
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkStringArray
+
+
+def mesh(count=3000, seed=1):
+    """(points, triangles) of a surface with holes."""
+    random = numpy.random.default_rng(seed)
+    xyz = random.uniform(size=(count, 3))
+    return reconstruct(xyz, maximum_edge_length=0.06, fill=False).to_numpy()
+
+
+class Passes(unittest.TestCase):
+    def setUp(self):
+        self.points, self.triangles = mesh()
+
+    def test_corners_are_flagged_for_ids_of_any_width(self):
+        some = self.triangles[::7]
+        expected = numpy.isin(numpy.arange(len(self.points)), some)
+        for kind in ("i4", "i8"):
+            numpy.testing.assert_array_equal(
+                passes.corner_flags(some.astype(kind), len(self.points)), expected)
+        self.assertFalse(passes.corner_flags(some[:0], 3).any())
+
+    def test_the_outline_of_no_triangle_is_empty(self):
+        self.assertEqual(passes.outline(self.triangles[:0]).shape, (0, 2))
+
+    def test_kept_tuples_are_those_with_a_flag_of_any_array(self):
+        flags = numpy.random.default_rng(2).uniform(size=40) < 0.5
+        for values in (numpy.arange(40.0), numpy.arange(120, dtype="i2").reshape(-1, 3)):
+            array = numpy_to_vtk(values)
+            array.SetName("One")
+            kept = passes.kept_tuples(array, flags)
+            self.assertEqual((kept.GetName(), kept.GetDataType()), ("One", array.GetDataType()))
+            numpy.testing.assert_array_equal(vtk_to_numpy(kept), values[flags])
+        words = vtkStringArray()
+        for i in range(40):
+            words.InsertNextValue(str(i))
+        kept = passes.kept_tuples(words, flags)
+        found = [kept.GetValue(i) for i in range(kept.GetNumberOfValues())]
+        self.assertEqual(found, [str(i) for i in numpy.flatnonzero(flags)])
+
+    def test_renumbered_triangles_have_the_same_points(self):
+        triangles = self.triangles[::5]
+        flags = passes.corner_flags(triangles, len(self.points))
+        for kind in ("i4", "i8"):
+            cells = cells_of(triangles)
+            if kind == "i8":
+                cells.ConvertTo64BitStorage()
+            found = vtk_to_numpy(passes.renumbered(cells, flags).GetConnectivityArray())
+            numpy.testing.assert_array_equal(
+                self.points[flags][found.reshape(-1, 3)], self.points[triangles])
+
+    def test_near_triangles_contain_the_nearest(self):
+        random = numpy.random.default_rng(3)
+        places = random.uniform(-0.2, 1.2, size=(30, 3))
+        near = passes.near_triangles(self.points, self.triangles, places)
+        corners = self.points[self.triangles]
+        for place in places:
+            # The closest corner of all is one of these triangles: no triangle is farther than it.
+            distances = numpy.linalg.norm(corners - place, axis=2).min(axis=1)
+            self.assertIn(distances.min(), distances[near])
+
+    def test_points_that_share_a_place_are_all_found(self):
+        xyz = numpy.random.default_rng(4).uniform(size=(5000, 3))
+        xyz[:40, :2] = xyz[40:80, :2]
+        xyz[80, 0] = xyz[81, 0] = numpy.nan
+        xyz[82, :2], xyz[83, :2] = (0.0, 1.0), (-0.0, 1.0)
+        found = set(passes.maybe_shared(xyz).tolist())
+        self.assertTrue(set(range(80)) | {82, 83} <= found)
+        self.assertTrue(found.isdisjoint({80, 81}))
+        self.assertLess(len(found), 2000)
+        several = several_heights(xyz)
+        self.assertEqual((several.count(), several.places), (41, 5000 - 2 - 41))
+
+    def test_a_sample_does_not_depend_on_the_order_of_triangles(self):
+        order = numpy.random.default_rng(5).permutation(len(self.triangles))
+        one = self.triangles[passes.sample(self.triangles, 4)]
+        other = self.triangles[order][passes.sample(self.triangles[order], 4)]
+        self.assertEqual(sorted(one.tolist()), sorted(other.tolist()))
+        self.assertLess(abs(4 * len(one) - len(self.triangles)), 0.5 * len(self.triangles))
+        ids = numpy.arange(len(self.points))
+        numpy.testing.assert_array_equal(
+            passes.sample(self.triangles, 4, ids), passes.sample(self.triangles, 4))
+
+    def test_edges_are_found_in_their_direction(self):
+        ends = self.points[self.triangles[:20, :2], :2].reshape(-1, 4)
+        backwards = ends[:, (2, 3, 0, 1)]
+        pairs = {tuple(pair) for t in self.triangles.tolist() for pair in zip(t, t[1:] + t[:1])}
+        expected = [(b, a) in pairs for a, b in self.triangles[:20, :2].tolist()]
+        found = passes.are_edges(self.points, self.triangles, numpy.vstack((ends, backwards, ends + 9)))
+        self.assertEqual(found.tolist(), [True] * 20 + expected + [False] * 20)
+
+
+class TextRows(InFolder):
+    """Each text is read twice: by vtkTextRows, and without it."""
+
+    NUMBERS = ("1", "-2.5", "+3", ".5", "7.", "1e3", "-4.25E-2", "0.1", "123456.789012345678", "1e-320",
+               "nan", "inf", "1_0", "0x10", "1e", "-", "abc", "", "5 5", "1e400", "--1")
+
+    def outcome(self, words):
+        try:
+            cloud = self.read(words)
+        except ElevationSurfaceError as error:
+            return str(error)
+        xyz = vtk_to_numpy(cloud.points.GetPoints().GetData())
+        return xyz.tobytes(), numpy.asarray(cloud.lines).tolist(), cloud.notes, cloud.left_out
+
+    def check(self, words):
+        found = self.outcome(words)
+        plain = text.Parser.add_plain
+        text.Parser.add_plain = lambda *_: False
+        try:
+            self.assertEqual(found, self.outcome(words), words[-300:])
+        finally:
+            text.Parser.add_plain = plain
+
+    def test_what_stands_for_a_number_means_the_same(self):
+        rows = "".join(f"{x} {y} {x + y}\n" for x, y in itertools.product(range(9), range(9)))
+        for word, separator in itertools.product(self.NUMBERS, " ,\t"):
+            self.check(rows.replace(" ", separator) + separator.join(("3", "4", word)) + "\n")
+
+    def test_lines_that_are_no_rows_mean_the_same(self):
+        rows = "".join(f"{x} {y} {x + y}\n" for x, y in itertools.product(range(9), range(9)))
+        for more in ("\n\n8 9 7\n", "# note\n8 9 7", "Total 3 4\n", "8 9\n", "8 9 7 6\n", "  8\t9 7  ",
+                     "\u00a08 9 7\n", "8 9 \"7\"\n", "> 1\n8 9 7\n", "x y z\n8 9 7\n", "8 9 7\x0b\n"):
+            self.check(rows + more)
+            self.check("x y z\n" + rows + more)
+            self.check("name,x,y,z\n" + "".join(f"p,{line}\n" for line in rows.replace(" ", ",").split("\n")[:-1]))
+
+    def test_blocks_are_read_in_stretches_of_whole_lines(self):
+        random = numpy.random.default_rng(6)
+        xyz = random.uniform(0, 1e6, size=(120_000, 3))
+        self.check("".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in xyz.tolist()))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
