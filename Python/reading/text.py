@@ -40,7 +40,6 @@ from ..selecting import MOST_VALUES, WordReader
 from ..names import option
 
 TAIL = 50  # lines at the end of a block among which summaries are looked for
-TAIL_LENGTH = 50_000  # characters, in which these are
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED, MOST_SUMMARIES = 3, 5  # that many lines of other kinds, and of summaries, are named
 MOST_UNEVEN = 0.5, 0.08  # lines of numbers that are longer than others or left out, as a share of rows
@@ -261,11 +260,11 @@ class Parser:
         table, layout, rows = self.table, self.table.layout, vtkDoubleArray()
         if self.texts or layout.decimal_comma or table.sees_summaries or b'"' in block or not block.isascii():
             return False
-        tail = block[-TAIL_LENGTH:].decode().split("\n")[-TAIL - 1 :] if table.has_summaries else []
+        tail = block.rsplit(b"\n", TAIL + 1)[-TAIL - 1 :] if table.has_summaries else []
         first = 0
         for _ in range(skip):
             first = block.find(b"\n", first) + 1
-        plain = not any(map(table.summary, tail)) and vtkTextRows.Parse(
+        plain = not any(map(table.summary, map(bytes.decode, tail))) and vtkTextRows.Parse(
             block, first, layout.separator or "", table.words, in_vtk(numpy.array(self.used, dtype="i4")),
             self.comments, rows,
         )
