@@ -188,8 +188,7 @@ class Choice:
         same = [i for i in best if self.spans[i] == 0 and not self.meanings[i].axis and others]
         if set(same) - set(best[2:]) or same and any(map(self.counts_along, others)):
             self.ask(shown, f"column {self.called(same[0])} is the same in all rows, where others are not")
-        is_sure = self.needed < 3 or self.meanings[best[2]].axis and self.meanings[best[2]].rank != 4  # not a time
-        if not is_sure and self.is_too_high(best[2]):
+        if self.needed == 3 and not self.meanings[best[2]].axis and self.is_too_high(best[2]):
             self.ask(shown, f"column {self.called(best[2])} is higher than any place, so z may lack or stand elsewhere")
         self.indices = list(best)
         self.turn_where_x_is_north()
@@ -280,6 +279,8 @@ class Choice:
             # Next to x and y, words of a time, which a traveltime may be called, are no height.
             times = [i for i in found if self.meanings[i].rank == 4 and all(named.values())]
             named[axis] = [i for i in found if i in self.numeric] or [i for i in found if i not in times]
+            clocks = [i for i in named[axis] if self.meanings[i].rank == 4 and self.is_too_high(i)]
+            named[axis] = [i for i in named[axis] if i not in clocks]  # as seconds of a week
             ranks[axis] = {self.meanings[i].rank for i in named[axis]}
         alike = ranks["x"] & ranks["y"]
         for axis, found in named.items():

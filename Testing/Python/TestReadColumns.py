@@ -492,8 +492,9 @@ class OthersBeside(Tables):
         head = "Year Month Day Hour Min Sec Lat Lon Signal Echo\n"
         text = head + self.table(*date, *clock, lat, lon, depth, depth + 1)
         self.assertIn("but not z; it may be columns 9 (Signal) and 10 (Echo)", self.refusal(text))
-        text = "time,easting,northing,value\n300000.5,1.5,2.5,7\n300001.5,1.5,3.5,9\n"
-        self.assertIn("column 1 (time) is higher than any place", self.refusal(text))
+        cloud = self.read("time,easting,northing,value\n300000.5,1.5,2.5,7\n300001.5,1.5,3.5,9\n")
+        self.assert_rows(cloud, [(1.5, 2.5, 7), (1.5, 3.5, 9)])
+        self.assertIn("z = 4 (value); z is the only column left", " ".join(cloud.notes))
 
     def test_degrees_that_can_be_read_one_way_only_are_asked_about(self):
         text = self.table(LAT, LON + 100, Z)
