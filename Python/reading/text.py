@@ -109,8 +109,9 @@ class Table:
             if is_comment(line):
                 head.append(line.strip().lstrip("#%/!*> "))
                 self.comments += 1
-            elif self.is_like(line) and not self.numbers_columns(line) and not (
+            elif self.is_like(line) and not (
                 known_axes(self.layout.words(line)) >= set("xyz")  # as x,y,z,0,1
+                or self.numbers_columns(line) and any(map(self.is_like, set(lines[:SAMPLE]) - {line}))
             ):
                 break
             elif line.strip():

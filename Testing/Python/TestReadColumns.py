@@ -312,7 +312,8 @@ class Doubts(Tables):
             self.assert_rows(cloud, expected)
             self.assertIn("line 1 is left out: it holds the numbers of columns", " ".join(cloud.notes))
         # Where it may be a point, it is one.
-        for text in ("0,1,2\n1,2,3\n5,6,7\n", "0,1,2\n-1.5,0.5,3.5\n5.5,6.5,7.5\n", "0 1 2\n5.5 6.5 7.5\n"):
+        head, among = "0,1,2\n", "-1.5,0.5,3.5\n5.5,6.5,7.5\n"
+        for text in (head, 2 * head, head + "1,2,3\n5,6,7\n", head + among, "0 1 2\n5.5 6.5 7.5\n"):
             self.assertEqual(self.read(text).points.GetPoint(0), (0, 1, 2))
 
     def test_a_name_before_large_numbers_is_not_a_mark_between_thousands(self):
