@@ -7,9 +7,9 @@
  * its points again, all slices need the same arrays.
  *
  * The samples differ too. At once, the number of points is known, and one point of each stretch of
- * some is taken, so that each part gets about 1,000, all of which all ranks get. In slices, a hash
- * of the index decides, and the sample is thinned whenever it is too large; it is the same however
- * the slices are cut.
+ * some is taken: about 1,000 for each part, or more where parts are few. All ranks get them. In
+ * slices, a hash of the index decides, and the sample is thinned whenever it is too large; it is
+ * the same however the slices are cut.
  */
 #include "PointDistributor.h"
 
@@ -57,7 +57,7 @@ bool AreSame(const std::vector<ArrayKind>& kinds, const std::vector<ArrayKind>& 
 {
   return std::equal(kinds.begin(), kinds.end(), others.begin(), others.end(),
     [](const ArrayKind& kind, const ArrayKind& other) {
-      // Whether ids are given may not change either: numbers that are indices would meet given ones.
+      // Whether ids are given may not change either: indices would meet given ids.
       constexpr int ids = vtkDataSetAttributes::GLOBALIDS;
       return kind.Name == other.Name && kind.Type == other.Type &&
         kind.Components == other.Components && (kind.Attribute == ids) == (other.Attribute == ids);
@@ -277,8 +277,8 @@ void PointDistributor::NumberPoints(SurfacePart& common)
 }
 
 /**
- * Rows of points, with the ids given, if any. Points of other ranks have rows, as indices are those of
- * the input, but go nowhere: their owner sends them.
+ * Rows of points, with the ids given, if any. Points of other ranks have rows, as indices are those
+ * of the input, but go nowhere: their owner sends them.
  */
 void PointDistributor::Read(vtkPointSet* points, const std::string& idsName, vtkIdType first)
 {

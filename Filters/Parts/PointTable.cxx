@@ -198,7 +198,10 @@ vtkUnsignedCharArray* PointTable::Marks() const
 
 bool PointTable::IsHidden(std::size_t index) const
 {
-  return this->Marks()->GetValue(static_cast<vtkIdType>(index)) & vtkDataSetAttributes::HIDDENPOINT;
+  // An array of the name and of another type has no flags.
+  vtkUnsignedCharArray* const marks = this->Marks();
+  return marks &&
+    (marks->GetValue(static_cast<vtkIdType>(index)) & vtkDataSetAttributes::HIDDENPOINT);
 }
 
 void PointTable::Read(vtkPointSet* points, vtkIdType first)

@@ -90,8 +90,8 @@ public:
   vtkUnsignedCharArray* Marks() const;
 
   /**
-   * Views points, numbered from @a first, and their arrays. The table is then for Pack() and Copy()
-   * alone.
+   * Views points, numbered from @a first, and their arrays. The table is then for Pack(), and for
+   * others to Copy() from.
    */
   void Read(vtkPointSet* points, vtkIdType first);
 
@@ -110,8 +110,9 @@ public:
   /** Sets points from @a first on to the chosen ones of another table. @return the point behind */
   std::size_t Copy(
     const PointTable& from, const std::vector<vtkIdType>& indices, std::size_t first);
-  /** Sets them to what Pack() has packed. */
+  /** The same to what Pack() has packed; nothing where there are no bytes. */
   std::size_t Unpack(const Bytes& packed, std::size_t first);
+  /** How many points those are. */
   static std::size_t CountIn(const Bytes& packed);
 
   Buffer<double> Coordinates; ///< x, y, z of each point; none after Read()

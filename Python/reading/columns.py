@@ -152,10 +152,14 @@ class Choice:
         for axis, column in zip(self.axes, columns):
             ways = [(names, column), (joined, "".join(plain(column)))]
             ways = [(numbers, int(column))] if column.isdecimal() else ways
-            found = [titles.index(title) for titles, title in ways if title in titles]
+            ways = [[i for i, one in enumerate(titles) if title and one == title] for titles, title in ways]
+            found = next(filter(None, ways), [])
             if not found:
                 there = f"named {', '.join(names)}" if names else "without names: the file has no header line"
                 why = f"there is no column {column} for {axis}; lines have {self.width}, {there}"
+                raise FileError(f"{self.path}: {why}")
+            if len(found) > 1:
+                why = f"{self.listed(found)} are all called {column}; {option('columns')} takes the number of one"
                 raise FileError(f"{self.path}: {why}")
             if found[0] in self.indices:
                 other = self.axes[self.indices.index(found[0])]
@@ -211,6 +215,12 @@ class Choice:
     def are_degrees(self, x, y):
         """Whether columns may be longitude and latitude by their sizes and decimals."""
         return self.largest[x] <= 360 and self.largest[y] <= 90 and min(self.decimals[x], self.decimals[y]) >= 4
+
+    def is_elsewhere(self, place):
+        """Whether numbers of x and y with decimals do not lie among those of the points."""
+        return all(self.decimals[i] for i in self.indices[:2]) and not all(
+            self.low[i] <= value <= self.high[i] for i, value in zip(self.indices[:2], place)
+        )
 
     def is_too_high(self, i):
         return len(self.finite[i]) > 0 and abs(self.finite[i]).min() > known().figures["highest"]
@@ -269,6 +279,8 @@ class Choice:
             # Next to x and y, words of a time, which a traveltime may be called, are no height.
             times = [i for i in found if self.meanings[i].rank == 4 and all(named.values())]
             named[axis] = [i for i in found if i in self.numeric] or [i for i in found if i not in times]
+            clocks = [i for i in named[axis] if self.meanings[i].rank == 4 and self.is_too_high(i)]
+            named[axis] = [i for i in named[axis] if i not in clocks]  # as seconds of a week
             ranks[axis] = {self.meanings[i].rank for i in named[axis]}
         alike = ranks["x"] & ranks["y"]
         for axis, found in named.items():
@@ -331,7 +343,8 @@ class Choice:
         left = self.without_others(usable[:MOST_JUDGED]) if self.width > count else list(range(count))
         readings = self.scored(left)
         for other in ((1, 2, 0), (2, 1, 0)) if self.width == count == 3 else ():  # as z, x, y
-            readings[other] = readings[0, 1, 2] if self.is_utm(*other[:2]) else -math.inf
+            are_places = self.is_utm(*other[:2]) or self.are_degrees(*other[:2]) and self.decimals[0] < 4
+            readings[other] = readings[0, 1, 2] if are_places else -math.inf
         self.decide(readings)
         for i in left[: left.index(min(self.indices[:2]))]:
             each = self.whole[i] and len(numpy.unique(self.finite[i])) == len(self.finite[i])

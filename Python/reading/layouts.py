@@ -32,6 +32,7 @@ class Layout:
         elif self.separator is None:
             words = [quoted or plain for quoted, plain in re.findall(r'"([^"]*)"|(\S+)', line)]
         else:
+            csv.field_size_limit(max(csv.field_size_limit(), len(line)))  # of Python: 131,072 letters
             words = next(csv.reader([line], delimiter=self.separator))
         return [word.strip() for word in words] if self.separator else words
 
@@ -73,7 +74,7 @@ def find_layout(path, lines, needed):
     sample = [line for line in lines if not is_comment(line)][:400]
     head = "\n".join(line.strip().lower() for line in lines[:20])
     for pattern, words in known().not_tables:
-        if re.match(pattern, head):
+        if pattern.match(head):
             advice = "" if importlib.util.find_spec("osgeo") else "; install python3-gdal to read it"
             raise FileError(f"{path}: {words.replace('{path}', path).replace('{gdal}', advice)}")
     if not sample:
@@ -90,7 +91,7 @@ def find_layout(path, lines, needed):
     has_rows = merits(best)[0] > 0
     are_needed = f"Rows with {'x, y and z' if needed == 3 else 'x and y'} in columns of their own are needed"
     for pattern, most, words in known().not_numbers:
-        if sum(bool(re.search(pattern, line)) for line in sample) > (most if has_rows else 0.0) * len(sample):
+        if sum(bool(pattern.search(line)) for line in sample) > (most if has_rows else 0.0) * len(sample):
             raise FileError(f"{path}: {words}")
     if has_rows:
         return best
@@ -107,7 +108,7 @@ def find_layout(path, lines, needed):
 def touching_in(line):
     """What is wrong with a line in which numbers touch, or ""."""
     touching, date = (known().patterns[name] for name in ("touching", "date"))
-    word = next((w for w in line.split() if re.fullmatch(touching, w) and not re.fullmatch(date, w)), "")
+    word = next((w for w in line.split() if touching.fullmatch(w) and not date.fullmatch(w)), "")
     return word and (
         f"numbers of fixed width touch, as {word[:40]}: cut them by their widths, as awk '{{print substr($0,1,10), "
         "substr($0,11,10), substr($0,21,10)}' for 10 each"
@@ -121,7 +122,7 @@ def notes_on_marks(path, rows, columns, axes):
 
     columns, axes  those of numbers; of them x, y and z
     """
-    is_grouped, signs, proved = re.compile(known().patterns["grouped"]).fullmatch, {".": [], ",": []}, False
+    is_grouped, signs, proved = known().patterns["grouped"].fullmatch, {".": [], ",": []}, False
     for i in columns:
         words = [row[i] for row in rows if i < len(row) and is_number(row[i].replace(",", "."))]
         for sign, found in signs.items():
@@ -153,8 +154,8 @@ def check_names(path, layout, before, rows, names, width, advice):
     if layout.separator == "," and are_parted_by_commas(rows):
         raise FileError(f"{path}: {known().refusals['commas twice']}")
     patterns = known().patterns
-    if not names and len(rows) > 1 and all(re.fullmatch(patterns["sexagesimal"], row) for row in rows):
-        if any(re.match(patterns["with decimals"], row) for row in rows):
+    if not names and len(rows) > 1 and all(map(patterns["sexagesimal"].fullmatch, rows)):
+        if any(map(patterns["with decimals"].match, rows)):
             raise FileError(
                 f"{path}: the columns look like degrees, minutes and seconds; export degrees as plain "
                 f"decimals; {advice}"
@@ -189,7 +190,7 @@ def are_parted_by_commas(rows):
 
     These are whole, all of the same length, and one of them begins with 0, as no number does.
     """
-    if len(rows) < 2 or not all(re.fullmatch(known().patterns["pairs"], row) for row in rows):
+    if len(rows) < 2 or not all(map(known().patterns["pairs"].fullmatch, rows)):
         return False
     behind = [row.split()[1::2] for row in rows]
     are_even = all(len(set(map(len, column))) == 1 for column in zip(*behind))
@@ -211,12 +212,12 @@ def find_names(layout, head, width, one_may_lack=True):
     They stand in one line, with the separator of the data or another; or a line each, numbered as
     "3: X", or below their count as GSLIB has them, or between BEGIN HEADER and END HEADER.
     """
-    numbered = filter(None, map(re.compile(known().patterns["numbered name"]).match, head))
+    numbered = filter(None, map(known().patterns["numbered name"].match, head))
     found = {int(match.group(1)): match.group(2).strip('" ') for match in numbered}
     candidates = [[found[i] for i in range(1, width + 1) if i in found]]
-    if len(head) > 2 and head[1].split()[:1] == [str(width)]:
-        candidates.insert(0, head[2:])
-    for part in re.findall(r"(?ims)^begin header\n(.*)\nend header$", "\n".join(head)):
+    if len(head) == width + 2 and head[1].split()[:1] == [str(width)]:
+        return head[2:]  # whatever the title's words mean
+    for part in re.findall(r"(?ims)^begin header\n(.*?)\nend header$", "\n".join(head)):
         candidates.append([name.split(",")[-1] for name in part.split("\n")])
     for line in reversed(head):
         for other, words in splittings(layout, line):

@@ -5,12 +5,17 @@
 import configparser
 import functools
 import os
+import re
 import types
+
+from ..messages import FileError
+
+TABLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "tables.ini")
 
 
 @functools.lru_cache(maxsize=None)
 def known():
-    """The tables, read when the first of them is asked for.
+    """The tables, read when the first of them is asked for. Raises FileError.
 
     axes         {name: (axis, rank, direction)}
     not_tables   [(pattern, words of an error)]; grids are such, too
@@ -18,9 +23,19 @@ def known():
     """
     parser = configparser.ConfigParser(interpolation=None, delimiters="=")
     parser.optionxform = str  # names as they are written
-    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "tables.ini")
-    with open(path, encoding="utf-8") as stream:
-        parser.read_file(stream)
+    try:
+        with open(TABLES, encoding="utf-8") as stream:
+            parser.read_file(stream)
+        return converted(parser)
+    except KeyError as error:
+        why = f"it has no {error}"
+    except (OSError, configparser.Error, ValueError, re.error) as error:
+        why = " ".join(str(getattr(error, "strerror", error)).split())
+    raise FileError(f"{TABLES}: what is known of tables cannot be read: {why}; install the package again")
+
+
+def converted(parser):
+    """The tables as they are used."""
 
     def each(section, convert=str):
         return {name: convert(text) for name, text in parser[section].items()}
@@ -46,13 +61,13 @@ def known():
         letters=str.maketrans(each("letters")),
         lines=each("lines", words),
         finnish=each("finnish"),
-        x_is_north=each("x is north"),
+        x_is_north=each("x is north", re.compile),
         signs=each("signs", lambda text: tuple(text.split())),
         separators={sign.replace("\\t", "\t") or None: name for name, sign in parser["separators"].items()},
         refusals=refusals,
-        not_tables=[(begin, " ".join(said)) for begin, *said in each("not tables", lines).values()],
-        not_numbers=[("".join(parts), float(share), refusals[name]) for name, share, *parts in shares],
-        patterns=each("patterns", lambda text: "".join(lines(text))),
+        not_tables=[(re.compile(begin), " ".join(said)) for begin, *said in each("not tables", lines).values()],
+        not_numbers=[(re.compile("".join(parts)), float(share), refusals[name]) for name, share, *parts in shares],
+        patterns=each("patterns", lambda text: re.compile("".join(lines(text)))),
         nulls=each("nulls", numbers),
         weights=each("weights", float),
         figures=each("figures", float),

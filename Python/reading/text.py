@@ -82,7 +82,7 @@ class Table:
         near = self.first + SAMPLE
         behind = lines[self.first : near] + lines[max(near, len(lines) - TAIL) :]
         behind = [line for line in behind if self.is_row(line)]
-        summaries = sum(bool(re.match(known().patterns["summary"], line)) for line in behind)
+        summaries = sum(map(bool, map(known().patterns["summary"].match, behind)))
         # Points may have such names; then they are many.
         self.has_summaries = summaries < len(behind) and summaries <= 5 + len(behind) // 100
         self.sees_summaries = self.has_summaries and summaries > 0
@@ -114,7 +114,10 @@ class Table:
             if is_comment(line):
                 head.append(line.strip().lstrip("#%/!*> "))
                 self.comments += 1
-            elif self.is_like(line) and not known_axes(self.layout.words(line)) >= set("xyz"):  # as x,y,z,0,1
+            elif self.is_like(line) and not (
+                known_axes(self.layout.words(line)) >= set("xyz")  # as x,y,z,0,1
+                or self.numbers_columns(line) and any(map(self.is_like, set(lines[:SAMPLE]) - {line}))
+            ):
                 break
             elif line.strip():
                 head.append(line.strip())
@@ -135,12 +138,23 @@ class Table:
         """Whether a line holds enough numbers for a row."""
         return self.layout.numbers(line) >= self.needed
 
+    def numbers_columns(self, line):
+        """Whether a line holds nothing but the numbers of columns from 0, as pandas heads a table without names, or of
+        some with an index."""
+        if not self.layout.separator:
+            return False
+        words = self.layout.words(line)
+        words = words[not words[0] :]
+        return len(words) >= self.needed and words == list(map(str, range(len(words))))
+
     def bad_line(self, number, line, why, advice=""):
         """The error for a line that is not a row."""
         if touching := touching_in(line):
             why, advice = touching, ""
         elif self.can_skip and not (advice and self.is_like(line)):
             advice = f"{option('skip_bad_lines')} leaves out such lines"
+        elif not self.can_skip and not advice:
+            advice = "mark it with # if it is no row"
         return BadLine(f"{self.path}, line {number}: {why}" + (advice and "; " + advice))
 
     def few_words(self, number, line, count):
@@ -172,7 +186,7 @@ class Table:
 
     def summary(self, line):
         """The word of a line that holds the total, mean or such of others; None for data."""
-        match = re.match(known().patterns["summary"], line) if self.has_summaries else None
+        match = known().patterns["summary"].match(line) if self.has_summaries else None
         return match and match.group(1)
 
     def name_columns(self, head, rows):
@@ -194,6 +208,9 @@ class Table:
         words, error = self.layout.words(line), None
         values = [self.layout.number(word) for word in words]
         chosen = [values[i] for i in self.indices if i < len(words)]
+        if self.numbers_columns(line) and self.choice.is_elsewhere(chosen):
+            self.notes.append(f"line {number} is left out: it holds the numbers of columns, not a point")
+            return False
         good = sum(v is not None and not math.isnan(v) for v in chosen)
         if len(words) < self.width:
             no_words = None not in values or re.fullmatch(r"[-+\d.,;\seE]+", " ".join(words))

@@ -13,7 +13,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import outcomes
-from meshes import cloud, ghosts_of, lines as lines_of, triangles_of
+from meshes import GHOSTS, cloud, ghosts_of, lines as lines_of, triangles_of
 from vtkelevationsurface import vtkGridDelaunay2D
 
 POLICIES = 4
@@ -260,6 +260,8 @@ def check_kinds():
         compare("duplicates, policy %d" % policy, twice, owners, None, arrays, DuplicatePolicy=policy)
         compare("duplicates with ids, policy %d" % policy, twice, owners, random.permutation(len(twice)), arrays,
                 DuplicatePolicy=policy)
+    compare("an array that is named as flags are, and has none", coordinates, numpy.arange(1500) % COUNT, None,
+            ((GHOSTS, numpy.zeros(1500)),))
     compare("points on every other rank", coordinates, 2 * random.integers((COUNT + 1) // 2, size=1500))
     compare("a point on each rank", coordinates[:COUNT], numpy.arange(COUNT))
     compare("two points", coordinates[:2], numpy.arange(2) % COUNT)

@@ -292,6 +292,30 @@ class Doubts(Tables):
         ):
             self.assertIn(words, self.refusal(text, columns=columns))
 
+    def test_a_column_that_is_asked_for_is_one_and_has_a_name(self):
+        for names, column, words in (
+            ("x,y,z,z", "z", "columns 3 (z) and 4 (z) are all called z; --columns takes the number of one"),
+            ("x,y,Z (m),Z (ft)", "z", "columns 3 (Z (m)) and 4 (Z (ft)) are all called z"),
+            ("x,y,,z", "?", "there is no column ? for z; lines have 4"),
+            ("x,y,z,q", "-1", "there is no column -1 for z; lines have 4, named x, y, z, q"),
+            ("x,y,z,q", "0", "there is no column 0 for z"),
+        ):
+            self.assertIn(words, self.refusal(f"{names}\n1,2,3,4\n5,6,7,8\n", columns=f"x,y,{column}"))
+        cloud = self.read("x,y,Z,z\n1,2,3,4\n5,6,7,8\n", columns="x,y,z")  # as it is written
+        self.assert_rows(cloud, [(1, 2, 4), (5, 6, 8)])
+
+    def test_a_line_of_the_numbers_of_columns_is_no_point(self):
+        rows, expected = columns_of("nx ny z")
+        for head, index in (("0,1,2\n", ""), (",0,1,2\n", "{},")):
+            text = head + "".join(index.format(i) + ",".join(row) + "\n" for i, row in enumerate(rows))
+            cloud = self.read(text)
+            self.assert_rows(cloud, expected)
+            self.assertIn("line 1 is left out: it holds the numbers of columns", " ".join(cloud.notes))
+        # Where it may be a point, it is one.
+        head, among = "0,1,2\n", "-1.5,0.5,3.5\n5.5,6.5,7.5\n"
+        for text in (head, 2 * head, head + "1,2,3\n5,6,7\n", head + among, "0 1 2\n5.5 6.5 7.5\n"):
+            self.assertEqual(self.read(text).points.GetPoint(0), (0, 1, 2))
+
     def test_a_name_before_large_numbers_is_not_a_mark_between_thousands(self):
         with self.assertRaisesRegex(FileError, "no line holds 3 numbers; the most is 2"):
             self.read("Well,Easting,Northing\nW0,100,300\nW1,107,301\nW20,140,400\n")
@@ -308,6 +332,8 @@ class Doubts(Tables):
         self.assertIn("--columns 1,2,3 or --columns 2,3,1\n", self.refusal(text))
         self.assertEqual(self.read(text, columns="1,2,3").points.GetPoint(0)[0], 124.61)
         self.assertEqual(len(self.read("Z;X;Y\n" + text).notes), 2)
+        text = "".join(f"{z},{lon},{lat}\n" for z, lon, lat in zip(Z, LON, LAT))
+        self.assertIn("--columns 1,2,3 or --columns 2,3,1\n", self.refusal(text))
 
     def test_summary_lines_are_left_out_and_noted(self):
         for names in ("{}", "P{}"):  # numbers or text in the first column
@@ -467,6 +493,9 @@ class OthersBeside(Tables):
         head = "Year Month Day Hour Min Sec Lat Lon Signal Echo\n"
         text = head + self.table(*date, *clock, lat, lon, depth, depth + 1)
         self.assertIn("but not z; it may be columns 9 (Signal) and 10 (Echo)", self.refusal(text))
+        cloud = self.read("time,easting,northing,value\n300000.5,1.5,2.5,7\n300001.5,1.5,3.5,9\n")
+        self.assert_rows(cloud, [(1.5, 2.5, 7), (1.5, 3.5, 9)])
+        self.assertIn("z = 4 (value); z is the only column left", " ".join(cloud.notes))
 
     def test_degrees_that_can_be_read_one_way_only_are_asked_about(self):
         text = self.table(LAT, LON + 100, Z)

@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 import unittest
+from unittest import mock
 
 from text_tables import COUNT, Tables, columns_of
 from vtkelevationsurface.reading import tables
@@ -175,7 +176,7 @@ class Exports(Tables):
         )
 
 
-class Known(unittest.TestCase):
+class Known(Tables):
     """tables.ini."""
 
     def test_a_word_has_one_meaning_and_is_written_as_names_are_compared(self):
@@ -188,10 +189,35 @@ class Known(unittest.TestCase):
             self.assertEqual(sorted(set(words)), sorted(words), section)
             self.assertEqual([word for word in words if "".join(plain(word)) != word], [], section)
 
+    def test_names_in_lines_of_their_own_are_those_of_gslib_and_earthvision(self):
+        for head, words in (
+            ("x y grade\n3\na\nb\nc\n", "x = 1 (a), y = 2 (b), z = 3 (c)"),
+            ("Begin Header\nz\ny\nx\nEnd Header\nend header\n", "x = 3 (x), y = 2 (y), z = 1 (z)"),
+        ):
+            self.assertIn(words, " ".join(self.read(head + "1.5 2.5 3.5\n4.5 5.5 6.5\n").notes))
+
     def test_it_is_not_read_before_a_table_is(self):
         code = ("import vtkelevationsurface.command, vtkelevationsurface.reading.tables as tables;"
                 "print(tables.known.cache_info().currsize)")
         self.assertEqual(subprocess.check_output([sys.executable, "-c", code]).split(), [b"0"])
+
+    def test_where_it_lacks_or_is_damaged_an_error_names_it(self):
+        with open(tables.TABLES, encoding="utf-8") as stream:
+            text = stream.read()
+        path = self.path("tables.ini")
+        self.addCleanup(tables.known.cache_clear)
+        for damaged, words in (
+            (None, "No such file"), ("", "it has no 'refusals'"), (b"\xff\xfe", "can't decode"),
+            (text[: len(text) // 2], "it has no"), (text.replace("[nulls]", "[nulls"), "parsing errors"),
+            (text.replace("\ndate = ", "\ndate = ("), "missing )"), (text.replace("-9999", "nine", 1), "'nine'"),
+        ):
+            if damaged is not None:
+                self.file("tables.ini", damaged)
+            tables.known.cache_clear()
+            with mock.patch.object(tables, "TABLES", path):
+                error = self.refusal("x y z\n1 2 3\n")
+            self.assertTrue(error.startswith(path) and error.endswith("; install the package again"), error)
+            self.assertIn(words, error)
 
 
 if __name__ == "__main__":

@@ -103,6 +103,14 @@ class Parsing(Tables):
         cloud = self.read("1,2,3,4\n4,5,6,4,9\n7,8,9\n5,5,5,1\n")  # as many separators as in even lines
         self.assertIn("line 2 has 5 columns where others have 4", " ".join(cloud.notes))
 
+    def test_a_word_in_quotes_may_be_long(self):
+        cloud = self.read(f'x,y,z,outline\n1,2,3,"{"5 7," * 50_000}"\n4,5,6,none\n')
+        self.assert_rows(cloud, [(1, 2, 3), (4, 5, 6)])
+
+    def test_an_error_of_lines_of_a_boundary_says_what_helps(self):
+        with self.assertRaisesRegex(FileError, "line 1: 2 columns .* have 3; mark it with # if it is no row"):
+            read_table(self.file("a.txt", "4,3\n1,2,3\n4,5,6\n7,8,8\n"))
+
     def test_a_last_line_without_an_end_is_judged_like_others(self):
         self.assert_rows(self.read("Z;X;Y\n3;1;2"), [(1, 2, 3)])
 

@@ -88,15 +88,15 @@ using Edge = std::pair<Index, Index>;
 /** Lets an abort in, in loops after the triangulation: that has already reported all progress. */
 void CheckAbort(const Progress& progress, std::size_t step)
 {
-  if (step % 49152 == 0) // also a multiple of three
+  if (step % (1 << 16) == 0)
   {
     Report(progress, 1.0);
   }
 }
 
-// The passes, in SettleCell() and SettleSeams(): Triangulated() with what is covered,
-// MarkSettled(), SeamOf(), KeepSettled(). Of a large cell they look at few triangles, those of
-// Near.
+// The passes: Triangulated(); of a cell MarkSettledInCell(), or MarkAllSettled() on a lattice, of
+// seams TakeAll(), MarkCovered() and MarkSettled(); SeamOf(), KeepSettled(). After marking, they
+// look at the triangles of Near alone, few of a large cell.
 
 /** The mesh of points, with the state of those of its triangles that may not be settled. */
 struct SettledMesh
@@ -402,8 +402,9 @@ IdSet FindNear(const SettledMesh& mesh)
 }
 
 /**
- * Does the same, and looks at few circles: those of triangles that have a corner which is near, as
- * FindNear() says. Where one is found to be open, its other corners count as near, too.
+ * Finds what MarkAllSettled() does, and looks at few circles: those of triangles that have a corner
+ * which is near, as FindNear() says. Where one is found to be open, its other corners count as
+ * near, too. All triangles with a near corner are in Near at the end.
  *
  * The others are settled. For let the circle of a triangle, with its rim, reach a place that is not
  * inside the cell. As the cell is convex and has all points, that place is not inside the mesh
@@ -502,6 +503,7 @@ Piece SettleSeams(const Piece& seams, const Cell& cell, const DelaunayOptions& o
   PointView points;
   points.Double = seams.Coordinates.data();
   points.Count = seams.Count();
+  // Without an edge nothing is settled yet: these are all points of the cell.
   SettledMesh mesh = Triangulated(points, options, lattice, seams.Edges.empty());
   for (std::size_t i = 0; i < seams.Edges.size(); i += 2)
   {

@@ -20,7 +20,7 @@ constexpr double LargestUnscaled = 1e15;
 constexpr double LeastUnscaled = 1e-12;
 
 /**
- * Finds the longest edge of each triangle, adds the edges to their vertices.
+ * Adds the edges of triangles to their vertices.
  * Vertices are numbered in the order visited, so that later passes access memory locally.
  */
 struct Measurer
@@ -38,7 +38,6 @@ struct Measurer
   static constexpr Index AtOnce = 1024; ///< numbers reserved for a visitor at a time
   const Vertex* Vertices;               ///< of the list
   MeasuredTriangles* Measured;
-  double* Longest;           ///< of Measured
   std::atomic<Index>* Count; ///< of numbers reserved by all visitors
   Index Next = 0, End = 0;   ///< reserved and not yet used
   Index First = None;        ///< number of the first corner
@@ -83,7 +82,6 @@ struct Measurer
     const double right = this->ToLast;
     const double opposite = SquaredLength(a.Position, b.Position);
     this->ToLast = SquaredLength(b.Position, p.Position);
-    this->Longest[t] = std::max(std::max(right, opposite), this->ToLast);
     p.Edges.Add(right);
     a.Edges.Add(opposite);
     b.Edges.Add(this->ToLast);
@@ -136,13 +134,11 @@ bool MeasureBySweep(
   Stages stages(progress, { 85, 11, 2, 2 });
   const Index count = list.Count;
   measured.Corners.Resize(3 * static_cast<std::size_t>(count));
-  measured.Longest.Resize(count);
   TriangleSweep<Measurer> sweep(list, threads);
   measured.Ids.Resize(static_cast<std::size_t>(list.Points.Count) +
     static_cast<std::size_t>(sweep.NumberOfRanges()) * Measurer::AtOnce);
   std::atomic<Index> numbers{ 0 };
-  if (!sweep.Run(
-        Measurer{ &sweep.At(0), &measured, measured.Longest.data(), &numbers }, stages.Next()))
+  if (!sweep.Run(Measurer{ &sweep.At(0), &measured, &numbers }, stages.Next()))
   {
     return false;
   }
@@ -193,26 +189,20 @@ MeasuredTriangles Measure(const Mesh& mesh, const Progress& progress)
   list.Count = count;
   list.Points.Double = measured.Coordinates.data();
   list.Points.Count = mesh.NumberOfPoints();
-  measured.Longest.Resize(count);
   measured.SetNumberOfVertices(list.Points.Count);
   std::vector<EdgesAtVertex> edges(mesh.Points.size());
   ForEachStretch(count, progress, [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
+    for (Index h = 3 * begin; h < 3 * end; ++h)
     {
-      measured.Longest[t] = 0.0;
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      const BorderEdge edge{ mesh.Origin(h), mesh.Destination(h) };
+      const double squared =
+        SquaredLength(list.Points.At(edge.Origin), list.Points.At(edge.Destination));
+      edges[edge.Origin].Add(squared);
+      if (mesh.IsBorder(h))
       {
-        const BorderEdge edge{ mesh.Origin(h), mesh.Destination(h) };
-        const Point2 origin = list.Points.At(edge.Origin);
-        const double squared = SquaredLength(origin, list.Points.At(edge.Destination));
-        measured.Longest[t] = std::max(measured.Longest[t], squared);
-        edges[edge.Origin].Add(squared);
-        if (mesh.IsBorder(h))
-        {
-          // No half-edge runs back from the destination.
-          edges[edge.Destination].Add(squared);
-          measured.Border.push_back(edge);
-        }
+        // No half-edge runs back from the destination.
+        edges[edge.Destination].Add(squared);
+        measured.Border.push_back(edge);
       }
     }
   });

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Measures what the outline of a surface is found from: the longest edge of each triangle, the
- * shortest edges at each vertex, and the border.
+ * Measures what the outline of a surface is found from: the shortest edges at each vertex, and the
+ * border.
  *
  * In: a mesh, or a list of triangles. Cost: linear, one pass over the triangles.
  */
@@ -73,6 +73,16 @@ struct MeasuredTriangles
     this->ShortSpacings[vertex] = edges.ShortSpacing();
   }
 
+  /** The square of a triangle's longest edge. */
+  double SquaredLongest(Index t) const
+  {
+    const Index* const corners = this->List.CornersOf(t);
+    const Point2 a = this->List.Points.At(corners[0]);
+    const Point2 b = this->List.Points.At(corners[1]);
+    const Point2 c = this->List.Points.At(corners[2]);
+    return std::max({ SquaredLength(a, b), SquaredLength(b, c), SquaredLength(c, a) });
+  }
+
   /** The vertices with edges, whatever numbers a sweep on several threads has left out. */
   Index NumberOfCorners() const
   {
@@ -85,7 +95,6 @@ struct MeasuredTriangles
   Buffer<Index> Corners;         ///< owns List's corners, if renumbered
   Buffer<double> Coordinates;    ///< owns List's points
   Buffer<Index> Ids;             ///< one per vertex: its id in the input; empty if not renumbered
-  Buffer<double> Longest;        ///< one per triangle: the square of its longest edge
   Buffer<std::uint32_t> Degrees; ///< one per vertex: its number of edges, perhaps none
   Buffer<float> ShortSpacings;   ///< one per vertex
   std::vector<BorderEdge> Border;

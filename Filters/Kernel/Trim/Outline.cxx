@@ -285,7 +285,7 @@ private:
     const Index* const corners = this->Measured.List.CornersOf(t);
     const auto isKnown = [this](Index v) { return !std::isnan(this->Spacings[v]); };
     return std::all_of(corners, corners + 3, isKnown) && !this->Border.Vertices.HasAny(corners) &&
-      std::sqrt(this->Measured.Longest[t]) <= this->ToleranceOf(t);
+      std::sqrt(this->Measured.SquaredLongest(t)) <= this->ToleranceOf(t);
   }
 
   /** Adds the vertices that are up to some edges away. */
@@ -445,7 +445,6 @@ private:
   {
     const TriangleList& list = this->Measured.List;
     const Buffer<float>& shortSpacings = this->Measured.ShortSpacings;
-    const Buffer<double>& longest = this->Measured.Longest;
     std::vector<char>& keep = this->Result.IsSurface;
     keep.resize(list.Count);
     const double limit = CertainSurface * this->Tolerance;
@@ -456,8 +455,10 @@ private:
         const Index* ahead = list.CornersOf(std::min(t + 40, end - 1));
         Prefetch(&shortSpacings[ahead[1]]);
         Prefetch(&shortSpacings[ahead[2]]);
+        list.PrefetchPoint(ahead[1]);
+        list.PrefetchPoint(ahead[2]);
         const double length = limit * SpacingOf(shortSpacings, list.CornersOf(t));
-        keep[t] = longest[t] <= length * length ||
+        keep[t] = this->Measured.SquaredLongest(t) <= length * length ||
           (this->States && this->States[t] <= TriangleState::SurfaceBySpacing);
       }
     };
@@ -515,7 +516,7 @@ private:
       for (Index i = begin; i < end; ++i)
       {
         const Index t = doubtful[i];
-        const double longest = std::sqrt(this->Measured.Longest[t]);
+        const double longest = std::sqrt(this->Measured.SquaredLongest(t));
         // What is too long for surface may still be surface as a part of a small bay.
         this->Result.IsSurface[t] = longest <= this->ToleranceOf(t) ? Surface
           : longest <= this->BayTolerance(t)                        ? Bay
@@ -568,7 +569,8 @@ private:
     {
       // Without the scale: a tolerance that the user gives has none.
       ratios.emplace_back(
-        std::sqrt(this->Measured.Longest[t]) / SpacingOf(this->Spacings, list.CornersOf(t)), t);
+        std::sqrt(this->Measured.SquaredLongest(t)) / SpacingOf(this->Spacings, list.CornersOf(t)),
+        t);
     }
     std::sort(ratios.begin(), ratios.end());
     IdSet missing = leftOut;

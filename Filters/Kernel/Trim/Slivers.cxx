@@ -21,7 +21,7 @@ bool IsFlat(const MeasuredTriangles& measured, Index t)
   const double spacing = SpacingOf(measured.ShortSpacings, list.CornersOf(t));
   // Twice the area over the longest edge is the height.
   return 2.0 * list.SquareShare(t, spacing) * spacing <
-    LeastHeight * std::sqrt(measured.Longest[t]);
+    LeastHeight * std::sqrt(measured.SquaredLongest(t));
 }
 
 /** Whether an edge is the longest of its triangle, or one of them. */

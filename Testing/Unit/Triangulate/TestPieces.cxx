@@ -279,6 +279,68 @@ TEST(Pieces, TogetherAreTheTriangulationOfTheWhole)
   }
 }
 
+namespace
+{
+/**
+ * Points of which many are on the hull, between its corners, or in one place: along the sides of a
+ * rectangle or of a triangle, and some inside; zeros have either sign.
+ */
+Cloud FrameCloud(std::mt19937_64& random, Index count)
+{
+  const Index side = 1 + static_cast<Index>(random() % 40);
+  const bool isTriangle = random() % 2 == 0;
+  Cloud cloud;
+  for (Index i = 0; i < count; ++i)
+  {
+    double x = static_cast<double>(random() % (side + 1));
+    double y = static_cast<double>(random() % (side + 1));
+    const std::uint64_t place = random() % 8;
+    x = place == 0 ? 0.0 : (place == 1 ? side : x);
+    y = place == 2 ? -0.0 : (place == 3 ? side : y);
+    // Below a diagonal, with a third of the points on it.
+    y = isTriangle && (y > x || place > 5) ? x : y;
+    cloud.Add(random() % 2 == 0 ? x : -x, y, static_cast<double>(random() % 9));
+  }
+  return cloud;
+}
+
+/** The same points, larger or smaller, in one direction or both. Some are not finite. */
+Cloud Scaled(std::mt19937_64& random, Cloud cloud)
+{
+  constexpr double scales[] = { 1.0, 1e-300, 1e-160, 1e150, 1e300, 5e-324 };
+  const double scaleX = scales[random() % 6], scaleY = random() % 2 == 0 ? scaleX : 1.0;
+  for (std::size_t i = 0; i < cloud.Coordinates.size(); i += 3)
+  {
+    cloud.Coordinates[i] *= scaleX;
+    cloud.Coordinates[i + 1] *= scaleY;
+    cloud.Coordinates[i + 2] =
+      random() % 20 == 0 ? std::numeric_limits<double>::infinity() : cloud.Coordinates[i + 2];
+  }
+  return cloud;
+}
+} // namespace
+
+TEST(Pieces, AreTogetherTheWholeWhereManyPointsAreOnTheHullOrProductsAreNotFinite)
+{
+  std::mt19937_64 random(99);
+  for (int i = 0; i < 400; ++i)
+  {
+    const bool isScaled = i % 4 > 0; // few points, as predicates then take integers of any length
+    const Index count = 1 + static_cast<Index>(random() % (isScaled ? 20 : 1000));
+    const Cloud clouds[] = { FrameCloud(random, count),
+      SmallLatticeCloud(random, 12, isScaled ? 20 : 90), CircleCloud(count % 50),
+      RandomCloud(random, count) };
+    const Cloud& plain = clouds[random() % 4];
+    const Cloud cloud = isScaled ? Scaled(random, plain) : plain;
+    const int pieces = 1 + static_cast<int>(random() % 9);
+    DelaunayOptions options;
+    options.UseLattice = LatticeMode::Off;
+    const Triangulation whole = Triangulate(cloud.View(), options);
+    ASSERT_EQ(Cut(cloud, pieces).Triangles, TrianglesOf(whole))
+      << "cloud " << i << " in " << pieces << " pieces";
+  }
+}
+
 TEST(Pieces, MayHaveMorePiecesThanPoints)
 {
   std::mt19937_64 random(92);
