@@ -243,6 +243,8 @@ class Parser:
         self.used = [*table.indices, *table.choice.extras]
         self.comments = "".join(known().signs["comments"])
         self.comment = re.compile(rb"\n[ \t]*[" + self.comments.encode() + b"]")
+        heads = [re.escape(line.encode()) for line in table.head_lines if table.is_like(line)]
+        self.head = re.compile(rb"(?:\A|\n)[ \t]*(?:" + b"|".join(heads) + rb")[ \t]*(?:\n|\Z)") if heads else None
         self.parts, self.array, self.line = [], None, 0
         self.breaks = [0]  # numbers of lines behind which another line or ring begins
         self.before = None  # lines before this part of the file, once a message needs their number
@@ -281,6 +283,8 @@ class Parser:
         first = 0
         for _ in range(skip):
             first = block.find(b"\n", first) + 1
+        if self.head and self.head.search(block, max(first - 1, 0)):
+            return False
         plain = not any(map(table.summary, map(bytes.decode, tail))) and vtkTextRows.Parse(
             block, first, layout.separator or "", table.words, in_vtk(numpy.array(self.used, dtype="i4")),
             self.comments, rows,
@@ -326,6 +330,7 @@ class Parser:
         """The places of the rows. Counts other lines, and keeps the breaks between rows."""
         table, facts = self.table, self.facts
         plain = not skip and not is_comment(lines[0]) and not self.comment.search(block)
+        plain = plain and not (self.head and self.head.search(block))
         plain = plain and not table.sees_summaries and not any(map(table.summary, lines[-TAIL:]))
         if plain and all(map(str.strip, lines)):
             return range(len(lines))

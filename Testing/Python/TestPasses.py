@@ -160,6 +160,14 @@ class TextRows(InFolder):
             with mock.patch.object(text_blocks, "BLOCK", block):
                 self.check("".join((*rows[:-40], last + "\n", *rows[-40:])))
 
+    def test_a_head_of_numbers_that_comes_again_is_no_point(self):
+        rows = [f"{4e5 + x + 0.25},{5e6 + y + 0.25},{x * y % 7}\n" for x in range(110) for y in range(100)]
+        words = "".join(("0,1,2\n", *rows[:5001], "0,1,2\n", *rows[5001:]))
+        for block in (text_blocks.BLOCK, 100_000):
+            with mock.patch.object(text_blocks, "BLOCK", block):
+                self.check(words)
+                self.assertIn("header lines that come again are left out: 1", self.outcome(words)[2])
+
     def test_lines_that_are_too_short_take_no_memory(self):
         rows = vtkDoubleArray()
 
