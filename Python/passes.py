@@ -48,7 +48,8 @@ def kept_tuples(array, flags):
     kept.SetNumberOfComponents(array.GetNumberOfComponents())
     kept.CopyComponentNames(array)
     kept.SetNumberOfTuples(count)
-    if isinstance(array, vtkDataArray) and not isinstance(array, vtkBitArray):
+    is_plain = isinstance(array, vtkDataArray) and not isinstance(array, vtkBitArray)
+    if is_plain and array.HasStandardMemoryLayout():
         check(vtkSurfacePasses.KeepTuples(array, in_vtk(flags), kept))
     else:
         for place, tuple_id in enumerate(numpy.flatnonzero(flags).tolist()):

@@ -228,7 +228,8 @@ def widest(controller, low, high):
 
 def extremes(controller, values):
     """The least and the greatest value of all ranks; infinity and -infinity where there is none."""
-    return widest(controller, values.min(initial=numpy.inf), values.max(initial=-numpy.inf))
+    ends = (float(values.min()), float(values.max())) if len(values) else (numpy.inf, -numpy.inf)
+    return widest(controller, *ends)
 
 
 def finite_extremes(controller, values):

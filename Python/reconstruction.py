@@ -578,7 +578,7 @@ def least_reach(points, ranks=None):
     xyz, least = coordinates_of(points), [numpy.inf]
     for rows in slices(len(xyz)):
         reach = numpy.maximum(*numpy.abs(xyz[rows, :2].T))  # NaN where one is
-        least.append(reach[numpy.isfinite(reach)].min(initial=numpy.inf))
+        least.append(extremes(None, reach[numpy.isfinite(reach)])[0])
     return extremes(ranks, numpy.array(least))[0]
 
 

@@ -35,11 +35,12 @@ public:
 
   bool Parse(const char*& at, const char* end, double* row) const
   {
-    this->SkipBlanks(at, end);
-    if (at < end && this->Comments.find(*at) != std::string::npos)
+    const char* const first = std::find_if_not(at, end, IsBlank);
+    if (first < end && this->Comments.find(*first) != std::string::npos)
     {
       return false;
     }
+    this->SkipBlanks(at, end);
     for (std::size_t word = 0; word < this->Places.size(); ++word)
     {
       // Between blanks there is no empty word.
@@ -164,6 +165,12 @@ try
     before[i + 1] += before[i];
   }
   before.back() += stretches > 0 && end[-1] != '\n';
+  // Each wanted word has a character, and something stands behind each word: of lines that are
+  // shorter, rows would take more memory than there may be.
+  if (before.back() * (words + width) > end - begin + 1)
+  {
+    return false;
+  }
   rows->SetNumberOfComponents(width);
   rows->SetNumberOfTuples(before.back());
   double* const values = rows->GetPointer(0);

@@ -40,7 +40,6 @@ from ..selecting import MOST_VALUES, WordReader
 from ..names import option
 
 TAIL = 50  # lines at the end of a block among which summaries are looked for
-TAIL_LENGTH = 50_000  # characters, in which these are
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED, MOST_SUMMARIES = 3, 5  # that many lines of other kinds, and of summaries, are named
 MOST_UNEVEN = 0.5, 0.08  # lines of numbers that are longer than others or left out, as a share of rows
@@ -244,6 +243,8 @@ class Parser:
         self.used = [*table.indices, *table.choice.extras]
         self.comments = "".join(known().signs["comments"])
         self.comment = re.compile(rb"\n[ \t]*[" + self.comments.encode() + b"]")
+        heads = [re.escape(line.encode()) for line in table.head_lines if table.is_like(line)]
+        self.head = re.compile(rb"(?:\A|\n)[ \t]*(?:" + b"|".join(heads) + rb")[ \t]*(?:\n|\Z)") if heads else None
         self.parts, self.array, self.line = [], None, 0
         self.breaks = [0]  # numbers of lines behind which another line or ring begins
         self.before = None  # lines before this part of the file, once a message needs their number
@@ -278,11 +279,13 @@ class Parser:
         table, layout, rows = self.table, self.table.layout, vtkDoubleArray()
         if self.texts or layout.decimal_comma or table.sees_summaries or b'"' in block or not block.isascii():
             return False
-        tail = block[-TAIL_LENGTH:].decode().split("\n")[-TAIL - 1 :] if table.has_summaries else []
+        tail = block.rsplit(b"\n", TAIL + 1)[-TAIL - 1 :] if table.has_summaries else []
         first = 0
         for _ in range(skip):
             first = block.find(b"\n", first) + 1
-        plain = not any(map(table.summary, tail)) and vtkTextRows.Parse(
+        if self.head and self.head.search(block, max(first - 1, 0)):
+            return False
+        plain = not any(map(table.summary, map(bytes.decode, tail))) and vtkTextRows.Parse(
             block, first, layout.separator or "", table.words, in_vtk(numpy.array(self.used, dtype="i4")),
             self.comments, rows,
         )
@@ -327,6 +330,7 @@ class Parser:
         """The places of the rows. Counts other lines, and keeps the breaks between rows."""
         table, facts = self.table, self.facts
         plain = not skip and not is_comment(lines[0]) and not self.comment.search(block)
+        plain = plain and not (self.head and self.head.search(block))
         plain = plain and not table.sees_summaries and not any(map(table.summary, lines[-TAIL:]))
         if plain and all(map(str.strip, lines)):
             return range(len(lines))

@@ -5,15 +5,17 @@
 import itertools
 import sys
 import unittest
+from unittest import mock
 
 import numpy
 from in_folder import InFolder
 from vtkelevationsurface import ElevationSurfaceError, passes, reconstruct
 from vtkelevationsurface.clouds import cells_of, make_points
-from vtkelevationsurface.reading import text
+from vtkelevationsurface.reading import text, text_blocks
 from vtkelevationsurface.several_heights import several_heights
+from vtkelevationsurface.vtkElevationSurfacePieces import vtkTextRows
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkStringArray
+from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkSOADataArrayTemplate, vtkStringArray
 
 
 def mesh(count=3000, seed=1):
@@ -46,6 +48,14 @@ class Passes(unittest.TestCase):
             kept = passes.kept_tuples(array, flags)
             self.assertEqual((kept.GetName(), kept.GetDataType()), ("One", array.GetDataType()))
             numpy.testing.assert_array_equal(vtk_to_numpy(kept), values[flags])
+        array = vtkSOADataArrayTemplate["float64"]()
+        array.SetNumberOfComponents(2)
+        array.SetNumberOfTuples(40)
+        for i in range(80):
+            array.SetTypedComponent(i // 2, i % 2, i)
+        kept = passes.kept_tuples(array, flags)
+        found = [kept.GetTuple2(i) for i in range(kept.GetNumberOfTuples())]
+        self.assertEqual(found, [(2.0 * i, 2.0 * i + 1) for i in numpy.flatnonzero(flags)])
         words = vtkStringArray()
         for i in range(40):
             words.InsertNextValue(str(i))
@@ -140,6 +150,35 @@ class TextRows(InFolder):
             self.check(rows + more)
             self.check("x y z\n" + rows + more)
             self.check("name,x,y,z\n" + "".join(f"p,{line}\n" for line in rows.replace(" ", ",").split("\n")[:-1]))
+
+    def test_names_that_are_not_kept_change_no_meaning(self):
+        places = [(i, i % 60, i // 60, i % 7) for i in range(2000)]
+        for block, rows, last in (
+            (100_000, [f"p{i},{x},{y},{z},{i}{'q' * 1500}\n" for i, x, y, z in places], "Total,3,4,5,0"),
+            (10_000, [f"p{i}\tq{i}\t{x}\t{y}\t{z}\n" for i, x, y, z in places], "\t#x\t3\t4\t5"),
+        ):
+            with mock.patch.object(text_blocks, "BLOCK", block):
+                self.check("".join((*rows[:-40], last + "\n", *rows[-40:])))
+
+    def test_a_head_of_numbers_that_comes_again_is_no_point(self):
+        rows = [f"{4e5 + x + 0.25},{5e6 + y + 0.25},{x * y % 7}\n" for x in range(110) for y in range(100)]
+        words = "".join(("0,1,2\n", *rows[:5001], "0,1,2\n", *rows[5001:]))
+        for block in (text_blocks.BLOCK, 100_000):
+            with mock.patch.object(text_blocks, "BLOCK", block):
+                self.check(words)
+                self.assertIn("header lines that come again are left out: 1", self.outcome(words)[2])
+
+    def test_lines_that_are_too_short_take_no_memory(self):
+        rows = vtkDoubleArray()
+
+        def parse(words, count):
+            columns = passes.in_vtk(numpy.arange(count, dtype="i4"))
+            return vtkTextRows.Parse(words, 0, ",", count, columns, "#", rows)
+
+        self.assertFalse(parse(b"\n" * 100_000, 1000))
+        self.assertEqual(rows.GetSize(), 0)
+        self.assertTrue(parse(b"1,2\n3,4", 2))
+        self.assertEqual(vtk_to_numpy(rows).tolist(), [[1, 2], [3, 4]])
 
     def test_blocks_are_read_in_stretches_of_whole_lines(self):
         random = numpy.random.default_rng(6)

@@ -89,6 +89,16 @@ class Input(unittest.TestCase):
             for one, other in zip(reconstruct(given).to_numpy(), expected):
                 numpy.testing.assert_array_equal(one, other)
 
+    def test_points_of_whole_numbers_are_points(self):
+        places = numpy.array([[0, 0, 5], [7, 0, 1], [0, 7, 2], [7, 8, 3], [3, 3, 9]], "i4")
+        data, points = vtkPolyData(), vtkPoints()
+        points.SetData(numpy_to_vtk(places, deep=True))
+        data.SetPoints(points)
+        result, expected = reconstruct(data), reconstruct(places)
+        self.assertEqual(result.report["bounds"], expected.report["bounds"])
+        for one, other in zip(result.to_numpy(), expected.to_numpy()):
+            numpy.testing.assert_array_equal(one, other)
+
     def test_point_data_come_along(self):
         data = vtkPolyData()
         points = vtkPoints()
