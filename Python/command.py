@@ -9,6 +9,7 @@ import sys
 import time
 
 import numpy
+from vtkmodules.vtkCommonCore import vtkSMPTools
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import reading
@@ -62,6 +63,9 @@ class Run:
         if ranks and hasattr(os, "sched_getaffinity"):
             # mpirun may give each of them a core.
             options.properties.setdefault("threads", len(os.sched_getaffinity(0)))
+        # The filters take so many; passes of the package as many as VTK has.
+        if 0 < options.properties.get("threads", 0) < vtkSMPTools.GetEstimatedNumberOfThreads():
+            vtkSMPTools.Initialize(options.properties["threads"])
 
     def timed(self, name, text, work):
         self.progress(text, 0.0)

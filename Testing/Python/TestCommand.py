@@ -64,6 +64,18 @@ class Options(Program):
         self.assertEqual(done.returncode, 2)
         self.assertIn("error: --recover-boundary takes no value; see --help", done.stderr)
 
+    def test_all_of_the_program_takes_the_threads_that_are_given(self):
+        self.file("a.xyz", sheet(4))
+        code = (
+            "import sys; from vtkmodules.vtkCommonCore import vtkSMPTools as tools; tools.Initialize(2); "
+            "from vtkelevationsurface.command import main; main(sys.argv[1:]); "
+            "print(tools.GetEstimatedNumberOfThreads())"
+        )
+        for given, expected in ((), "2"), (("--threads", "1"), "1"), (("--threads", "5"), "2"):
+            command = sys.executable, "-c", code, "a.xyz", "--quiet", "--no-picture", *given
+            done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual((done.stdout, done.stderr), (f"{expected}\n", ""), given)
+
     def test_what_follows_two_dashes_is_a_file(self):
         self.file("-a.xyz", sheet(4))
         self.assertEqual(self.call("--no-picture", "--", "-a.xyz").returncode, 0)
