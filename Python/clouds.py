@@ -627,14 +627,6 @@ class Part:
 WHOLE = Part()
 
 
-def are_among(values, few):
-    """Which of the values are among few others. numpy.isin() would sort all."""
-    few = numpy.unique(few)
-    if not len(few):
-        return numpy.zeros(len(values), dtype=bool)
-    return few[numpy.minimum(numpy.searchsorted(few, values), len(few) - 1)] == values
-
-
 def rounding_note(coordinates, why="VTK reads this format"):
     """A line for the user when 32-bit coordinates are coarse for the spacing, else None."""
     xy = coordinates[:, :2]

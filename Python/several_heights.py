@@ -26,7 +26,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
-from .clouds import are_among, marked_points, slices
+from .clouds import marked_points, slices
 from .messages import ElevationSurfaceError, counted
 from .names import option
 from .passes import maybe_shared
@@ -44,7 +44,6 @@ CLEAR_STEPS, MOST_STEPS = 1.5, 6.0
 USUAL = 90  # per cent of steps are no larger than the usual one: a plain may have steep banks
 ALMOST = 0.95  # of the places
 ALWAYS = 0.9  # of pairs of heights at a place
-MIXER = numpy.uint64(0x9E3779B97F4A7C15)
 
 
 @dataclasses.dataclass
@@ -72,28 +71,16 @@ class Several:
         return numpy.diff(self.starts, append=len(self.ids))
 
 
-@numpy.errstate(over="ignore")
 def shared_places(xyz):
     """(ids of the points that share x,y with others, by place and z; where places begin). xyz: (n, 3);
-    points that are not finite share none.
-
-    A number is made of x and y that is the same for equal ones. What has it alone shares no place.
-    """
+    points that are not finite share none."""
     maybe = maybe_shared(xyz)
-    x, y, z = (xyz[maybe, i].astype("f8") + 0.0 for i in range(3))
-    key = x.view("u8") * MIXER
-    key ^= key >> numpy.uint64(32)
-    key = (key + y.view("u8")) * MIXER
-    key ^= key >> numpy.uint64(29)
-    ordered = numpy.sort(key)
-    again = ordered[1:][ordered[1:] == ordered[:-1]]
-    if not len(again):
-        return numpy.empty(0, "i8"), numpy.empty(0, "i8")
-    ids = numpy.flatnonzero(are_among(key, again))
-    ids = ids[numpy.lexsort((z[ids], y[ids], x[ids]))]
-    differs = (numpy.diff(x[ids]) != 0) | (numpy.diff(y[ids]) != 0)
-    starts = numpy.concatenate(([0], 1 + numpy.flatnonzero(differs)))
-    return maybe[ids], starts
+    order = numpy.lexsort(xyz[maybe].T[::-1])
+    xy = xyz[maybe[order], :2]
+    differs = (xy[1:] != xy[:-1]).any(axis=1)
+    begins, ends = (numpy.concatenate(sides)[: len(order)] for sides in (([True], differs), (differs, [True])))
+    shared = ~(begins & ends)
+    return maybe[order[shared]], numpy.flatnonzero(begins[shared])
 
 
 def several_heights(xyz):

@@ -339,14 +339,13 @@ void MarkSettled(
   const Cell& cell, const SharedLattice* lattice, const Progress& progress, SettledMesh& mesh)
 {
   constexpr std::size_t ahead = 16; // corners are anywhere in memory
+  TriangleList list;
+  list.Points = mesh.Points;
   for (std::size_t i = 0; i < mesh.Near.size(); ++i)
   {
     CheckAbort(progress, i);
     const Index* const soon = mesh.CornersOf(mesh.Near[std::min(i + ahead, mesh.Near.size() - 1)]);
-    std::for_each(soon, soon + 3, [&mesh](Index corner) {
-      const std::size_t x = 3 * static_cast<std::size_t>(corner);
-      mesh.Points.Double ? Prefetch(mesh.Points.Double + x) : Prefetch(mesh.Points.Float + x);
-    });
+    std::for_each(soon, soon + 3, [&list](Index corner) { list.PrefetchPoint(corner); });
     if (mesh.States[i] == SettledMesh::Open &&
       HoldsCircleOf(cell, mesh, mesh.CornersOf(mesh.Near[i]), lattice))
     {
