@@ -368,14 +368,14 @@ Index GreedyInsertion::RunWorstFirst(
   const double count = static_cast<double>(this->Inserted.Places.size());
   Index best = this->Vertices;
   float least = std::numeric_limits<float>::infinity();
+  std::uint32_t before = 0; // the sample
   this->ForEachSample(
     threads, progress, [&](std::uint32_t every, double density, const Progress& inserting) {
-      double here = std::min(density * count, static_cast<double>(last));
-      if (every > 1)
-      {
-        here = std::min(here, MostOfSamples * most);
-        least = std::numeric_limits<float>::infinity(); // other points may be farther off
-      }
+      const double here =
+        std::min({ density * count, 1.0 * last, every > 1 ? MostOfSamples * most : count });
+      // Points that are new may be farther off; without and with lists, they are the same.
+      least = every == before ? least : std::numeric_limits<float>::infinity();
+      before = every;
       return this->InsertWorst(error, static_cast<Index>(here), inserting, least, best) ||
         this->Vertices >= last;
     });
