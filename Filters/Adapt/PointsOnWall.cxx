@@ -29,13 +29,17 @@ constexpr double Outlying = 3.0;
 void RemoveBlunders(std::vector<Sampled>& sample)
 {
   Sampled low, high;
+  std::vector<double> values(sample.size());
   for (int c = 0; c < 3; ++c)
   {
+    std::transform(
+      sample.begin(), sample.end(), values.begin(), [c](const Sampled& p) { return p[c]; });
+    auto begin = values.begin();
     const auto quantile = [&](double share) {
-      const auto at = sample.begin() + static_cast<std::ptrdiff_t>(share * (sample.size() - 1));
-      std::nth_element(sample.begin(), at, sample.end(),
-        [c](const Sampled& p, const Sampled& q) { return p[c] < q[c]; });
-      return (*at)[c];
+      const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * (values.size() - 1));
+      std::nth_element(begin, at, values.end());
+      begin = at; // a larger quantile is behind it
+      return *at;
     };
     // At least two fifths of the points stay: what is between the two, in each of three
     // coordinates.
@@ -59,7 +63,8 @@ std::vector<Sampled> SampleOf(const PointView& points)
   std::vector<Sampled> sample;
   for (Index i = 0; i < count; ++i)
   {
-    const double share = golden * i - std::floor(golden * i);
+    // Cut off is rounded down: nothing is negative.
+    const double share = golden * i - static_cast<double>(static_cast<Index>(golden * i));
     const Index at = count == points.Count ? i : static_cast<Index>(share * points.Count);
     const Point2 p = points.At(at);
     const Sampled place = { p.X, p.Y, points.Elevation(at) };
@@ -92,10 +97,12 @@ void WarnOfWall(std::vector<Sampled> sample, std::vector<Message>& warnings)
   double squares[3][3] = {};
   for (const Sampled& p : sample)
   {
+    // Divided before they are multiplied, for the same reason.
+    const double d[3] = { (p[0] - middle[0]) / unit, (p[1] - middle[1]) / unit,
+      (p[2] - middle[2]) / unit };
     for (int c = 0; c < 9 && unit > 0.0; ++c)
     {
-      // Both factors are divided before they are multiplied, for the same reason.
-      squares[c / 3][c % 3] += (p[c / 3] - middle[c / 3]) / unit * ((p[c % 3] - middle[c % 3]) / unit);
+      squares[c / 3][c % 3] += d[c / 3] * d[c % 3];
     }
   }
   double scatter[3], directions[3][3];

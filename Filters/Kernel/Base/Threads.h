@@ -144,6 +144,8 @@ void ForEachTask(Index count, int threads, const Progress& progress, Work&& work
   const auto fractionOf = [count](Index done) {
     return std::min(1.0, static_cast<double>(done) / std::max(count, 1));
   };
+  // To start threads takes longer than many a task.
+  threads = std::min<Index>(threads, count);
   if (threads <= 1)
   {
     for (Index i = 0; i < count; ++i)

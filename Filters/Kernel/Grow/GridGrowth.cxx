@@ -16,7 +16,7 @@ namespace
  * Points and boxes that searches may look at per vertex before growth is given up; for Compactness,
  * which looks at more, ten times as many.
  */
-constexpr std::int64_t WorkPerVertex = 340;
+constexpr std::int64_t WorkPerVertex = 600;
 /**
  * The rest of the work for a fan, in the same unit: pauses come regularly also where searches find
  * the apex among few points.

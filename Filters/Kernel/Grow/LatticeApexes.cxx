@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 namespace elevation
@@ -59,6 +60,15 @@ public:
   }
 
   double Length() const { return std::sqrt(this->LengthSquared); }
+  /** The other way round: dot / cross. */
+  double QuotientOf(double position) const { return 2.0 * this->Root * position; }
+  /** Of a disc half of which has the area of so many cells; at least 0. */
+  double PositionOfCells(double cells) const
+  {
+    constexpr double pi = 3.14159265358979323846;
+    const double squared = 2.0 * cells * this->Root / pi; // of the radius
+    return std::sqrt(std::max(squared / this->LengthSquared - 0.25, 0.0));
+  }
 
   /**
    * Chooses the disc by the position of its centre; sets the bounds that rows and columns are
@@ -214,32 +224,53 @@ const LatticeApexes::Entries* LatticeApexes::MakeList(
   };
   constexpr std::size_t most = 64;
   std::vector<Candidate> all;
-  // All nodes in range on the left of the edge, whether occupied or not: the list serves every edge
-  // with this vector.
   all.reserve((2 * Range + 1) * (2 * Range + 1));
-  for (std::int64_t y = e.Y < 0 ? -Range : 0; y <= Range; ++y)
-  {
-    for (std::int64_t x = -Range; x <= Range; ++x)
+  EdgeDisc disc(this->Metric, e);
+  // Nodes on the left of the edge up to a quotient, whether occupied or not: the list serves every
+  // edge with this vector.
+  const auto collect = [&](double last, double left, double right, double bottom, double top) {
+    const auto inRange = [](double side) {
+      return static_cast<Index>(std::clamp<double>(side, -Range, Range));
+    };
+    all.clear();
+    for (Index y = e.Y < 0 ? inRange(bottom) : 0; y <= inRange(top); ++y)
     {
-      const Apex apex = ApexAt(this->Metric, e, { x, y });
-      if (apex.Cross > 0 && (e.Y < 0 || y > 0 || x > 0))
+      for (Index x = inRange(left); x <= inRange(right); ++x)
       {
-        all.push_back(
-          { static_cast<double>(apex.Dot) / static_cast<double>(apex.Cross), apex.Position });
+        const Apex apex = ApexAt(this->Metric, e, { x, y });
+        if (!(apex.Cross > 0) || (e.Y >= 0 && y == 0 && x <= 0))
+        {
+          continue;
+        }
+        const double quotient = static_cast<double>(apex.Dot) / static_cast<double>(apex.Cross);
+        if (quotient <= last)
+        {
+          all.push_back({ quotient, apex.Position });
+        }
       }
     }
+  };
+  // First in a disc with some more on the left, as there are many more in range.
+  const double position = disc.PositionOfCells(1.5 * most);
+  disc.Set(position);
+  collect(disc.QuotientOf(position), disc.Left - 1.0, disc.Right + 1.0, disc.Bottom - 1.0,
+    disc.Top + 1.0);
+  if (all.size() < most)
+  {
+    collect(std::numeric_limits<double>::infinity(), -Range, Range, -Range, Range);
   }
   const auto isBetter = [&](const Candidate& p, const Candidate& q) {
     return p.Quotient != q.Quotient ? p.Quotient < q.Quotient : IsFirst(p.Position, q.Position, e);
   };
-  if (all.size() > most)
+  if (all.size() > 2 * most)
   {
     std::nth_element(all.begin(), all.begin() + most, all.end(), isBetter);
     all.resize(most);
   }
   std::sort(all.begin(), all.end(), isBetter);
+  all.resize(std::min(all.size(), most));
   auto made = std::make_unique<Entries>();
-  EdgeDisc disc(this->Metric, e);
+  made->reserve(all.size());
   for (const Candidate& candidate : all)
   {
     // Apexes come by growing circles. If a circle leaves the range, nodes outside of the list may

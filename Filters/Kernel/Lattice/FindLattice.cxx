@@ -21,21 +21,23 @@ constexpr std::size_t Vectors = 128; // the shortest differences of points
 // coordinates at large multiples of the steps; rounded coordinates need a large one.
 constexpr std::array<double, 3> ZeroTolerances{ 0.02, 0.06, 0.15 };
 
+struct Difference
+{
+  double Squared;
+  Point2 Vector;
+};
+
+/** By length; of equal ones by vector, so that no choice depends on the order of points. */
+constexpr auto IsShorter = [](const Difference& p, const Difference& q) {
+  return p.Squared != q.Squared ? p.Squared < q.Squared : IsLower(p.Vector, q.Vector);
+};
+
 /**
  * The shortest differences of the points, by increasing length. Of at most 128 points
  * (FullestPart), so of some 8,000 pairs: most are longer than the 128th so far, and go at once.
  */
 std::vector<Point2> ShortestDifferences(const std::vector<Point2>& points)
 {
-  struct Difference
-  {
-    double Squared;
-    Point2 Vector;
-  };
-  const auto isShorter = [](const Difference& p, const Difference& q) {
-    // Ties by vector, so that the choice does not depend on the order of points.
-    return p.Squared != q.Squared ? p.Squared < q.Squared : IsLower(p.Vector, q.Vector);
-  };
   std::vector<Difference> shortest;
   shortest.reserve(2 * Vectors);
   Difference bound{ std::numeric_limits<double>::infinity(), {} };
@@ -45,7 +47,7 @@ std::vector<Point2> ShortestDifferences(const std::vector<Point2>& points)
     {
       const Point2 d = Minus(points[j], points[i]);
       const Difference difference{ Dot(d, d), d };
-      if (difference.Squared > bound.Squared || !isShorter(difference, bound))
+      if (difference.Squared > bound.Squared || !IsShorter(difference, bound))
       {
         continue;
       }
@@ -53,13 +55,13 @@ std::vector<Point2> ShortestDifferences(const std::vector<Point2>& points)
       if (shortest.size() == 2 * Vectors)
       {
         const auto last = shortest.begin() + Vectors - 1;
-        std::nth_element(shortest.begin(), last, shortest.end(), isShorter);
+        std::nth_element(shortest.begin(), last, shortest.end(), IsShorter);
         bound = *last;
         shortest.resize(Vectors);
       }
     }
   }
-  std::sort(shortest.begin(), shortest.end(), isShorter);
+  std::sort(shortest.begin(), shortest.end(), IsShorter);
   shortest.resize(std::min(shortest.size(), Vectors));
   std::vector<Point2> vectors;
   for (const Difference& difference : shortest)
@@ -73,20 +75,24 @@ std::vector<Point2> ShortestDifferences(const std::vector<Point2>& points)
 std::vector<Point2> SortedOutwards(
   const LatticeSample& sample, const std::vector<Point2>& around, const Point2& middle)
 {
+  // The sample reaches far, the points around are dense: the fit needs both.
   std::vector<Point2> points = sample.Some();
-  // The sample reaches far, the points around are dense: the fit needs both. Both are sorted.
-  const auto middleOfBoth = points.insert(points.end(), around.begin(), around.end());
-  std::inplace_merge(points.begin(), middleOfBoth, points.end(),
-    [](const Point2& p, const Point2& q) { return IsLower(p, q); });
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  for (Point2& p : points)
+  points.insert(points.end(), around.begin(), around.end());
+  std::vector<Difference> differences;
+  for (const Point2& p : points)
   {
-    p = Minus(p, middle);
+    const Point2 d = Minus(p, middle);
+    differences.push_back({ Dot(d, d), d });
   }
-  std::sort(points.begin(), points.end(), [](const Point2& p, const Point2& q) {
-    const double a = Dot(p, p), b = Dot(q, q);
-    return a != b ? a < b : IsLower(p, q);
-  });
+  std::sort(differences.begin(), differences.end(), IsShorter);
+  points.clear();
+  for (const Difference& difference : differences)
+  {
+    if (points.empty() || points.back() != difference.Vector) // some are in both
+    {
+      points.push_back(difference.Vector);
+    }
+  }
   return points;
 }
 

@@ -83,7 +83,7 @@ LatticeSearch FindLattice(
  * Passes 3 to 5, for a cloud in parts: each part is sampled; the samples are added up; each part
  * lists its points in the fullest place of the sum, and the lattice is fitted to these, if
  * MayFitLattice(). It is that of the whole cloud.
- * @param[in] inFullestPlace  the distinct points there, of all parts, sorted by IsLower()
+ * @param[in] inFullestPlace  the distinct points there, of all parts
  * @param[out] lattice  if there is one
  * @return whether there is one
  */

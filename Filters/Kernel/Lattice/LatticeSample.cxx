@@ -126,18 +126,16 @@ private:
 /** Distinct points, by range. */
 using Picked = std::vector<std::vector<Point2>>;
 
-/** The distinct points of all ranges, sorted. */
+/** The distinct points of all ranges, in no particular order. */
 std::vector<Point2> JoinPicked(Picked sets, const Progress& progress)
 {
-  Stages stages(progress, { 50, 50 });
-  const Progress joining = stages.Next(), sorting = stages.Next();
   if (sets.size() != 1) // a small cloud is one range
   {
     PlaceSet all;
     std::size_t joined = 0;
     for (std::vector<Point2>& set : Counted(sets))
     {
-      ReportStep(joining, joined++, sets.size(), 16);
+      ReportStep(progress, joined++, sets.size(), 16);
       for (const Point2& p : set)
       {
         all.Add(p);
@@ -146,7 +144,6 @@ std::vector<Point2> JoinPicked(Picked sets, const Progress& progress)
     }
     sets.assign(1, all.Places());
   }
-  Sort(sets[0].begin(), sets[0].end(), Lower, sorting);
   return std::move(sets[0]);
 }
 
@@ -241,6 +238,7 @@ void KeepFullest(std::vector<Point2>& points)
       static_cast<std::size_t>(std::count_if(points.begin(), points.end(), isLow));
     if (lower == 0 || lower == points.size())
     {
+      std::sort(points.begin(), points.end(), Lower);
       points.resize(Neighbors); // only rounding errors apart
       return;
     }
@@ -273,13 +271,15 @@ void LatticeSample::Add(LatticeSample&& part)
 {
   this->Join(part);
   this->Count += part.Count;
+  // Those of earlier parts are sorted.
+  std::sort(part.Points.begin(), part.Points.end(), Lower);
   const auto middle =
     this->Points.insert(this->Points.end(), part.Points.begin(), part.Points.end());
   std::inplace_merge(this->Points.begin(), middle, this->Points.end(), Lower);
   this->Points.erase(std::unique(this->Points.begin(), this->Points.end()), this->Points.end());
 }
 
-// Each range of points has its own set; they are joined, and sorted, at the end.
+// Each range of points has its own set; they are joined at the end.
 LatticeSample SampleForLattice(const PointView& points, double totalCount, int threads,
   const Progress& progress, std::vector<Index>& notFinite)
 {
@@ -354,6 +354,7 @@ std::vector<Point2> FullestPart(std::vector<Point2>&& points, const Progress& pr
   std::vector<Point2> part = std::move(points);
   KeepFullestCells(part, progress);
   KeepFullest(part);
+  std::sort(part.begin(), part.end(), Lower); // differences and the middle depend on the order
   return part;
 }
 

@@ -25,13 +25,13 @@ struct LatticeSample : Box
 {
   double CloudSize = 0.0;     ///< points of the whole cloud, also those that are not finite
   double Count = 0.0;         ///< finite points
-  std::vector<Point2> Points; ///< the sample, distinct and sorted
+  std::vector<Point2> Points; ///< the sample, distinct, in no particular order
 
   /** Whether the search has any prospect. */
   bool MayFitLattice() const;
   /** About 1,024 of its points: enough to fit a lattice to. */
   std::vector<Point2> Some() const;
-  /** Adds another part of the same cloud. */
+  /** Adds another part of the same cloud, to none or to those that were added before. */
   void Add(LatticeSample&& part);
 };
 
@@ -42,10 +42,11 @@ LatticeSample SampleForLattice(const PointView& points, double totalCount, int t
 /** A place with some hundred points where they are densest: where a sample has most, repeatedly. */
 Box FullestPlace(const LatticeSample& sample);
 
+/** In no particular order. */
 std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
   const std::vector<Index>& notFinite, int threads, const Progress& progress);
 
-/** Those of the distinct points of a place that are in its fullest part: at most 128. */
+/** Those of the distinct points of a place that are in its fullest part, sorted: at most 128. */
 std::vector<Point2> FullestPart(std::vector<Point2>&& points, const Progress& progress);
 
 } // namespace elevation

@@ -62,7 +62,7 @@ GreedyInsertion::GreedyInsertion(const Buffer<ElevatedPlace>& places, const Buff
   EdgeCriterion edges)
   : Rows(rows)
   , Edges(edges)
-  , Inserted(places, metric, first, fixed, SpareFaces)
+  , Inserted(places, rows, metric, first, fixed, SpareFaces)
   , Ordered(static_cast<std::size_t>(first.NumberOfTriangles()))
   , Vertices(static_cast<Index>(first.Points.size()))
 {
@@ -70,13 +70,53 @@ GreedyInsertion::GreedyInsertion(const Buffer<ElevatedPlace>& places, const Buff
 }
 
 /**
+ * Puts the faces in the order of their lowest places, roughly: faces that follow each other then
+ * have their points in the cache.
+ */
+void GreedyInsertion::SortFaces()
+{
+  constexpr Index placesPerGroup = 64;
+  const auto group = [this](Index face) {
+    const Index* const c = this->Inserted.Faces[face].Corners;
+    return std::min({ c[0], c[1], c[2] }) / placesPerGroup;
+  };
+  std::vector<Index> begins(this->Inserted.Places.size() / placesPerGroup + 2);
+  for (const Index face : this->Ordered)
+  {
+    ++begins[group(face) + 1];
+  }
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  std::vector<Index> sorted(this->Ordered.size());
+  for (const Index face : this->Ordered)
+  {
+    sorted[begins[group(face)]++] = face;
+  }
+  this->Ordered = std::move(sorted);
+}
+
+/**
  * Gives the points of a sample that are new to their faces. First on all threads the face of each,
  * walking from that of the point before, which is near; then one after another the lists, whose
- * order must not depend on threads.
+ * order must not depend on threads. Without lists, every face is looked through.
  */
 void GreedyInsertion::AddSample(std::uint32_t every, int threads, const Progress& progress)
 {
-  constexpr Index pointsAtOnce = 1 << 14;
+  constexpr Index pointsAtOnce = 1 << 14, facesAtOnce = 64;
+  if (!this->Inserted.HasLists())
+  {
+    // One of 16 points is one of 4 rows and columns.
+    this->Inserted.Step = static_cast<Index>(std::lround(std::sqrt(every)));
+    ForEachRange(
+      static_cast<Index>(this->Ordered.size()), threads, progress,
+      [this](Index, Index begin, Index end) {
+        for (Index i = begin; i < end; ++i)
+        {
+          this->Inserted.FindWorst(this->Inserted.Faces[this->Ordered[i]]);
+        }
+      },
+      facesAtOnce);
+    return;
+  }
   const Index count = static_cast<Index>(this->Inserted.Places.size());
   Buffer<float> errors;
   Buffer<Index> faces;
@@ -191,7 +231,12 @@ void GreedyInsertion::Refine(double error, double density, std::vector<Insertion
   }
 }
 
-/** Goes from the coarsest sample to all points. @param[in] refine  called with the points for each of a sample */
+/**
+ * Goes from the coarsest sample to all points; without lists first to as many vertices as for a
+ * sample, then with lists.
+ * @param[in] refine  is called with how many points each of the sample stands for, and the part of
+ *                    all points that may become vertices; @return whether nothing is left to do
+ */
 template <typename Refining>
 void GreedyInsertion::ForEachSample(int threads, const Progress& progress, const Refining& refine)
 {
@@ -203,42 +248,65 @@ void GreedyInsertion::ForEachSample(int threads, const Progress& progress, const
   {
     every *= SampleFactor;
   }
-  for (double begin = 0.0; every > 0; every /= SampleFactor)
-  {
-    const double end = every == 1 ? 1.0 : begin + 0.1;
+  double begin = 0.0;
+  const auto refineSample = [&](double end) {
     Stages stages(progress.Between(begin, end), { 30, 70 });
+    this->SortFaces();
     this->AddSample(every, threads, stages.Next());
-    refine(every, stages.Next());
     begin = end;
+    return refine(every, 1.0 / (PointsPerVertex * every), stages.Next());
+  };
+  for (; every > 1; every /= SampleFactor)
+  {
+    refineSample(begin + 0.1);
   }
+  if (!this->Inserted.HasLists() && refineSample(0.5))
+  {
+    return;
+  }
+  Stages stages(progress.Between(begin, 1.0), { 30, 70 });
+  this->SortFaces();
+  if (this->Inserted.HasLists())
+  {
+    this->AddSample(1, threads, stages.Next());
+  }
+  else
+  {
+    this->Inserted.MakeLists(this->Ordered, stages.Next());
+  }
+  refine(1, 1.0, stages.Next());
 }
 
 void GreedyInsertion::Run(double error, int threads, const Progress& progress)
 {
   const double count = static_cast<double>(this->Inserted.Places.size());
-  this->ForEachSample(threads, progress, [&](std::uint32_t every, const Progress& refining) {
-    // The last run has all points, and no limit to its vertices.
-    const double density = every == 1 ? count : 1.0 / (PointsPerVertex * every);
-    // Vertices are about half as many as triangles, and as many along a side as the root of that.
-    const double rows = std::sqrt(0.5 * static_cast<double>(this->Ordered.size()));
-    const Index strips =
-      static_cast<Index>(std::min(rows / VertexRowsPerStrip, static_cast<double>(MostStrips)));
-    Stages passes = strips > 1 ? Stages(refining, { 60, 20, 20 }) : Stages(refining, { 100 });
-    if (strips > 1)
-    {
-      this->Refine(error, density, this->MakeStrips(strips, false), threads, passes.Next());
-      this->Refine(error, density, this->MakeStrips(strips, true), threads, passes.Next());
-    }
-    this->Refine(error, density, this->MakeStrips(1, false), threads, passes.Next());
-  });
+  this->ForEachSample(
+    threads, progress, [&](std::uint32_t, double density, const Progress& refining) {
+      // Vertices are about half as many as triangles, and as many along a side as the root of that.
+      const double rows = std::sqrt(0.5 * static_cast<double>(this->Ordered.size()));
+      const Index strips =
+        static_cast<Index>(std::min(rows / VertexRowsPerStrip, static_cast<double>(MostStrips)));
+      Stages passes = strips > 1 ? Stages(refining, { 60, 20, 20 }) : Stages(refining, { 100 });
+      if (strips > 1)
+      {
+        this->Refine(error, density, this->MakeStrips(strips, false), threads, passes.Next());
+        this->Refine(error, density, this->MakeStrips(strips, true), threads, passes.Next());
+      }
+      this->Refine(error, density, this->MakeStrips(1, false), threads, passes.Next());
+      return static_cast<double>(this->Ordered.size()) < 2.0 * density * count;
+    });
+  this->SortFaces();
 }
 
 /**
  * From a queue of the worst point of each face. An entry counts as long as its point is the worst
  * of its face; others are dropped when they come up.
- * @return after how many vertices the largest error was the smallest
+ * @param[in,out] least  the smallest largest error
+ * @param[in,out] best   after how many vertices
+ * @return whether the error is reached
  */
-Index GreedyInsertion::InsertWorst(double error, Index last, const Progress& progress)
+bool GreedyInsertion::InsertWorst(
+  double error, Index last, const Progress& progress, float& least, Index& best)
 {
   InsertionStrip all(
     this->Inserted, this->Edges, 0, static_cast<Index>(this->Inserted.Places.size()));
@@ -259,8 +327,7 @@ Index GreedyInsertion::InsertWorst(double error, Index last, const Progress& pro
     enter(face);
   }
   const Index begin = this->Vertices;
-  Index best = begin;
-  float least = std::numeric_limits<float>::infinity();
+  bool isReached = false;
   for (;;)
   {
     while (!queue.empty() && isOld(queue.top()))
@@ -274,7 +341,8 @@ Index GreedyInsertion::InsertWorst(double error, Index last, const Progress& pro
       least = largest;
       best = this->Vertices;
     }
-    if (static_cast<double>(largest) <= error || this->Vertices >= last)
+    isReached = static_cast<double>(largest) <= error;
+    if (isReached || this->Vertices >= last)
     {
       break;
     }
@@ -291,7 +359,7 @@ Index GreedyInsertion::InsertWorst(double error, Index last, const Progress& pro
     }
   }
   this->Ordered.insert(this->Ordered.end(), all.Faces.begin(), all.Faces.end());
-  return best;
+  return isReached;
 }
 
 Index GreedyInsertion::RunWorstFirst(
@@ -299,11 +367,18 @@ Index GreedyInsertion::RunWorstFirst(
 {
   const double count = static_cast<double>(this->Inserted.Places.size());
   Index best = this->Vertices;
-  this->ForEachSample(threads, progress, [&](std::uint32_t every, const Progress& inserting) {
-    const double ofSample = std::min(count / (PointsPerVertex * every), MostOfSamples * most);
-    best = this->InsertWorst(
-      error, every == 1 ? last : std::min(last, static_cast<Index>(ofSample)), inserting);
-  });
+  float least = std::numeric_limits<float>::infinity();
+  std::uint32_t before = 0; // the sample
+  this->ForEachSample(
+    threads, progress, [&](std::uint32_t every, double density, const Progress& inserting) {
+      const double here =
+        std::min({ density * count, 1.0 * last, every > 1 ? MostOfSamples * most : count });
+      // Points that are new may be farther off; without and with lists, they are the same.
+      least = every == before ? least : std::numeric_limits<float>::infinity();
+      before = every;
+      return this->InsertWorst(error, static_cast<Index>(here), inserting, least, best) ||
+        this->Vertices >= last;
+    });
   return best;
 }
 

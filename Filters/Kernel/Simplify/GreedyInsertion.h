@@ -37,8 +37,8 @@
  * which may give a point to the wrong one of two triangles that it is nearly between; before it is
  * inserted, that is put right. Circles are exact.
  *
- * Cost: of the order of n log k for k chosen points of n. Memory: 36 bytes a point, and 80 a chosen
- * one.
+ * Cost: of the order of n log k for k chosen points of n. Memory: 36 bytes a point (44 on a full
+ * lattice), and 80 a chosen one.
  *
  * [Garland & Heckbert 1995] Fast Polygonal Approximation of Terrains and Height Fields, Carnegie
  * Mellon University, CMU-CS-95-181.
@@ -94,19 +94,24 @@ public:
   /** The triangles, in an order that does not depend on the number of threads. */
   const std::vector<Index>& Order() const { return this->Ordered; }
   const Face& At(Index face) const { return this->Inserted.Faces[face]; }
-  /** The point after another in the list of a face, or None. */
-  Index Next(Index place) const { return this->Inserted.Links[place]; }
+  /** Visits the points of a face; those on its edges perhaps for both faces. */
+  template <typename Visit>
+  void ForEachPoint(const Face& face, const Visit& visit) const
+  {
+    this->Inserted.ForEachPoint(face, visit);
+  }
   Index NumberOfVertices() const { return this->Vertices; }
   bool IsVertex(Index place) const { return this->Inserted.Links[place] == InsertionMesh::Vertex; }
 
 private:
   template <typename Refining>
   void ForEachSample(int threads, const Progress& progress, const Refining& refine);
+  void SortFaces();
   void AddSample(std::uint32_t every, int threads, const Progress& progress);
   std::vector<InsertionStrip> MakeStrips(Index count, bool areShifted);
   void Refine(double error, double density, std::vector<InsertionStrip>&& strips, int threads,
     const Progress& progress);
-  Index InsertWorst(double error, Index last, const Progress& progress);
+  bool InsertWorst(double error, Index last, const Progress& progress, float& least, Index& best);
   Index FaceWith(Index place, Index start) const;
 
   const Buffer<Index>& Rows;

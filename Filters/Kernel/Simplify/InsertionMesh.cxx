@@ -11,9 +11,15 @@
 namespace elevation
 {
 
-InsertionMesh::InsertionMesh(const Buffer<ElevatedPlace>& places, const LatticeMetric* metric,
-  const Mesh& first, const std::vector<char>& fixed, std::size_t spare)
+namespace
+{
+constexpr double NoHeight = std::numeric_limits<double>::quiet_NaN();
+}
+
+InsertionMesh::InsertionMesh(const Buffer<ElevatedPlace>& places, const Buffer<Index>& rows,
+  const LatticeMetric* metric, const Mesh& first, const std::vector<char>& fixed, std::size_t spare)
   : Places(places)
+  , Rows(rows)
   , Metric(metric)
 {
   this->Links.Resize(places.size());
@@ -43,13 +49,37 @@ InsertionMesh::InsertionMesh(const Buffer<ElevatedPlace>& places, const LatticeM
   {
     // Offsets of nodes are at most this wide. A lift is at most 3 A w^2, as |B| is at most half of
     // A and C; the three terms of a determinant are at most 18 A w^4. 9e18 is below 2^63.
-    double width = 1.0;
+    double width = 1.0, columns = 0.0;
     for (const ElevatedPlace& place : places)
     {
       width = std::max({ width, std::fabs(place.X), std::fabs(place.Y) });
+      columns = std::max(columns, place.X + 1.0);
+    }
+    // Where few nodes have points, rows would cost more than lists.
+    constexpr double mostNodesPerPoint = 4.0;
+    const double nodes = columns * static_cast<double>(rows.size() - 1);
+    if (nodes <= mostNodesPerPoint * static_cast<double>(places.size()))
+    {
+      this->Columns = static_cast<std::size_t>(columns);
+      this->Heights.Resize(static_cast<std::size_t>(nodes));
+      std::fill(this->Heights.begin(), this->Heights.end(), NoHeight);
+      for (Index place = 0; place < static_cast<Index>(places.size()); ++place)
+      {
+        this->Heights[this->NodeOf(place)] =
+          this->Links[place] == Vertex ? NoHeight : places[place].Z;
+      }
     }
     const double largest = static_cast<double>(std::max(metric->A, metric->C));
     this->HasSmallProducts = 64.0 * largest * width * width * width * width < 9e18;
+  }
+}
+
+void InsertionMesh::SetVertex(Index place)
+{
+  this->Links[place] = Vertex;
+  if (!this->HasLists())
+  {
+    this->Heights[this->NodeOf(place)] = NoHeight;
   }
 }
 
@@ -142,8 +172,78 @@ void InsertionMesh::AddTo(Face& face, Index place, float error)
   }
 }
 
+void InsertionMesh::FindWorst(Face& face) const
+{
+  const ElevatedPlace* const places = this->Places.data();
+  const ElevatedPlace& a = places[face.Corners[0]];
+  const Slopes slopes = SlopesOf(a, places[face.Corners[1]], places[face.Corners[2]]);
+  const Index step = this->Step;
+  double worst = 0.0;
+  Index worstRow = None, worstColumn = None;
+  std::size_t work = 0;
+  this->ForEachRow(face, step, [&](Index row, Index first, Index last) {
+    const double* const heights = this->Heights.data() + row * this->Columns;
+    first = (first + step - 1) / step * step;
+    // The plane at the row's first node, then column by column.
+    const double begin = a.Z + (row - a.Y) * slopes.Y + (first - a.X) * slopes.X;
+    const auto errorAt = [&](Index column) {
+      return std::fabs(heights[column] - (begin + (column - first) * slopes.X));
+    };
+    double most = worst;
+    for (Index column = first; column <= last; column += step)
+    {
+      const double error = errorAt(column);
+      most = error > most ? error : most; // not where there is no height
+    }
+    work += 4 + static_cast<std::size_t>(std::max(0, last - first + 1)) / step;
+    // Of equal errors the lowest node.
+    for (Index column = first; most > worst; column += step)
+    {
+      if (errorAt(column) == most)
+      {
+        worst = most;
+        worstRow = row;
+        worstColumn = column;
+      }
+    }
+  });
+  CountWork(work);
+  face.Error = static_cast<float>(worst);
+  face.Worst = worstRow == None ? None
+    : this->Heights.size() == this->Places.size()
+    ? static_cast<Index>(worstRow * this->Columns + worstColumn)
+    : this->FirstFrom(worstRow, worstColumn);
+}
+
+void InsertionMesh::MakeLists(const std::vector<Index>& faces, const Progress& progress)
+{
+  for (const std::size_t i : Counted(faces.size()))
+  {
+    ReportStep(progress, i, faces.size());
+    Face& face = this->Faces[faces[i]];
+    face.Worst = None;
+    face.Error = 0.0f;
+    const ElevatedPlace* const places = this->Places.data();
+    const ElevatedPlace& a = places[face.Corners[0]];
+    const Slopes slopes = SlopesOf(a, places[face.Corners[1]], places[face.Corners[2]]);
+    this->ForEachPoint(face, [&](Index place) {
+      if (this->Links[place] == Unassigned)
+      {
+        this->AddTo(face, place, ErrorOf(places[place], a, slopes));
+      }
+    });
+  }
+  this->Heights = Buffer<double>();
+}
+
 bool InsertionMesh::IsIn(Index face, Index place) const
 {
+  if (face != None && !this->HasLists())
+  {
+    const Index* const c = this->Faces[face].Corners;
+    return this->SideOf(c[0], c[1], place) != Negative &&
+      this->SideOf(c[1], c[2], place) != Negative && this->SideOf(c[2], c[0], place) != Negative;
+  }
   Index point = face == None ? None : this->Faces[face].First;
   while (point != None && point != place)
   {

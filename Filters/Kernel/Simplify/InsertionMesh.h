@@ -4,7 +4,15 @@
  * @file
  * The mesh of greedy insertion: triangles that know their neighbours and the points in them.
  *
+ * A triangle has a list of its points. Nodes of a lattice that is mostly full need none at first:
+ * row by row, those between two edges are looked at where they lie. Nothing has to move when
+ * triangles change; a node on an edge belongs to both triangles. Where triangles have few nodes,
+ * lists are faster again (MakeLists()).
+ *
  * Circles are exact, and so is the way to the triangle of a point. Distances are rounded.
+ *
+ * [Pick 1899] Geometrisches zur Zahlenlehre, Sitzungsberichte des deutschen
+ * naturwissenschaftlich-medicinischen Vereines fuer Boehmen "Lotos" in Prag 19:311-319.
  */
 #ifndef elevation_Simplify_InsertionMesh_h
 #define elevation_Simplify_InsertionMesh_h
@@ -13,9 +21,11 @@
 #include "Kernel/Lattice/Lattice.h"
 #include "Kernel/Mesh/Mesh.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace elevation
@@ -30,7 +40,7 @@ struct Face
 {
   Index Corners[3];
   Index Neighbors[3];       ///< over each edge, or None
-  Index First;              ///< of the list of its points; None: it has none
+  Index First;              ///< of the list of its points; None: it has none, or there are no lists
   // Kept with the face, so that no queue is needed: see GreedyInsertion.h.
   Index Worst;              ///< of its points
   float Error;              ///< of this one
@@ -93,8 +103,15 @@ public:
   static constexpr Index Unassigned = -3; ///< the same: not yet in a list
 
   /** As GreedyInsertion. @param[in] spare  room for so many faces that are never used */
-  InsertionMesh(const Buffer<ElevatedPlace>& places, const LatticeMetric* metric, const Mesh& first,
-    const std::vector<char>& fixed, std::size_t spare);
+  InsertionMesh(const Buffer<ElevatedPlace>& places, const Buffer<Index>& rows,
+    const LatticeMetric* metric, const Mesh& first, const std::vector<char>& fixed,
+    std::size_t spare);
+
+  bool HasLists() const { return this->Heights.size() == 0; }
+  /** From here on, with lists. @param[in] faces  all; a node on an edge goes to the first of two */
+  void MakeLists(const std::vector<Index>& faces, const Progress& progress);
+  /** Makes a place a vertex: it is no point of a face any more. */
+  void SetVertex(Index place);
 
   Sign SideOf(Index from, Index to, Index place) const;
   Sign IsInCircle(const Face& face, Index place) const;
@@ -105,13 +122,19 @@ public:
   double ShapeOf(Index a, Index b, Index c) const;
   /** Enters a place in the list of a face. */
   void AddTo(Face& face, Index place, float error);
+  /** Without lists: finds the worst node of the sample in a face. */
+  void FindWorst(Face& face) const;
+  /** Visits the points of a face, by lists that of the sample, else all but the face's corners. */
+  template <typename Visit>
+  void ForEachPoint(const Face& face, const Visit& visit) const;
   template <typename MayEnter>
   Index FaceOf(Index place, Index start, const MayEnter& mayEnter) const;
-  /** Whether a place is in the list of a face, or None. */
+  /** Whether a face, or None, has a place: in its list, or else between its edges. */
   bool IsIn(Index face, Index place) const;
 
   const Buffer<ElevatedPlace>& Places;
   Buffer<Index> Links; ///< of each place: the next one in the list, or None
+  Index Step = 1;      ///< without lists: the sample has every so many-th row and column
   Buffer<Face> Faces;
   // Room for all faces there can be is taken at the start, so threads never wait for memory to
   // grow.
@@ -119,10 +142,121 @@ public:
 
 private:
   Point2 PointOf(Index place) const { return { this->Places[place].X, this->Places[place].Y }; }
+  template <typename Visit>
+  void ForEachRow(const Face& face, Index step, const Visit& visit) const;
+  Index FirstFrom(Index row, Index column) const;
+  std::size_t NodeOf(Index place) const
+  {
+    return static_cast<std::size_t>(this->Places[place].Y) * this->Columns +
+      static_cast<std::size_t>(this->Places[place].X);
+  }
 
+  const Buffer<Index>& Rows;
   const LatticeMetric* const Metric;
+  // Without lists: of each node, row by row; NaN where no point or a vertex is.
+  Buffer<double> Heights;
+  std::size_t Columns = 0;
   bool HasSmallProducts = false; // circles of the metric fit 64 bits
 };
+
+/** The first place of a row that is not before a column. */
+inline Index InsertionMesh::FirstFrom(Index row, Index column) const
+{
+  const ElevatedPlace* const places = this->Places.data();
+  const Index begin = this->Rows[row], end = this->Rows[row + 1];
+  if (begin == end || places[begin].X >= column)
+  {
+    return begin;
+  }
+  // Right if no node of the row is missing, and too late otherwise.
+  const Index guess = std::min(end, begin + (column - static_cast<Index>(places[begin].X)));
+  return guess < end && places[guess].X == column
+    ? guess
+    : static_cast<Index>(
+        std::lower_bound(places + begin, places + guess, static_cast<double>(column),
+          [](const ElevatedPlace& place, double x) { return place.X < x; }) -
+        places);
+}
+
+/**
+ * Visits the rows of nodes in a triangle and on its edges: (row, first column, last column), of a
+ * sample every so many-th row. Between them there may be no node.
+ *
+ *        high         The longest edge in y is on one side, the two others on the other. Where an
+ *       / |           edge has x = n / d in a row, n and d integers of 40 and 20 bits, double
+ *   mid   |           precision is off by less than 2^-30, and x is an integer or 2^-20 from one:
+ *      \  |           a margin of 2^-22 makes the columns exact.
+ *        low
+ */
+template <typename Visit>
+void InsertionMesh::ForEachRow(const Face& face, Index step, const Visit& visit) const
+{
+  constexpr double margin = 0x1p-22;
+  const ElevatedPlace* const places = this->Places.data();
+  const ElevatedPlace *low = places + face.Corners[0], *middle = places + face.Corners[1],
+                      *high = places + face.Corners[2];
+  if (middle->Y < low->Y)
+  {
+    std::swap(low, middle);
+  }
+  if (high->Y < low->Y)
+  {
+    std::swap(low, high);
+  }
+  if (high->Y < middle->Y)
+  {
+    std::swap(middle, high);
+  }
+  const double x = low->X, y = low->Y;
+  // Twice the area, exactly: integers. One without other nodes has 1 [Pick 1899].
+  const double area = (middle->X - x) * (high->Y - y) - (middle->Y - y) * (high->X - x);
+  if (std::fabs(area) == 1.0)
+  {
+    return;
+  }
+  const double slope = (high->X - x) / (high->Y - y);
+  const bool isMiddleLeft = area < 0.0;
+  const auto visitRows = [&](Index begin, Index end, const ElevatedPlace& from,
+                           const ElevatedPlace& to) {
+    const double side = (to.X - from.X) / (to.Y - from.Y);
+    for (Index row = (begin + step - 1) / step * step; row < end; row += step)
+    {
+      const double ofLong = x + (row - y) * slope, ofShort = from.X + (row - from.Y) * side;
+      const double left = isMiddleLeft ? ofShort : ofLong, right = isMiddleLeft ? ofLong : ofShort;
+      // No column is negative, so cutting off rounds down.
+      visit(row, static_cast<Index>(left + (1.0 - margin)), static_cast<Index>(right + margin));
+    }
+  };
+  // The middle row by the edge that is not level.
+  const Index middleRow = static_cast<Index>(middle->Y) + (high->Y == middle->Y ? 1 : 0);
+  visitRows(static_cast<Index>(y), middleRow, *low, *middle);
+  visitRows(middleRow, static_cast<Index>(high->Y) + 1, *middle, *high);
+}
+
+template <typename Visit>
+void InsertionMesh::ForEachPoint(const Face& face, const Visit& visit) const
+{
+  if (!this->HasLists())
+  {
+    const Index* const c = face.Corners;
+    this->ForEachRow(face, 1, [&](Index row, Index first, Index last) {
+      const Index end = this->Rows[row + 1];
+      for (Index place = this->FirstFrom(row, first); place < end && this->Places[place].X <= last;
+           ++place)
+      {
+        if (place != c[0] && place != c[1] && place != c[2])
+        {
+          visit(place);
+        }
+      }
+    });
+    return;
+  }
+  for (Index place = face.First; place != None; place = this->Links[place])
+  {
+    visit(place);
+  }
+}
 
 /**
  * The face that a place lies in; None if the way leads through a face that may not be entered.

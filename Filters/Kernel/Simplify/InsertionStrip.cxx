@@ -202,15 +202,12 @@ bool InsertionStrip::FindCavity(Index place, Index face)
 void InsertionStrip::FillCavity(Index place, std::size_t count, bool isClosed)
 {
   Buffer<Face>& faces = this->Surface.Faces;
-  const ElevatedPlace& p = this->Surface.Places[place];
   // The cavity's faces are used again, so the numbers of faces grow only by those that are added.
   this->Fan.assign(this->Cavity.begin(), this->Cavity.end());
   while (this->Fan.size() < count)
   {
     this->Fan.push_back(this->NewFace());
   }
-  this->Spokes.clear();
-  this->Planes.clear();
   for (std::size_t i = 0; i < count; ++i)
   {
     const RimEdge& edge = this->Rim[i];
@@ -227,12 +224,7 @@ void InsertionStrip::FillCavity(Index place, std::size_t count, bool isClosed)
       Face& outside = faces[edge.Outside];
       outside.Neighbors[outside.EdgeFrom(edge.To)] = this->Fan[i];
     }
-    const ElevatedPlace& a = this->Surface.Places[edge.From];
-    this->Spokes.push_back({ a.X - p.X, a.Y - p.Y });
-    this->Planes.push_back(SlopesOf(p, a, this->Surface.Places[edge.To]));
   }
-  const ElevatedPlace& last = this->Surface.Places[this->Rim[count - 1].To];
-  this->Spokes.push_back({ last.X - p.X, last.Y - p.Y });
 }
 
 /** The face of the fan between whose spokes a point lies, from a guess on. */
@@ -286,6 +278,16 @@ std::size_t InsertionStrip::SectorOf(
 void InsertionStrip::MovePoints(Index place, std::size_t count, bool isClosed)
 {
   const ElevatedPlace& p = this->Surface.Places[place];
+  this->Spokes.clear();
+  this->Planes.clear();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const ElevatedPlace& a = this->Surface.Places[this->Rim[i].From];
+    this->Spokes.push_back({ a.X - p.X, a.Y - p.Y });
+    this->Planes.push_back(SlopesOf(p, a, this->Surface.Places[this->Rim[i].To]));
+  }
+  const ElevatedPlace& last = this->Surface.Places[this->Rim[count - 1].To];
+  this->Spokes.push_back({ last.X - p.X, last.Y - p.Y });
   std::size_t sector = 0;
   for (const Index point : this->Loose)
   {
@@ -296,14 +298,9 @@ void InsertionStrip::MovePoints(Index place, std::size_t count, bool isClosed)
   }
 }
 
-bool InsertionStrip::Insert(Index place, Index face)
+/** The points of the cavity but the place itself. */
+void InsertionStrip::ListLoose(Index place)
 {
-  // Nothing has changed before this returns false, so another strip, or the last run, may try.
-  if ((!this->MayBegin(place, this->Surface.Faces[face]) && !this->Move(place, face)) ||
-    !this->FindCavity(place, face))
-  {
-    return false;
-  }
   this->Loose.clear();
   for (const Index inside : this->Cavity)
   {
@@ -316,8 +313,25 @@ bool InsertionStrip::Insert(Index place, Index face)
       }
     }
   }
-  CountWork(10 * this->Rim.size() + this->Loose.size());
-  this->Surface.Links[place] = InsertionMesh::Vertex;
+  CountWork(this->Loose.size());
+}
+
+bool InsertionStrip::Insert(Index place, Index face)
+{
+  // Nothing has changed before this returns false, so another strip, or the last run, may try.
+  // A node is surely between the edges of its face.
+  if ((this->Surface.HasLists() && !this->MayBegin(place, this->Surface.Faces[face]) &&
+        !this->Move(place, face)) ||
+    !this->FindCavity(place, face))
+  {
+    return false;
+  }
+  CountWork(10 * this->Rim.size());
+  if (this->Surface.HasLists())
+  {
+    this->ListLoose(place); // before the cavity is overwritten
+  }
+  this->Surface.SetVertex(place);
   const auto gap = std::find_if(
     this->Rim.begin(), this->Rim.end(), [](const RimEdge& edge) { return edge.Outside == Gap; });
   const bool isClosed = gap == this->Rim.end();
@@ -329,7 +343,15 @@ bool InsertionStrip::Insert(Index place, Index face)
   const std::size_t count = this->Rim.size() - (isClosed ? 0 : 1);
   this->FillCavity(place, count, isClosed);
   // Lists and errors of the new faces come with their points.
-  this->MovePoints(place, count, isClosed);
+  if (this->Surface.HasLists())
+  {
+    this->MovePoints(place, count, isClosed);
+  }
+  else
+  {
+    std::for_each(this->Fan.begin(), this->Fan.end(),
+      [this](Index made) { this->Surface.FindWorst(this->Surface.Faces[made]); });
+  }
   if (this->Edges == EdgeCriterion::DataDependent)
   {
     this->FlipByData();
@@ -379,12 +401,11 @@ bool InsertionStrip::IsBetterFlipped(Index face) const
   {
     // Only points that are left out count; those of the sample stand for the others.
     const Slopes slopes = SlopesOf(a, b, one == &here ? p : d);
-    for (Index point = one->First; point != None; point = this->Surface.Links[point])
-    {
+    this->Surface.ForEachPoint(*one, [&](Index point) {
       const ElevatedPlace& q = places[point];
       const double before = ErrorOf(q, a, slopes), after = made.ErrorAt(q);
       sum += after * after - before * before;
-    }
+    });
   }
   return sum < 0.0;
 }
@@ -423,6 +444,12 @@ void InsertionStrip::Flip(Index face)
   {
     Face& next = faces[here.Neighbors[1]];
     next.Neighbors[next.EdgeFrom(place)] = other;
+  }
+  if (!this->Surface.HasLists())
+  {
+    this->Surface.FindWorst(faces[face]);
+    this->Surface.FindWorst(faces[other]);
+    return;
   }
   const ElevatedPlace* const places = this->Surface.Places.data();
   const TwoTriangles made(places[place], places[across], places[from], places[to]);

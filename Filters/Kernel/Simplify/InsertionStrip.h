@@ -25,7 +25,8 @@ namespace elevation
  *   |    /|        |\   /|    the edges around it, a b, b c, c d, d a. Fan: a face for p and each
  *   | p / |  --->  |  p  |    rim edge, two more than the cavity had; the first take the places of
  *   |  /  |        | / \ |    those that go. Loose: the points of the cavity, which go to the fan's
- *   a-----b        a-----b    faces by the sides of the spokes, p-a to p-d.
+ *   a-----b        a-----b    faces by the sides of the spokes, p-a to p-d; nodes stay where they
+ *                             are (InsertionMesh.h).
  */
 class InsertionStrip
 {
@@ -81,6 +82,7 @@ private:
   bool MayBegin(Index place, const Face& face) const;
   bool Move(Index place, Index& face);
   bool FindCavity(Index place, Index face);
+  void ListLoose(Index place);
   void FillCavity(Index place, std::size_t count, bool isClosed);
   void MovePoints(Index place, std::size_t count, bool isClosed);
   std::size_t SectorOf(

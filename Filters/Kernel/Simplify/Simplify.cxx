@@ -98,6 +98,7 @@ public:
       beyond.insert(beyond.end(), some.begin(), some.end());
     }
     std::sort(beyond.begin(), beyond.end());
+    beyond.erase(std::unique(beyond.begin(), beyond.end()), beyond.end()); // some are on an edge
     return largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end());
   }
 
@@ -129,27 +130,26 @@ private:
     {
       throw NotOnLattice();
     }
-    if (face.First == None)
-    {
-      return; // no plane is needed
-    }
-    const FacePlane plane = this->PlaneOf(face);
+    std::optional<FacePlane> plane; // most faces of small errors have no points
     // A point is in its face but for rounding; where exact sides say otherwise, it is looked for
     // nearby.
-    for (Index place = face.First; place != None; place = this->Chosen.Next(place))
-    {
+    this->Chosen.ForEachPoint(face, [&](Index place) {
+      if (!plane)
+      {
+        plane.emplace(this->PlaneOf(face));
+      }
       const Point2 p = this->At(place);
       const bool isInside = Orientation(a, b, p) != Negative && Orientation(b, c, p) != Negative &&
         Orientation(c, a, p) != Negative;
       const double distance =
-        isInside ? plane.BoundAt(p, this->ElevationOf(place)) : this->DistanceFrom(number, place);
+        isInside ? plane->BoundAt(p, this->ElevationOf(place)) : this->DistanceFrom(number, place);
       const bool isKnown = distance >= 0.0; // not where a triangle is too thin
       largest = std::max(largest, isKnown ? distance : std::numeric_limits<double>::infinity());
       if (!(distance <= most))
       {
         beyond.push_back(place);
       }
-    }
+    });
   }
 
   /** Of a point that is not in its face, but in one nearby, or just outside of the hull. */
