@@ -10,6 +10,7 @@ import re
 
 from .column_names import known_names
 from .tables import known
+from .text_blocks import wide_encoding
 from ..messages import FileError
 from ..paths import is_geodatabase, suffix_of
 
@@ -316,8 +317,8 @@ def recognise(path):
         return next(kind for kind in FORMATS if ".gdb" in kind.suffixes), []
     with open(path, "rb") as stream:
         head = stream.read(HEAD)
-    if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        head = head.decode("utf-16", "ignore").encode()
+    if encoding := wide_encoding(head):
+        head = head.decode(encoding, "ignore").encode()
     for pattern, words in FOREIGN:
         if pattern.match(head):
             raise FileError(f"{path}: {words.replace('{path}', path)}")

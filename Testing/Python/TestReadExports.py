@@ -121,6 +121,10 @@ NAMES = (
      "Antenna_height|Horizon|UserData|ScanAngleRank|Sample (Height)"),
 )
 
+# Sections of tables.ini whose entries are not asked for by name.
+TAKEN_AS_THEY_ARE = ("axes", "roles", "units of length", "letters", "x is north", "separators", "not tables",
+                      "not numbers")
+
 
 class Names(unittest.TestCase):
     def test_names_mean_what_they_mean_in_their_language(self):
@@ -201,23 +205,41 @@ class Known(Tables):
                 "print(tables.known.cache_info().currsize)")
         self.assertEqual(subprocess.check_output([sys.executable, "-c", code]).split(), [b"0"])
 
+    def refusal_with(self, content):
+        """The error where content, or nothing, stands in place of the file."""
+        path = self.file("tables.ini", content) if content is not None else self.path("tables.ini")
+        self.addCleanup(tables.known.cache_clear)
+        tables.known.cache_clear()
+        with mock.patch.object(tables, "TABLES", path):
+            error = self.refusal("x y z\n1 2 3\n")
+        self.assertTrue(error.startswith(path) and error.endswith("; install the package again"), error)
+        return error
+
     def test_where_it_lacks_or_is_damaged_an_error_names_it(self):
         with open(tables.TABLES, encoding="utf-8") as stream:
             text = stream.read()
-        path = self.path("tables.ini")
-        self.addCleanup(tables.known.cache_clear)
         for damaged, words in (
-            (None, "No such file"), ("", "it has no 'refusals'"), (b"\xff\xfe", "can't decode"),
+            (None, "No such file"), ("", "it has no 'other words'"), (b"\xff\xfe", "can't decode"),
             (text[: len(text) // 2], "it has no"), (text.replace("[nulls]", "[nulls"), "parsing errors"),
             (text.replace("\ndate = ", "\ndate = ("), "missing )"), (text.replace("-9999", "nine", 1), "'nine'"),
         ):
-            if damaged is not None:
-                self.file("tables.ini", damaged)
-            tables.known.cache_clear()
-            with mock.patch.object(tables, "TABLES", path):
-                error = self.refusal("x y z\n1 2 3\n")
-            self.assertTrue(error.startswith(path) and error.endswith("; install the package again"), error)
-            self.assertIn(words, error)
+            self.assertIn(words, self.refusal_with(damaged))
+
+    def test_an_entry_that_is_asked_for_by_name_and_lacks_is_named_with_its_section(self):
+        with open(tables.TABLES, encoding="utf-8") as stream:
+            lines = stream.read().split("\n")
+        section, count = "", 0
+        for at, line in enumerate(lines):
+            section = line.strip("[]") if line.startswith("[") else section
+            if section in TAKEN_AS_THEY_ARE or not re.match(r"[^;\[\s]", line):
+                continue
+            behind = at + 1
+            while lines[behind].startswith(" "):
+                behind += 1
+            error = self.refusal_with("\n".join(lines[:at] + lines[behind:]))
+            self.assertIn(f"[{section}] has no {line.partition(' =')[0]};", error)
+            count += 1
+        self.assertGreater(count, 50)
 
 
 if __name__ == "__main__":
