@@ -230,7 +230,7 @@ class Choice:
         numbers."""
         if not self.can_be_chosen:
             raise FileError(f"{self.path}: {why}; {self.advice}")
-        ways = [f"{option('columns')} {self.numbered(one)}" for one in readings] + [other] * bool(other)
+        ways = [*map(self.way, readings)] + [other] * bool(other)
         width = min(self.width, max([SHOWN_COLUMNS, *(max(one) + 1 for one in readings)]))
         numbers, names = [str(i + 1) for i in range(width)], [self.names] if self.names else []
         shown = [[word[:16] for word in row[:width]] for row in [numbers, *names, *self.rows[:SHOWN_ROWS]]]
@@ -320,8 +320,7 @@ class Choice:
             self.note(f"z is {self.called(self.indices[2])}; {self.listed(others)} could be too")
         if not self.has_swapped and self.indices[-1] > x > y and self.meanings[x].rank == self.meanings[y].rank == 0:
             self.notes.append(
-                "Y stands before X, as where X is north; x and y are taken as named "
-                f"({option('columns')} {self.numbered(self.swapped())} swaps them)"
+                f"Y stands before X, as where X is north; x and y are taken as named; if not: {self.way(self.swapped())}"
             )
 
     # -- values
@@ -624,8 +623,7 @@ class Choice:
                 self.angles = "look like degrees"
         if self.is_utm(y, x) and not self.has_swapped:
             self.notes.append(
-                "x is as large as a northing and y as an easting of UTM; if so, "
-                f"{option('columns')} {self.numbered(self.swapped())} gives the map its true side"
+                f"x is as large as a northing and y as an easting of UTM; if so: {self.way(self.swapped())}"
             )
 
     # -- words
@@ -634,7 +632,11 @@ class Choice:
         return f"no column is named as {'x, y or z' if self.needed == 3 else 'x or y'}"
 
     def note(self, words):
-        self.notes.append(f"{words} (see {option('columns')})")
+        self.notes.append(f"{words} (see {option('columns')})" if self.can_be_chosen else words)
+
+    def way(self, indices):
+        """What a user can do so that columns are taken."""
+        return f"{option('columns')} {self.numbered(indices)}" if self.can_be_chosen else self.advice
 
     def taken(self):
         return ", ".join(f"{axis} = {self.called(i)}" for axis, i in zip(self.axes, self.indices))
@@ -668,5 +670,5 @@ class Choice:
             is_known = name in (*self.extras.values(), *self.texts.values())
             others[i] = f"{name} (column {i + 1})" if is_known else name
         if left_out:
-            chosen = f"; {option('where')} chooses points by them" if self.texts else ""
+            chosen = f"; {option('where')} chooses points by them" if self.texts and self.can_be_chosen else ""
             self.notes.append(f"columns without numbers are left out: {', '.join(left_out)}{chosen}")

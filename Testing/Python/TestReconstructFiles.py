@@ -12,7 +12,7 @@ import numpy
 from in_folder import InFolder, coordinates
 from vtkelevationsurface import paths, reading, writing
 from vtkelevationsurface.reading import vtk_checks, vtk_files
-from vtkelevationsurface.clouds import make_points, line_parts
+from vtkelevationsurface.clouds import RECOGNISED, line_parts, make_points, words_in
 from vtkelevationsurface.messages import FileError, Messages, plain_message
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkObject
@@ -455,6 +455,15 @@ class Boundary(InFolder):
         ):
             data = reading.read_boundary(self.file("b.txt", rows))
             numpy.testing.assert_array_equal([data.GetPoint(i)[2] for i in range(3)], z)
+
+    def test_notes_say_how_it_was_read(self):
+        for read in (reading.read_boundary, reading.read_faults):
+            lines = read(self.file("b.gmt", "name,northing,easting\na,0,0\na,0,10\na,10,10\na,0,0\n"))
+            notes = words_in(lines.GetFieldData(), RECOGNISED)
+            for words in ("by its content this is a text table, not a vector file", "text: separated by commas",
+                          "columns by their names: x = 3 (easting), y = 2 (northing)"):
+                self.assertIn(words, " | ".join(notes))
+            self.assertNotIn("--", " | ".join(notes))  # options are for points
 
     def test_rings_are_named_by_their_lines(self):
         data = reading.read_boundary(self.file("b.txt", self.RING + "\n2 2\n4 2\n4 4\n"))
