@@ -216,12 +216,6 @@ class Choice:
         """Whether columns may be longitude and latitude by their sizes and decimals."""
         return self.largest[x] <= 360 and self.largest[y] <= 90 and min(self.decimals[x], self.decimals[y]) >= 4
 
-    def is_elsewhere(self, place):
-        """Whether numbers of x and y with decimals do not lie among those of the points."""
-        return all(self.decimals[i] for i in self.indices[:2]) and not all(
-            self.low[i] <= value <= self.high[i] for i, value in zip(self.indices[:2], place)
-        )
-
     def is_too_high(self, i):
         return len(self.finite[i]) > 0 and abs(self.finite[i]).min() > known().figures["highest"]
 

@@ -8,6 +8,8 @@ import importlib.util
 import math
 import re
 
+import numpy
+
 from .column_names import known_names, meaning, plain, length_unit
 from .tables import known
 from ..messages import FileError
@@ -113,6 +115,40 @@ def touching_in(line):
         f"numbers of fixed width touch, as {word[:40]}: cut them by their widths, as awk '{{print substr($0,1,10), "
         "substr($0,11,10), substr($0,21,10)}' for 10 each"
     )
+
+
+@numpy.errstate(all="ignore")
+def title_kind(layout, line, others):
+    """Whether a line of numbers is a title, as "1024 2048 3", where others are rows: "sure", "doubtful" or "".
+
+    Such numbers are whole, and far from all of the others that have decimals. It is doubtful where few rows, or
+    numbers of another kind, leave it open whether that is a point; and where it alone lacks decimals. The numbers
+    of columns, from 0, are one if they are elsewhere than the others.
+    """
+    words = layout.words(line)
+    words, first = (words, 0) if words[0] else (words[1:], 1)  # pandas has no name for an index
+    rows = [row[first:] for row in map(layout.words, others)]
+    rows = [row[: len(words)] for row in rows if len(row) in (len(words), len(words) - 1)]
+    width = min(map(len, rows), default=0)
+    own = numpy.array([layout.number(word) for word in words[:width]], "f8")
+    values = numpy.array([[layout.number(word) for word in row[:width]] for row in rows], "f8")
+    if width < 2 or not numpy.isfinite(own).all() or not own.any():
+        return ""
+    decimals = [{len(row[i].partition("," if layout.decimal_comma else ".")[2]) for row in rows} for i in range(width)]
+    have_decimals = numpy.array([0 not in found for found in decimals])
+    low, high = (numpy.where(numpy.isnan(values), no, values) for no in (numpy.inf, -numpy.inf))
+    low, high = low.min(axis=0), high.max(axis=0)
+    away = numpy.maximum(low - own, own - high)
+    is_far = away > numpy.maximum(high - low, 0.5 * numpy.maximum(abs(low), abs(high)))
+    is_whole = all(map(str.isdecimal, words))
+    is_null = len(set(own[is_far])) == 1 and own[is_far][0] in (*known().nulls["values"], *known().nulls["rows"])
+    if have_decimals.sum() > 1 and layout.separator and words == list(map(str, range(len(words)))):
+        return "sure" * bool((away[have_decimals][:2] > 0).any())
+    if is_far.sum() > 1 and is_far.sum() + 1 >= width and not is_null and len(rows) > 2:
+        is_sure = is_whole and (is_far & have_decimals & (away > 10 * (high - low))).sum() > 1 and len(rows) > 9
+        return "sure" if is_sure else "doubtful"
+    alike = sum(len(found) == 1 for found in decimals)
+    return "doubtful" * bool(is_whole and have_decimals.sum() > 1 and alike == width and len(rows) > 9)
 
 
 def notes_on_marks(path, rows, columns, axes):

@@ -28,6 +28,7 @@ from .layouts import (
     known_axes,
     notes_on_marks,
     notes_on_units,
+    title_kind,
     touching_in,
 )
 from .nulls import leave_out
@@ -40,6 +41,7 @@ from ..selecting import MOST_VALUES, WordReader
 from ..names import option
 
 TAIL = 50  # lines at the end of a block among which summaries are looked for
+ROWS_BELOW = 100  # lines with which one that may be a title is compared
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED, MOST_SUMMARIES = 3, 5  # that many lines of other kinds, and of summaries, are named
 MOST_UNEVEN = 0.5, 0.08  # lines of numbers that are longer than others or left out, as a share of rows
@@ -77,7 +79,7 @@ class Table:
         lines = block_lines(block, self.encoding)
         self.skips, self.can_skip, self.bad_lines = options.skip_bad_lines, advice is None, []
         self.layout = find_layout(path, lines[:5000], needed)
-        self.head_lines, self.has_summaries = set(), False
+        self.head_lines, self.has_summaries, self.titles = set(), False, {}
         head, preamble = self.read_head(lines)
         near = self.first + SAMPLE
         behind = lines[self.first : near] + lines[max(near, len(lines) - TAIL) :]
@@ -114,11 +116,13 @@ class Table:
             if is_comment(line):
                 head.append(line.strip().lstrip("#%/!*> "))
                 self.comments += 1
-            elif self.is_like(line) and not (
-                known_axes(self.layout.words(line)) >= set("xyz")  # as x,y,z,0,1
-                or self.numbers_columns(line) and any(map(self.is_like, set(lines[:SAMPLE]) - {line}))
-            ):
-                break
+            elif self.is_like(line) and not known_axes(self.layout.words(line)) >= set("xyz"):  # as x,y,z,0,1
+                below = lines[self.first + 1 : self.first + 1 + ROWS_BELOW]
+                below = [other for other in below if self.is_like(other) and other.strip() != line.strip()]
+                self.titles[line.strip()] = title_kind(self.layout, line, below)
+                if not self.titles[line.strip()]:
+                    break
+                preamble.append((self.first + 1, line))
             elif line.strip():
                 head.append(line.strip())
                 preamble.append((self.first + 1, line))
@@ -137,15 +141,6 @@ class Table:
     def is_like(self, line):
         """Whether a line holds enough numbers for a row."""
         return self.layout.numbers(line) >= self.needed
-
-    def numbers_columns(self, line):
-        """Whether a line holds nothing but the numbers of columns from 0, as pandas heads a table without names, or of
-        some with an index."""
-        if not self.layout.separator:
-            return False
-        words = self.layout.words(line)
-        words = words[not words[0] :]
-        return len(words) >= self.needed and words == list(map(str, range(len(words))))
 
     def bad_line(self, number, line, why, advice=""):
         """The error for a line that is not a row."""
@@ -208,11 +203,15 @@ class Table:
         words, error = self.layout.words(line), None
         values = [self.layout.number(word) for word in words]
         chosen = [values[i] for i in self.indices if i < len(words)]
-        if self.numbers_columns(line) and self.choice.is_elsewhere(chosen):
-            self.notes.append(f"line {number} is left out: it holds the numbers of columns, not a point")
+        plain = line.strip()
+        if self.titles.get(plain) == "sure":
+            self.notes.append(f"line {number} is left out: {' '.join(words)[:40]} is a title, not a point")
             return False
         good = sum(v is not None and not math.isnan(v) for v in chosen)
-        if len(words) < self.width:
+        if plain in self.titles:
+            why = f"{' '.join(words)[:40]} is unlike all rows below it, as a title is; a point may stand behind others"
+            error = self.bad_line(number, "", why)
+        elif len(words) < self.width:
             no_words = None not in values or re.fullmatch(r"[-+\d.,;\seE]+", " ".join(words))
             error = self.few_words(number, line, len(words)) if len(words) > 1 and no_words else None
         elif None in chosen and good >= len(chosen) - 1:
@@ -220,7 +219,7 @@ class Table:
         if error and not self.skips:
             raise error
         if error:
-            self.bad_lines.append([number, line.strip()])
+            self.bad_lines.append([number, plain])
         return not error and len(words) >= self.width and None not in chosen and good > 0
 
 

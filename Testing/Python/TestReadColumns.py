@@ -310,11 +310,60 @@ class Doubts(Tables):
             text = head + "".join(index.format(i) + ",".join(row) + "\n" for i, row in enumerate(rows))
             cloud = self.read(text)
             self.assert_rows(cloud, expected)
-            self.assertIn("line 1 is left out: it holds the numbers of columns", " ".join(cloud.notes))
+            self.assertIn("is a title, not a point", " ".join(cloud.notes))
         # Where it may be a point, it is one.
         head, among = "0,1,2\n", "-1.5,0.5,3.5\n5.5,6.5,7.5\n"
         for text in (head, 2 * head, head + "1,2,3\n5,6,7\n", head + among, "0 1 2\n5.5 6.5 7.5\n"):
             self.assertEqual(self.read(text).points.GetPoint(0), (0, 1, 2))
+
+    def test_a_title_of_numbers_is_left_out_or_asked_about(self):
+        rows = [" ".join(row) for row in columns_of("x y z")[0]]
+        near = [" ".join(f"{v:.2f}" for v in row) for row in zip(NEAR_X - 2900, NEAR_Y, Z)]
+        whole = [" ".join(f"{v:.0f}" for v in row) for row in zip(X, Y, Z)]
+        degrees = [f"{lon} {lat} {z} 1" for lon, lat, z in zip(LON, LAT, Z)]
+        for title, lines, is_sure in (
+            ("1024 2048 3", rows, True), ("14 7 1", rows, True), ("60 0 0", rows, True), ("1 2 3 4", rows, True),
+            ("2 7 1 60", [f"{row} {i % 4}" for i, row in enumerate(rows)], True), ("60 2 1 0", degrees, True),
+            ("60 7 2", near, False), ("60 7 2", whole, False), ("60 7 0.5", rows, False),
+            ("1024 2048 3", rows[:4], False),
+        ):
+            text = "\n".join([title, *lines]) + "\n"
+            with self.subTest(text[:80]):
+                if is_sure:
+                    cloud = self.read(text, columns="1,2,3")
+                    self.assertIn(f"line 1 is left out: {title} is a title, not a point", cloud.notes)
+                else:
+                    self.assertIn(f"line 1: {title} is unlike all rows below it, as a title is", self.refusal(text))
+                    cloud = self.read(text, skip_bad_lines=True)
+                    self.assertIn(f"lines of other kinds are left out: line 1 ({title})", cloud.notes)
+                    self.assertIn("mark it with #", str(self.lines_refusal(text)))
+                self.assertEqual(cloud.points.GetNumberOfPoints(), len(lines))
+                self.assertEqual(self.read("\n".join(["# " + title, *lines]), columns="1,2,3").lines[0], 2)
+                if is_sure:  # of another file behind it
+                    cloud = self.read(text + text, columns="1,2,3")
+                    self.assertIn("header lines that come again are left out: 1", cloud.notes)
+
+    def lines_refusal(self, text):
+        with self.assertRaises(FileError) as caught:
+            read_table(self.file("a.txt", text), needed=2)
+        return caught.exception
+
+    def test_a_first_point_is_no_title(self):
+        generator = numpy.random.default_rng(5)
+        for first, low, high, decimals in (
+            ((500000, 4100000, 300), (505000, 4105000, 310), (505300, 4105400, 340), 2),  # a base 5 km away
+            ((0, 0, 0), (452000, 5411000, 200), (453000, 5412000, 250), 2),  # a null
+            ((0, 0, 5), (0, 0, 3), (100, 100, 9), 1), ((1, 1, 5), (2, 2, 3), (40, 50, 9), 0),
+            ((1000, 1000, 100), (1005, 1012, 98), (1300, 1200, 105), 0), ((-3, -2, 0), (-2, -3, 1), (9, 9, 5), 0),
+            ((0, 0, 0), (0, 5, 0), (90, 90, 9), 0), ((500000, 4000000, 0), (500001, 4000000, 1), (501000, 4000900, 9), 0),
+        ):
+            for count in (1, 5, 40):
+                points = generator.uniform(low, high, (count, 3))
+                lines = [" ".join(f"{v:.{decimals}f}".rstrip("0" * (decimals > 0)).rstrip(".") for v in point)
+                         for point in points]
+                text = "\n".join([" ".join(map(str, first)), *lines]) + "\n"
+                with self.subTest(text[:80]):
+                    self.assertEqual(self.read(text).points.GetPoint(0), first)
 
     def test_a_name_before_large_numbers_is_not_a_mark_between_thousands(self):
         with self.assertRaisesRegex(FileError, "no line holds 3 numbers; the most is 2"):
