@@ -128,20 +128,24 @@ def title_kind(layout, line, others):
     words = layout.words(line)
     words, first = (words, 0) if words[0] else (words[1:], 1)  # pandas has no name for an index
     rows = [row[first:] for row in map(layout.words, others)]
-    rows = [row[: len(words)] for row in rows if len(row) in (len(words), len(words) - 1)]
+    rows = [row[: len(words)] for row in rows if len(row) >= len(words) - 1]
     width = min(map(len, rows), default=0)
     own = numpy.array([layout.number(word) for word in words[:width]], "f8")
     values = numpy.array([[layout.number(word) for word in row[:width]] for row in rows], "f8")
     if width < 2 or not numpy.isfinite(own).all() or not own.any():
         return ""
-    decimals = [{len(row[i].partition("," if layout.decimal_comma else ".")[2]) for row in rows} for i in range(width)]
+    sign = "," if layout.decimal_comma else "."
+    decimals = [
+        {len(row[i].partition(sign)[2]) for row in rows if layout.number(row[i]) is not None} for i in range(width)
+    ]
     have_decimals = numpy.array([0 not in found for found in decimals])
     low, high = (numpy.where(numpy.isnan(values), no, values) for no in (numpy.inf, -numpy.inf))
     low, high = low.min(axis=0), high.max(axis=0)
     away = numpy.maximum(low - own, own - high)
     is_far = away > numpy.maximum(high - low, 0.5 * numpy.maximum(abs(low), abs(high)))
     is_whole = all(map(str.isdecimal, words))
-    is_null = len(set(own[is_far])) == 1 and own[is_far][0] in (*known().nulls["values"], *known().nulls["rows"])
+    x_and_y = set(own[is_far][:2])  # alike, they may be nulls, which are left out later
+    is_null = len(x_and_y) == 1 and not x_and_y.isdisjoint(known().nulls["values"] + known().nulls["rows"])
     if have_decimals.sum() > 1 and layout.separator and words == list(map(str, range(len(words)))):
         return "sure" * bool((away[have_decimals][:2] > 0).any())
     if is_far.sum() > 1 and is_far.sum() + 1 >= width and not is_null and len(rows) > 2:
