@@ -136,7 +136,8 @@ def title_kind(layout, line, others):
         return ""
     sign = "," if layout.decimal_comma else "."
     decimals = [
-        {len(row[i].partition(sign)[2]) for row in rows if layout.number(row[i]) is not None} for i in range(width)
+        {len(row[i].partition(sign)[2]) for row, number in zip(rows, values[:, i]) if numpy.isfinite(number)}
+        for i in range(width)
     ]
     have_decimals = numpy.array([0 not in found for found in decimals])
     low, high = (numpy.where(numpy.isnan(values), no, values) for no in (numpy.inf, -numpy.inf))
