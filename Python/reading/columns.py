@@ -199,9 +199,10 @@ class Choice:
         x, y = self.indices[:2]
         language = next((name for name, letters in known().x_is_north.items() if re.search(letters, self.head)), "")
         is_plain = self.meanings[x].rank == self.meanings[y].rank == 0
-        if not language or not is_plain or self.is_utm(x, y) or self.are_degrees(x, y):
+        is_east, is_north = self.is_utm(x, y), self.is_utm(y, x)
+        if not language or not is_plain or is_east and not is_north or self.are_degrees(x, y):
             return
-        if not self.is_utm(y, x):
+        if is_east or not is_north:
             why = f"X is often north in tables in {language}, and nothing shows here whether it is"
             self.ask([self.swapped(), self.indices], why)
         self.has_swapped, self.indices = True, self.swapped()
@@ -270,11 +271,13 @@ class Choice:
         named, ranks = {}, {}
         for axis in self.axes:
             found = [i for i, m in enumerate(self.meanings) if m.axis == axis]
-            # Next to x and y, words of a time, which a traveltime may be called, are no height.
-            times = [i for i in found if self.meanings[i].rank == 4 and all(named.values())]
-            named[axis] = [i for i in found if i in self.numeric] or [i for i in found if i not in times]
-            clocks = [i for i in named[axis] if self.meanings[i].rank == 4 and self.is_too_high(i)]
-            named[axis] = [i for i in named[axis] if i not in clocks]  # as seconds of a week
+            # Words of a time, which a traveltime may be called, are no height next to x and y or to one, and no
+            # seconds of a week.
+            times = [i for i in found if self.meanings[i].rank == 4]
+            found = [i for i in found if i not in times] or found
+            times = [i for i in times if (all(named.values()) and i not in self.numeric) or self.is_too_high(i)]
+            found = [i for i in found if i in self.numeric] or found
+            named[axis] = [i for i in found if i not in times]
             ranks[axis] = {self.meanings[i].rank for i in named[axis]}
         alike = ranks["x"] & ranks["y"]
         for axis, found in named.items():
@@ -331,8 +334,8 @@ class Choice:
             others = self.listed([i for i in numbers if i not in usable])
             self.ask([numbers[:count]], f"{self.none_is_named()}, and {others} may be something else by the names")
         usable = usable if len(usable) >= count else numbers
-        if not self.names and len(usable) == self.width > count == 3:
-            self.ask_for_grid()
+        if not self.names and self.width > count == 3:
+            self.ask_for_grid(len(usable) == self.width)
         left = self.without_others(usable[:MOST_JUDGED]) if self.width > count else list(range(count))
         readings = self.scored(left)
         for other in ((1, 2, 0), (2, 1, 0)) if self.width == count == 3 else ():  # as z, x, y
@@ -357,13 +360,18 @@ class Choice:
         why = "".join(f"column {self.called(i)} is {reason}; " for i, reason in reasons)
         self.note(f"columns by their values: {why}{self.taken()}")
 
-    def ask_for_grid(self):
-        """Asks where rows may be those of a grid."""
-        is_wide, layout = self.width > MOST_COLUMNS, self.layout
-        if is_wide or are_heights(self.values):
+    def ask_for_grid(self, are_numbers):
+        """Asks where rows may be those of a grid, maybe with x above and y before them.
+
+        are_numbers  whether all columns are
+        """
+        is_wide, layout = self.width > MOST_COLUMNS and (are_numbers or self.width > len(self.rows)), self.layout
+        has_axes = self.width > 4 and self.goes_one_way(0) and are_heights(self.values[:, 1:])
+        if is_wide or has_axes or are_numbers and are_heights(self.values):
             lines = "(line.replace(',', '.') for line in open('{}'))" if layout.decimal_comma else "'{}'"
             between = f", delimiter={layout.separator!r}" if layout.separator else ""
-            source = f"numpy.loadtxt({lines.format(self.path)}{between})"
+            source = f"numpy.{'genfrom' if has_axes else 'load'}txt({lines.format(self.path)}{between})"
+            source = f"(a := {source})[1:, 1:], x=a[0, 1:], y=a[1:, 0]" if has_axes else source
             why = f"{self.width} columns of numbers without names may be a grid of elevations"
             self.ask([] if is_wide else [(0, 1, 2)], why, as_grid(self.path, source))
 
@@ -530,6 +538,11 @@ class Choice:
         """Whether numbers rise in all rows, of which there are at least so many."""
         return len(self.finite[i]) >= least and bool((numpy.diff(self.finite[i]) > 0).all())
 
+    def goes_one_way(self, i):
+        """Whether numbers rise in all rows, or fall in all."""
+        ways = numpy.sign(numpy.diff(self.finite[i]))
+        return len(ways) > 2 and bool((ways == ways[0]).all() and ways[0])
+
     def is_line(self, i, beside):
         """The same whole number along runs of rows, through which others go in no even steps."""
         steps = numpy.column_stack((self.steps(i), self.steps(beside)))
@@ -552,7 +565,7 @@ class Choice:
         has_ids |= any(reason in (COUNTS_UP, EACH_ONCE) for reason in self.reasons.values())
         coded = any(i > max(x, y, z) for i in texts)
         northing_first, northing_second = self.is_utm(y, x), self.is_utm(x, y)
-        is_sure = max(self.low[x], self.low[y]) > known().figures["most feet"]
+        is_sure = northing_first != northing_second and max(self.low[x], self.low[y]) > known().figures["most feet"]
         if has_ids and northing_first and is_sure:
             self.has_swapped, self.indices = True, self.swapped()
             self.notes.append(
@@ -575,9 +588,10 @@ class Choice:
 
     def is_utm(self, x, y):
         """Whether columns are easting and northing of UTM by their sizes, in metres; the easting may begin with the
-        number of its zone."""
+        number of its zone, which has one digit in the Gauss-Krueger systems of middle Europe."""
         low, high = self.low, self.high
-        zone = low[x] // 1e6 * 1e6 if 1e7 < low[x] < 61e6 else 0.0
+        has_zone = 1e7 < low[x] < 61e6 or 2e6 < low[x] < 9e6 and 4.75e6 < low[y] <= high[y] < 6.2e6
+        zone = low[x] // 1e6 * 1e6 if has_zone else 0.0
         return bool(160e3 < low[x] - zone <= high[x] - zone < 840e3 and 1.1e6 < low[y] <= high[y] < 10e6)
 
     def refuse_geocentric(self, chosen):
@@ -615,9 +629,9 @@ class Choice:
             fine = min(self.decimals[x], self.decimals[y]) >= 4
             if by_name or fine and 0 < max(self.spans[x], self.spans[y]) < 0.1 * self.spans[self.indices[2]]:
                 self.angles = "look like degrees"
-        if self.is_utm(y, x) and not self.has_swapped:
+        if self.is_utm(y, x) and not self.is_utm(x, y) and not self.has_swapped:
             self.notes.append(
-                f"x is as large as a northing and y as an easting of UTM; if so: {self.way(self.swapped())}"
+                f"x is as large as a northing and y as an easting of UTM or Gauss-Krueger; if so: {self.way(self.swapped())}"
             )
 
     # -- words

@@ -292,6 +292,9 @@ FOREIGN = tuple(
         (rb"H\d{4}[A-Z][^\n]*\n([^\n]*\n)*?[A-Z]",
          "is a file of UKOOA P1/90: awk '/^[^H]/ {print substr($0,47,9), substr($0,56,9), substr($0,65,6)}' {path} > "
          "points.txt takes x, y and depth out of it"),
+        (rb"G00,\d\d,[^\n]*\n([A-Z]\d\d,[^\n]*\n)*?A01,",
+         "is a SIMA file, with y before x: awk -F, '$1 == \"A01\" {print $5, $4, $6}' {path} > points.txt takes x, y and z "
+         "out of it"),
         (rb"[^,\n]*,\s*\d{1,2}-[a-z]{3}-\d{2}[^\n]*\n\s*0,\s*-?\d+\.\d+,",
          "is a Surpac string file, with y before x: awk -F, '$1 + 0 > 0 {print $3, $2, $4}' {path} > points.txt takes x, "
          "y and z out of it"),

@@ -17,7 +17,7 @@ ASKED_FOR = {  # by name, so that they must be there
     "lines": "x, y",
     "finnish": "p, i",
     "signs": "comments, missing, encodings",
-    "refusals": "thousands, sexagesimals, letters, commas twice",
+    "refusals": "thousands, sexagesimals, letters, shortened, commas twice",
     "patterns": "touching, date, grouped, pairs, sexagesimal, with decimals, numbered name, summary",
     "nulls": "values, rows",
     "weights": "one pair, as many decimals, as wide as high, z spans less, z is higher than any place, stands first, "

@@ -220,7 +220,7 @@ class Known(Tables):
             text = stream.read()
         for damaged, words in (
             (None, "No such file"), ("", "it has no 'other words'"), (b"\xff\xfe", "can't decode"),
-            (text[: len(text) // 2], "it has no"), (text.replace("[nulls]", "[nulls"), "parsing errors"),
+            (text[: text.index("[nulls]")], "it has no 'nulls'"), (text.replace("[nulls]", "[nulls"), "parsing errors"),
             (text.replace("\ndate = ", "\ndate = ("), "missing )"), (text.replace("-9999", "nine", 1), "'nine'"),
         ):
             self.assertIn(words, self.refusal_with(damaged))
