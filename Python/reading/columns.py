@@ -629,7 +629,8 @@ class Choice:
             fine = min(self.decimals[x], self.decimals[y]) >= 4
             if by_name or fine and 0 < max(self.spans[x], self.spans[y]) < 0.1 * self.spans[self.indices[2]]:
                 self.angles = "look like degrees"
-        if self.is_utm(y, x) and not self.is_utm(x, y) and not self.has_swapped:
+        are_words = self.meanings[x].rank == self.meanings[y].rank == 1  # as "easting"
+        if self.is_utm(y, x) and not self.is_utm(x, y) and not self.has_swapped and not are_words:
             self.notes.append(
                 f"x is as large as a northing and y as an easting of UTM or Gauss-Krueger; if so: {self.way(self.swapped())}"
             )

@@ -163,6 +163,9 @@ class Doubts(Tables):
 
     def test_northing_before_easting_without_a_header_is_noted(self):
         rows, _ = columns_of("y x z")
+        feet = [f"{1.5e6 + x},{17.7e6 + y},{z}\n" for x, y, z in zip(NEAR_X, NEAR_Y, Z)]
+        cloud = self.read("easting,northing,z\n" + "".join(feet))
+        self.assertNotIn("as large as a northing", " ".join(cloud.notes))
         text = "".join(" ".join(row) + "\n" for row in rows)
         cloud = self.read(text)
         self.assert_rows(cloud, numpy.column_stack((Y, X, Z)))
@@ -396,6 +399,11 @@ class Doubts(Tables):
                 self.assertIn(words, " ".join(cloud.notes))
         cloud = self.read("ID X Y Z\n1 2 3 4\n2 5 7 8\nMean 3.5 5 6\n")
         self.assert_rows(cloud, [(2, 3, 4), (5, 7, 8)])
+        words = "Promedio|Durchschnitt|Anzahl|Gesamtsumme|Ergebnis|Průměr|Celkem|Razem|Średnia|Átlag|Összesen|Ortalama|"
+        for word in (words + "Toplam|Gjennomsnitt|Medelvärde|Gemiddeld|Итого|Среднее|合計|平均").split("|"):
+            rows = [f"P{i};{i},5;{i * i % 7};{i},25\n" for i in range(40)]
+            cloud = self.read("ID;X;Y;Z\n" + "".join(rows) + f"{word};7;7;7\n")
+            self.assertIn(f"summary lines are left out: line 42 ({word})", cloud.notes)
         # Other words among numbers are kept and noted.
         rows = [f"{i},{i}.5,{i * i % 7},{i}.25\n" for i in range(40)]
         cloud = self.read("ID,X,Y,Z\n" + "".join(rows) + "BM7,1,2,3\n")
