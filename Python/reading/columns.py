@@ -153,20 +153,17 @@ class Choice:
             ways = [(names, column), (joined, "".join(plain(column)))]
             ways = [(numbers, int(column))] if column.isdecimal() else ways
             ways = [[i for i, one in enumerate(titles) if title and one == title] for titles, title in ways]
-            found = next(filter(None, ways), [])
+            found, why = next(filter(None, ways), []), ""
             if not found:
                 there = f"named {', '.join(names)}" if names else "without names: the file has no header line"
                 why = f"there is no column {column} for {axis}; lines have {self.width}, {there}"
-                raise FileError(f"{self.path}: {why}")
-            if len(found) > 1:
+            elif len(found) > 1:
                 why = f"{self.listed(found)} are all called {column}; {option('columns')} takes the number of one"
+            elif found[0] in self.indices:
+                both = f"{self.axes[self.indices.index(found[0])]} and {axis} from column {self.called(found[0])}"
+                why = f"{option('columns')} takes both {both}; each needs a column of its own"
+            if why:
                 raise FileError(f"{self.path}: {why}")
-            if found[0] in self.indices:
-                other = self.axes[self.indices.index(found[0])]
-                raise FileError(
-                    f"{self.path}: {option('columns')} takes both {other} and {axis} from column "
-                    f"{self.called(found[0])}; each needs a column of its own"
-                )
             self.indices.append(found[0])
         self.refuse_geocentric(self.indices)
 
@@ -316,9 +313,8 @@ class Choice:
         if self.needed == 3 and others and self.meanings[self.indices[2]].axis:
             self.note(f"z is {self.called(self.indices[2])}; {self.listed(others)} could be too")
         if not self.has_swapped and self.indices[-1] > x > y and self.meanings[x].rank == self.meanings[y].rank == 0:
-            self.notes.append(
-                f"Y stands before X, as where X is north; x and y are taken as named; if not: {self.way(self.swapped())}"
-            )
+            why = "Y stands before X, as where X is north; x and y are taken as named"
+            self.notes.append(f"{why}; if not: {self.way(self.swapped())}")
 
     # -- values
 
@@ -366,7 +362,8 @@ class Choice:
         are_numbers  whether all columns are
         """
         is_wide, layout = self.width > MOST_COLUMNS and (are_numbers or self.width > len(self.rows)), self.layout
-        has_axes = self.width > 4 and self.goes_one_way(0) and are_heights(self.values[:, 1:])
+        ways = numpy.sign(numpy.diff(self.finite[0]))  # of what may be y
+        has_axes = self.width > 4 and abs(ways.sum()) == len(ways) > 2 and are_heights(self.values[:, 1:])
         if is_wide or has_axes or are_numbers and are_heights(self.values):
             lines = "(line.replace(',', '.') for line in open('{}'))" if layout.decimal_comma else "'{}'"
             between = f", delimiter={layout.separator!r}" if layout.separator else ""
@@ -538,11 +535,6 @@ class Choice:
         """Whether numbers rise in all rows, of which there are at least so many."""
         return len(self.finite[i]) >= least and bool((numpy.diff(self.finite[i]) > 0).all())
 
-    def goes_one_way(self, i):
-        """Whether numbers rise in all rows, or fall in all."""
-        ways = numpy.sign(numpy.diff(self.finite[i]))
-        return len(ways) > 2 and bool((ways == ways[0]).all() and ways[0])
-
     def is_line(self, i, beside):
         """The same whole number along runs of rows, through which others go in no even steps."""
         steps = numpy.column_stack((self.steps(i), self.steps(beside)))
@@ -631,9 +623,8 @@ class Choice:
                 self.angles = "look like degrees"
         are_words = self.meanings[x].rank == self.meanings[y].rank == 1  # as "easting"
         if self.is_utm(y, x) and not self.is_utm(x, y) and not self.has_swapped and not are_words:
-            self.notes.append(
-                f"x is as large as a northing and y as an easting of UTM or Gauss-Krueger; if so: {self.way(self.swapped())}"
-            )
+            why = "x is as large as a northing and y as an easting of UTM or Gauss-Krueger"
+            self.notes.append(f"{why}; if so: {self.way(self.swapped())}")
 
     # -- words
 
@@ -645,7 +636,8 @@ class Choice:
 
     def way(self, indices):
         """What a user can do so that columns are taken."""
-        return f"{option('columns')} {self.numbered(indices)}" if self.can_be_chosen else self.advice
+        numbers = ",".join(str(i + 1) for i in indices)
+        return f"{option('columns')} {numbers}" if self.can_be_chosen else self.advice
 
     def taken(self):
         return ", ".join(f"{axis} = {self.called(i)}" for axis, i in zip(self.axes, self.indices))
@@ -657,10 +649,6 @@ class Choice:
     def listed(self, columns):
         words = [self.called(i) for i in columns[:6]]
         return "columns " + " and ".join(words) if len(words) > 1 else f"column {words[0]}"
-
-    @staticmethod
-    def numbered(columns):
-        return ",".join(str(i + 1) for i in columns)
 
     # -- the other columns
 
