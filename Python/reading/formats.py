@@ -212,7 +212,7 @@ LANDXML = rb"(\xef\xbb\xbf)?\s*(<\?xml.*?\?>\s*)?(<!--.*?-->\s*)*<LandXML\b"
 PCD = rb"(#[^\n]*\n)*VERSION [.\d]+\s*\nFIELDS"
 DHI = rb"(\d+ +\d+ +)?\d+ +[A-Za-z][^\n]*\n *1\s+([-+.\deE]+\s+){3}\d+\s*\n *2\s"
 ZMAP = rb"(\s*![^\n]*\n)*\s*@[^\n]*,\s*"
-PETREL = rb"(#[^\n]*\n)*\s*VERSION \d+\s+BEGIN HEADER\s"
+PETREL = rb"(#[^\n]*\n)*\s*(VERSION \d+\s+)?(?i:BEGIN HEADER)\s"
 # Lines begin with > or ->, or end with 999 999 999.
 SEGMENT_END = rb"\n[ \t]*999(\.0*)?([ \t]+999(\.0*)?){2}[ \t]*\r?\n"
 SEGMENTS = rb"(#(?! ?@VGMT)[^\n]*\n)*(-?>|FFASCI|[ \t]*999(\.0*)?([ \t]+999(\.0*)?){2}\s*\n|.*?" + SEGMENT_END + b")"

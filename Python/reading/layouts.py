@@ -204,8 +204,6 @@ def check_names(path, layout, before, rows, names, width, advice):
     if not before or known_axes(names or []):
         return
     for other, found in splittings(layout, before[-1]):
-        while found and not found[-1]:
-            found.pop()
         if known_axes(found) < set("xyz") or len(found) == width:
             continue
         own = other.separator and other.separator == layout.separator
@@ -251,15 +249,13 @@ def find_names(layout, head, width, one_may_lack=True):
     one_may_lack  whether the first column may have none
 
     They stand in one line, with the separator of the data or another; or a line each, numbered as
-    "3: X", or below their count as GSLIB has them, or between BEGIN HEADER and END HEADER.
+    "3: X", or below their count as GSLIB has them.
     """
     numbered = filter(None, map(known().patterns["numbered name"].match, head))
     found = {int(match.group(1)): match.group(2).strip('" ') for match in numbered}
     candidates = [[found[i] for i in range(1, width + 1) if i in found]]
     if len(head) == width + 2 and head[1].split()[:1] == [str(width)]:
         return head[2:]  # whatever the title's words mean
-    for part in re.findall(r"(?ims)^begin header\n(.*?)\nend header$", "\n".join(head)):
-        candidates.append([name.split(",")[-1] for name in part.split("\n")])
     for line in reversed(head):
         for other, words in splittings(layout, line):
             others = [words]
@@ -268,8 +264,8 @@ def find_names(layout, head, width, one_may_lack=True):
                 others += [re.split(r"\s{2,}|\t", line.strip()), [w for w in words if re.sub(r"[(\[{].*|\W|_", "", w)]]
             if one_may_lack and len(words) == width - 1 and known_names(words):
                 others.append(["", *words])  # as R writes it: row names have no name
-            if len(words) == width + 1 and not words[-1]:
-                others.append(words[:-1])
+            if not any(words[width:]):  # as behind separators at the end
+                others.append(words[:width])
             # With another separator than the data has, words that mean nothing are a sentence.
             candidates += [names for names in others if other is layout or known_names(names) > 1]
     candidates = [names for names in candidates if len(names) == width and not all(map(is_number, names))]

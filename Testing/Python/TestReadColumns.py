@@ -181,7 +181,7 @@ class Doubts(Tables):
     def test_comments_do_not_hide_the_names_and_separators_may_end_lines(self):
         self.assert_rows(self.read("# z y x\n# made by hand\n1 2 3\n4 5 7\n"),
                                 [(3, 2, 1), (7, 5, 4)])
-        for head in ("", "z,x,y,\n", "z,x,y\n"):
+        for head in ("", "z,x,y,\n", "z,x,y\n", "z,x,y,,,\n"):
             cloud = self.read(head + "1,2,3,\n4,5,7,\n")
             self.assertEqual(cloud.points.GetPoint(0), (2, 3, 1) if head else (1, 2, 3))
             self.assertEqual(len(cloud.notes), 2)
