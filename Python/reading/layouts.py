@@ -118,16 +118,17 @@ def touching_in(line):
 
 
 @numpy.errstate(all="ignore")
-def title_kind(layout, line, others):
+def title_kind(layout, line, others, count):
     """Whether a line of numbers is a title, as "1024 2048 3", where others are rows: "sure", "doubtful" or "".
+    So many (count) lines follow in all.
 
     Such numbers are whole, and far from all of the others that have decimals. It is doubtful where few rows, or
-    numbers of another kind, leave it open whether that is a point; and where it alone lacks decimals. The numbers
-    of columns, from 0, are one if they are elsewhere than the others.
+    numbers of another kind, leave it open whether that is a point; where it alone lacks decimals; and where it begins
+    with the number of lines. The numbers of columns, from 0, are one if they are elsewhere than the others.
     """
     words = layout.words(line)
     words, first = (words, 0) if words[0] else (words[1:], 1)  # pandas has no name for an index
-    rows = [row[first:] for row in map(layout.words, others)]
+    rows = [row[first:] for row in map(layout.words, others[min(3, len(others) // 10) :])]  # titles may follow
     rows = [row[: len(words)] for row in rows if len(row) >= len(words) - 1]
     width = min(map(len, rows), default=0)
     own = numpy.array([layout.number(word) for word in words[:width]], "f8")
@@ -152,8 +153,8 @@ def title_kind(layout, line, others):
     if is_far.sum() > 1 and is_far.sum() + 1 >= width and not is_null and len(rows) > 2:
         is_sure = is_whole and (is_far & have_decimals & (away > 10 * (high - low))).sum() > 1 and len(rows) > 9
         return "sure" if is_sure else "doubtful"
-    alike = sum(len(found) == 1 for found in decimals)
-    return "doubtful" * bool(is_whole and have_decimals.sum() > 1 and alike == width and len(rows) > 9)
+    lacks_decimals = have_decimals.sum() > 1 and all(len(found) == 1 for found in decimals)
+    return "doubtful" * bool(is_whole and len(rows) > 9 and (lacks_decimals or own[0] == count))
 
 
 def notes_on_marks(path, rows, columns, axes):

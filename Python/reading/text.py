@@ -118,9 +118,9 @@ class Table:
                 head.append(line.strip().lstrip("#%/!*> "))
                 self.comments += 1
             elif self.is_like(line) and not known_axes(self.layout.words(line)) >= set("xyz"):  # as x,y,z,0,1
-                below = lines[self.first + 1 : self.first + 1 + ROWS_BELOW]
-                below = [other for other in below if self.is_like(other) and other.strip() != line.strip()]
-                self.titles[line.strip()] = title_kind(self.layout, line, below)
+                below = lines[self.first + 1 :]
+                near = [other for other in below[:ROWS_BELOW] if self.is_like(other) and other.strip() != line.strip()]
+                self.titles[line.strip()] = title_kind(self.layout, line, near, sum(map(bool, map(str.strip, below))))
                 if not self.titles[line.strip()]:
                     break
                 preamble.append((self.first + 1, line))
@@ -193,11 +193,11 @@ class Table:
         self.words = self.width = widths.most_common(1)[0][0]
         if not self.skips:
             self.words = self.width = max(len(rows[0]), self.width)
-        # Where lines end with a separator, nothing stands behind it.
-        ends = self.width > self.needed and not any("".join(row[self.width - 1 :]) for row in rows)
-        self.names = find_names(self.layout, head, self.width, not ends)
-        if ends and not (self.names and self.names[-1]):
-            self.width -= 1
+        # Where lines end with separators, nothing stands behind these.
+        filled = max([self.needed, *(i + 1 for row in rows for i, word in enumerate(row[: self.width]) if word)])
+        self.names = find_names(self.layout, head, self.width, filled == self.width)
+        if not any((self.names or [])[filled:]):
+            self.width = min(filled, self.width)
             self.names = find_names(self.layout, head, self.width)
 
     def is_data(self, number, line):

@@ -185,6 +185,8 @@ class Doubts(Tables):
             cloud = self.read(head + "1,2,3,\n4,5,7,\n")
             self.assertEqual(cloud.points.GetPoint(0), (2, 3, 1) if head else (1, 2, 3))
             self.assertEqual(len(cloud.notes), 2)
+            cloud = self.read(head + "1,2,3,,,\n4,5,7,,,\n")
+            self.assertEqual(cloud.points.GetPoint(0), (2, 3, 1) if head else (1, 2, 3))
 
     def test_what_is_not_a_plain_number_is_reported(self):
         for text, words in (
@@ -328,7 +330,7 @@ class Doubts(Tables):
             ("1024 2048 3", rows, True), ("14 7 1", rows, True), ("60 0 0", rows, True), ("1 2 3 4", rows, True),
             ("2 7 1 60", [f"{row} {i % 4}" for i, row in enumerate(rows)], True), ("60 2 1 0", degrees, True),
             ("60 7 2", near, False), ("60 7 2", whole, False), ("60 7 0.5", rows, False),
-            ("1024 2048 3", rows[:4], False),
+            ("1024 2048 3", rows[:4], False), ("60 3 7", [f"{i % 70} {i % 9} {i % 11}" for i in range(60)], False),
         ):
             text = "\n".join([title, *lines]) + "\n"
             with self.subTest(text[:80]):
@@ -345,6 +347,13 @@ class Doubts(Tables):
                 if is_sure:  # of another file behind it
                     cloud = self.read(text + text, columns="1,2,3")
                     self.assertIn("header lines that come again are left out: 1", cloud.notes)
+
+    def test_titles_in_several_lines_are_left_out(self):
+        rows = [" ".join(row) for row in columns_of("x y z")[0]]
+        cloud = self.read("\n".join(["60 3 1", "1 2 3", *rows]))
+        self.assertEqual(list(cloud.lines), list(range(3, 63)))
+        for note in ("line 1 is left out: 60 3 1 is a title, not a point", "line 2 is left out: 1 2 3 is a title, not a point"):
+            self.assertIn(note, cloud.notes)
 
     def lines_refusal(self, text):
         with self.assertRaises(FileError) as caught:
