@@ -361,10 +361,11 @@ class Choice:
 
         are_numbers  whether all columns are
         """
-        is_wide, layout = self.width > MOST_COLUMNS and (are_numbers or self.width > len(self.rows)), self.layout
-        ways = numpy.sign(numpy.diff(self.finite[0]))  # of what may be y
-        has_axes = self.width > 4 and abs(ways.sum()) == len(ways) > 2 and are_heights(self.values[:, 1:])
-        if is_wide or has_axes or are_numbers and are_heights(self.values):
+        is_wide, layout = self.width > MOST_COLUMNS and (are_numbers or len(self.rows) < 5), self.layout
+        ways, is_bare = numpy.sign(numpy.diff(self.finite[0])), are_numbers and are_heights(self.values)
+        has_y = self.width > 4 and abs(ways.sum()) == len(ways) > 2
+        has_axes = has_y and not is_bare and are_heights(self.values[:, 1:])
+        if is_wide or has_axes or is_bare:
             lines = "(line.replace(',', '.') for line in open('{}'))" if layout.decimal_comma else "'{}'"
             between = f", delimiter={layout.separator!r}" if layout.separator else ""
             source = f"numpy.{'genfrom' if has_axes else 'load'}txt({lines.format(self.path)}{between})"

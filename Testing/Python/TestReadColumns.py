@@ -348,6 +348,15 @@ class Doubts(Tables):
                     cloud = self.read(text + text, columns="1,2,3")
                     self.assertIn("header lines that come again are left out: 1", cloud.notes)
 
+    def test_a_grid_whose_first_column_rises_has_no_axes(self):
+        for width in (6, 14):
+            heights = [[f"{500 + 0.7 * i + 0.4 * k + i * k % 3 / 10:.2f}" for i in range(width)] for k in range(20)]
+            text = "".join(" ".join(row) + "\n" for row in heights)
+            self.assertIn(f"numpy.savez('a.npz', z=numpy.loadtxt('{self.path('a.txt')}'))", self.refusal(text))
+            above = " ".join(["0", *(str(25 * i) for i in range(width))]) + "\n"
+            before = "".join(" ".join([str(100 + 10 * k), *row]) + "\n" for k, row in enumerate(heights))
+            self.assertIn("[1:, 1:], x=a[0, 1:], y=a[1:, 0]", self.refusal(above + before))
+
     def test_titles_in_several_lines_are_left_out(self):
         rows = [" ".join(row) for row in columns_of("x y z")[0]]
         cloud = self.read("\n".join(["60 3 1", "1 2 3", *rows]))
