@@ -128,8 +128,7 @@ def title_kind(layout, line, others, count):
     """
     words = layout.words(line)
     words, first = (words, 0) if words[0] else (words[1:], 1)  # pandas has no name for an index
-    rows = [row[first:] for row in map(layout.words, others[min(3, len(others) // 10) :])]  # titles may follow
-    rows = [row[: len(words)] for row in rows if len(row) >= len(words) - 1]
+    rows = [row[first : first + len(words)] for row in map(layout.words, others) if len(row) >= len(words) - 1]
     width = min(map(len, rows), default=0)
     own = numpy.array([layout.number(word) for word in words[:width]], "f8")
     values = numpy.array([[layout.number(word) for word in row[:width]] for row in rows], "f8")
@@ -145,16 +144,21 @@ def title_kind(layout, line, others, count):
     low, high = low.min(axis=0), high.max(axis=0)
     away = numpy.maximum(low - own, own - high)
     is_far = away > numpy.maximum(high - low, 0.5 * numpy.maximum(abs(low), abs(high)))
+    least = numpy.minimum(abs(low), abs(high))
+    is_near = (least > high - low) & (away < 0.1 * least)  # as map coordinates are
     is_whole = all(map(str.isdecimal, words))
     x_and_y = set(own[is_far][:2])  # alike, they may be nulls, which are left out later
     is_null = len(x_and_y) == 1 and not x_and_y.isdisjoint(known().nulls["values"] + known().nulls["rows"])
     if have_decimals.sum() > 1 and layout.separator and words == list(map(str, range(len(words)))):
         return "sure" * bool((away[have_decimals][:2] > 0).any())
-    if is_far.sum() > 1 and is_far.sum() + 1 >= width and not is_null and len(rows) > 2:
-        is_sure = is_whole and (is_far & have_decimals & (away > 10 * (high - low))).sum() > 1 and len(rows) > 9
+    is_apart = is_far & (away > 10 * (high - low))
+    count_far = (is_far if is_whole else is_apart).sum()
+    if count_far > 1 and count_far + 1 >= width and not is_null and len(rows) > (2 if is_whole else 9):
+        is_sure = is_whole and (is_apart & have_decimals).sum() > 1 and len(rows) > 9
         return "sure" if is_sure else "doubtful"
     lacks_decimals = have_decimals.sum() > 1 and all(len(found) == 1 for found in decimals)
-    return "doubtful" * bool(is_whole and len(rows) > 9 and (lacks_decimals or own[0] == count))
+    is_doubtful = is_whole and len(rows) > 9 and is_near.sum() < 2 and (lacks_decimals or own[0] == count)
+    return "doubtful" * bool(is_doubtful)
 
 
 def notes_on_marks(path, rows, columns, axes):

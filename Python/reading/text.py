@@ -118,11 +118,12 @@ class Table:
                 head.append(line.strip().lstrip("#%/!*> "))
                 self.comments += 1
             elif self.is_like(line) and not known_axes(self.layout.words(line)) >= set("xyz"):  # as x,y,z,0,1
-                below = lines[self.first + 1 :]
-                near = [other for other in below[:ROWS_BELOW] if self.is_like(other) and other.strip() != line.strip()]
-                self.titles[line.strip()] = title_kind(self.layout, line, near, sum(map(bool, map(str.strip, below))))
-                if not self.titles[line.strip()]:
+                below, plain = lines[self.first + 1 :], line.strip()
+                near = [other for other in below[:ROWS_BELOW] if self.is_like(other) and other.strip() != plain]
+                kind = title_kind(self.layout, line, near, sum(map(bool, map(str.strip, below))))
+                if not kind and title_kind(self.layout, line, near[3:], 0) != "sure":  # others may follow
                     break
+                self.titles[plain] = kind or "sure"
                 preamble.append((self.first + 1, line))
             elif line.strip():
                 head.append(line.strip())

@@ -372,19 +372,25 @@ class Doubts(Tables):
     def test_a_first_point_is_no_title(self):
         generator = numpy.random.default_rng(5)
         for first, low, high, decimals in (
-            ((500000, 4100000, 300), (505000, 4105000, 310), (505300, 4105400, 340), 2),  # a base 5 km away
+            ((500000, 4100000, 1300), (505000, 4105000, 1310), (505300, 4105400, 1340), 2),  # a base 5 km away
             ((0, 0, 0), (452000, 5411000, 200), (453000, 5412000, 250), 2),  # a null
             ((0, 0, 5), (0, 0, 3), (100, 100, 9), 1), ((1, 1, 5), (2, 2, 3), (40, 50, 9), 0),
             ((1000, 1000, 100), (1005, 1012, 98), (1300, 1200, 105), 0), ((-3, -2, 0), (-2, -3, 1), (9, 9, 5), 0),
+            ((636767, 849053, 1427), (636720, 849010, 1420), (636990, 849200, 1430), 2),
+            ((7.5, 0.25, 427), (0.5, 16, 424), (3.5, 28, 425), 2),  # turns round
             ((0, 0, 0), (0, 5, 0), (90, 90, 9), 0), ((500000, 4000000, 0), (500001, 4000000, 1), (501000, 4000900, 9), 0),
         ):
             for count in (1, 5, 40):
                 points = generator.uniform(low, high, (count, 3))
-                lines = [" ".join(f"{v:.{decimals}f}".rstrip("0" * (decimals > 0)).rstrip(".") for v in point)
-                         for point in points]
-                text = "\n".join([" ".join(map(str, first)), *lines]) + "\n"
+                lines = [[f"{v:.{decimals}f}" for v in point] for point in points]
+                if min(first) < 1000 or count < 40:
+                    lines = [[word.rstrip("0" * (decimals > 0)).rstrip(".") for word in line] for line in lines]
+                text = "\n".join(map(" ".join, [map(str, first), *lines])) + "\n"
                 with self.subTest(text[:80]):
                     self.assertEqual(self.read(text).points.GetPoint(0), first)
+        for lines in (["0 13800 1101", "0 13830 1098", *(f"{30 * i} {i % 4} 99.5" for i in range(1, 30))],
+                      ["14846.0 365.3 639.6", "14896.0 366.7 639.1", "0.4 0.4 994.2", "50.4 1.8 989.7"]):
+            self.assertEqual(self.read("\n".join(lines)).lines[0], 1)
 
     def test_a_name_before_large_numbers_is_not_a_mark_between_thousands(self):
         with self.assertRaisesRegex(FileError, "no line holds 3 numbers; the most is 2"):
