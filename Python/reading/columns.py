@@ -362,9 +362,12 @@ class Choice:
         are_numbers  whether all columns are
         """
         is_wide, layout = self.width > MOST_COLUMNS and (are_numbers or len(self.rows) < 5), self.layout
-        ways, is_bare = numpy.sign(numpy.diff(self.finite[0])), are_numbers and are_heights(self.values)
-        has_y = self.width > 4 and abs(ways.sum()) == len(ways) > 2
-        has_axes = has_y and not is_bare and are_heights(self.values[:, 1:])
+        down, across = numpy.diff(self.finite[0]), numpy.diff(self.values[0, 1:])
+        has_y = abs(numpy.sign(down).sum()) == len(down) > 2
+        is_even = has_y and across[0] > 0 and all(numpy.allclose(steps, steps[0]) for steps in (down, across))
+        is_even &= not numpy.isfinite(self.values[0, 0])  # as y\x
+        is_bare = are_numbers and are_heights(self.values)
+        has_axes = has_y and not is_bare and (is_even or self.width > 4 and are_heights(self.values[:, 1:]))
         if is_wide or has_axes or is_bare:
             lines = "(line.replace(',', '.') for line in open('{}'))" if layout.decimal_comma else "'{}'"
             between = f", delimiter={layout.separator!r}" if layout.separator else ""

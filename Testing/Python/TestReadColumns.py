@@ -356,6 +356,8 @@ class Doubts(Tables):
             above = " ".join(["0", *(str(25 * i) for i in range(width))]) + "\n"
             before = "".join(" ".join([str(100 + 10 * k), *row]) + "\n" for k, row in enumerate(heights))
             self.assertIn("[1:, 1:], x=a[0, 1:], y=a[1:, 0]", self.refusal(above + before))
+        rough = "".join(f"{10 * k},{k * 37 % 90}.5,{k * 53 % 70}.5,{k * 29 % 80}.5\n" for k in range(1, 30))
+        self.assertIn("[1:, 1:], x=a[0, 1:], y=a[1:, 0]", self.refusal("y\\x,0,25,50\n" + rough))
 
     def test_titles_in_several_lines_are_left_out(self):
         rows = [" ".join(row) for row in columns_of("x y z")[0]]
