@@ -13,10 +13,10 @@ import math
 import re
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDoubleArray
 
-from ..clouds import WHOLE, Cloud, ReadOptions, add_array, lines_at, points_of
+from ..clouds import WHOLE, Cloud, ReadOptions, add_array, make_points
 from .columns import Choice, advice_on_columns
 from ..passes import in_vtk
 from ..vtkElevationSurfacePieces import vtkTextRows
@@ -247,7 +247,7 @@ class Parser:
         self.comments = "".join(known().signs["comments"])
         heads = [re.escape(line.encode()) for line in table.head_lines if table.is_like(line)]
         self.head = re.compile(rb"(?:\A|\n)[ \t]*(?:" + b"|".join(heads) + rb")[ \t]*(?:\n|\Z)") if heads else None
-        self.parts, self.array, self.line = [], None, 0
+        self.parts, self.line = [], 0
         self.breaks = [0]  # numbers of lines behind which another line or ring begins
         self.before = None  # lines before this part of the file, once a message needs their number
         first = table.bad_lines if blocks.begin == 0 else []
@@ -266,7 +266,7 @@ class Parser:
             block = block.split(b"\n", self.line)[-1]
         rows = self.plain_rows(block)
         if rows is not None:
-            self.add_rows(rows, range(len(rows)), len(rows))
+            self.add_rows(rows, range(self.line + 1, self.line + 1 + len(rows)), len(rows))
             return
         lines = block_lines(block, self.table.encoding)
         for some in (lines[i : i + AT_ONCE] for i in range(0, len(lines), AT_ONCE)):
@@ -277,14 +277,12 @@ class Parser:
                 rows, places = self.rows_one_by_one(some, places)
             if self.texts:
                 self.keep_words([some[i] for i in places])
-            self.add_rows(rows, places, len(some))
+            self.add_rows(rows, self.line + 1 + numpy.array(places, "i8"), len(some))
 
-    def add_rows(self, rows, places, count):
-        """Adds rows, given their places among so many lines."""
-        first = self.line + 1
+    def add_rows(self, rows, numbers, count):
+        """Adds the rows among so many lines, and the numbers of their lines."""
         if len(rows):
-            is_range = isinstance(places, range)
-            self.parts.append((rows, range(first, first + count) if is_range else first + numpy.array(places, "i8")))
+            self.parts.append((rows, numbers))
         self.facts["count"] += len(rows)
         self.line += count
 
@@ -394,21 +392,13 @@ class Parser:
         return {self.table.choice.texts[index]: reader.take() for index, reader in self.texts.items()}
 
     def take(self):
-        """(rows, line numbers) since the last call. There must be some. The rows are those of array, the
-        numbers an array or a range."""
-        count, at = sum(len(rows) for rows, _ in self.parts), 0
-        self.array = vtkDoubleArray()
-        self.array.SetNumberOfComponents(len(self.used))
-        self.array.SetNumberOfTuples(count)
-        rows = vtk_to_numpy(self.array).reshape(count, -1)
-        for some, _ in self.parts:
-            rows[at : at + len(some)] = some
-            at += len(some)
-        numbers, self.parts = [numbers for _, numbers in self.parts], []
-        if all(isinstance(some, range) for some in numbers):
-            if all(one.stop == other.start for one, other in zip(numbers, numbers[1:])):
-                return rows, range(numbers[0].start, numbers[-1].stop)
-        return rows, numpy.concatenate([lines_at(some, numpy.arange(len(some))) for some in numbers])
+        """(rows, line numbers) since the last call. There must be some. The numbers are an array or a range."""
+        rows, numbers = zip(*self.parts)
+        rows, self.parts = numpy.concatenate(rows), []
+        are_ranges = all(isinstance(some, range) for some in numbers)
+        if are_ranges and all(one.stop == other.start for one, other in zip(numbers, numbers[1:])):
+            return rows, range(numbers[0].start, numbers[-1].stop)
+        return rows, numpy.concatenate(numbers)
 
     def final_notes(self):
         """Notes, once all lines are read. Raises FileError where many rows have other numbers of columns."""
@@ -505,8 +495,7 @@ def read_text(path, options):
     """
     parser, rows, numbers, notes = parse(path, options)
     choice = parser.table.choice
-    array = parser.array if rows.shape[1] == 3 else numpy_to_vtk(numpy.ascontiguousarray(rows[:, :3]), deep=True)
-    cloud = Cloud(points_of(array), notes, lines=numbers)
+    cloud = Cloud(make_points(rows[:, :3], copy=False), notes, lines=numbers)
     add_arrays(cloud.points, choice.extras, rows[:, 3:])
     cloud.z_name, cloud.is_horizon, cloud.angles = choice.z_name, choice.is_horizon, choice.angles
     cloud.words = parser.take_words()
