@@ -568,7 +568,9 @@ class Choice:
                 f"column {self.called(x)} is taken as northing and {self.called(y)} as "
                 "easting, by their sizes"
             )
-        elif has_ids and (coded and not (northing_second and is_sure) or northing_first) or self.may_be_latitude(x, y, z):
+            return
+        may_be_north = northing_first or coded and not (northing_second and is_sure)
+        if has_ids and may_be_north or self.may_be_latitude(x, y, z):
             self.ask([self.swapped(), self.indices], "the columns can be read in two ways")
 
     def may_be_latitude(self, x, y, z):

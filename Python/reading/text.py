@@ -3,8 +3,8 @@
 """Tables of numbers in text files: separator, header, comments and columns are found out here.
 
 A file is read in blocks of whole lines. vtkTextRows parses a block of nothing but rows of numbers,
-several million lines a second. Of others numpy reads many lines at once, exactly as well. What it does not take is parsed line by
-line, so that an error can name the line.
+several million lines a second. Of others numpy reads many lines at once, exactly as well. What it
+does not take is parsed line by line, so that an error can name the line.
 """
 
 import collections

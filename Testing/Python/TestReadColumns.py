@@ -363,8 +363,8 @@ class Doubts(Tables):
         rows = [" ".join(row) for row in columns_of("x y z")[0]]
         cloud = self.read("\n".join(["60 3 1", "1 2 3", *rows]))
         self.assertEqual(list(cloud.lines), list(range(3, 63)))
-        for note in ("line 1 is left out: 60 3 1 is a title, not a point", "line 2 is left out: 1 2 3 is a title, not a point"):
-            self.assertIn(note, cloud.notes)
+        for title in ("line 1 is left out: 60 3 1", "line 2 is left out: 1 2 3"):
+            self.assertIn(title + " is a title, not a point", cloud.notes)
 
     def lines_refusal(self, text):
         with self.assertRaises(FileError) as caught:
@@ -380,7 +380,8 @@ class Doubts(Tables):
             ((1000, 1000, 100), (1005, 1012, 98), (1300, 1200, 105), 0), ((-3, -2, 0), (-2, -3, 1), (9, 9, 5), 0),
             ((636767, 849053, 1427), (636720, 849010, 1420), (636990, 849200, 1430), 2),
             ((7.5, 0.25, 427), (0.5, 16, 424), (3.5, 28, 425), 2),  # turns round
-            ((0, 0, 0), (0, 5, 0), (90, 90, 9), 0), ((500000, 4000000, 0), (500001, 4000000, 1), (501000, 4000900, 9), 0),
+            ((0, 0, 0), (0, 5, 0), (90, 90, 9), 0),
+            ((500000, 4000000, 0), (500001, 4000000, 1), (501000, 4000900, 9), 0),
         ):
             for count in (1, 5, 40):
                 points = generator.uniform(low, high, (count, 3))
