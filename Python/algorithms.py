@@ -157,6 +157,7 @@ class ElevationPoints(ReportingAlgorithm):
             output.ShallowCopy(self.lines(contents))
             count = output.GetNumberOfLines() + output.GetNumberOfPolys()
             lines = [f"{self._file}: {counted(count, 'line')} of {contents}"]
+            lines += words_in(output.GetFieldData(), RECOGNISED)
         else:
             options = read_options(self._properties)
             cloud = read(self._file, progress=share(self.reading, 0.0, 0.9), **options)

@@ -8,13 +8,12 @@ import math
 import numpy
 from vtkmodules.vtkCommonCore import vtkStringArray
 
-from .clouds import words_in
+from .clouds import RECOGNISED, words_in
 from .messages import counted
 from .query import holes_of
 from .ranks import together, total
 from .report import main_counts, report_lines
 
-RECOGNISED = "Recognised"  # the field array in which ElevationPoints reports what a file is
 CONTENTS = "RecognisedAs"  # that with its contents, points say, and how many points there are
 MOST_ERRORS = 5  # of blocks, in one message
 

@@ -17,6 +17,7 @@ from .progress import no_progress
 from .ranks import extremes, finite_extremes
 from .selecting import Words, conditions_of, joined_words
 
+RECOGNISED = "Recognised"  # the field array in which readers report what a file is, and how it was read
 AT_ONCE = 2_000_000  # rows worked on at a time: what bounds the memory taken
 
 
@@ -329,6 +330,13 @@ def words_in(attributes, name):
     if not isinstance(words, vtkStringArray):
         return []
     return [words.GetValue(i) for i in range(words.GetNumberOfValues())]
+
+
+def take_notes(data):
+    """The notes of a reader on the lines of a file; takes them away from the lines."""
+    notes = words_in(data.GetFieldData(), RECOGNISED)
+    data.GetFieldData().RemoveArray(RECOGNISED)
+    return notes
 
 
 def mark_bare(data, bare=None):

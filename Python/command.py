@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonCore import vtkSMPTools
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import reading
-from .clouds import Cloud, ReadOptions, bare_lines, crs_of, merged, notes_on, set_crs
+from .clouds import Cloud, ReadOptions, bare_lines, crs_of, merged, notes_on, set_crs, take_notes
 from .gdal_common import check_system, name_of, reference_of
 from .given_lines import RINGS, fitted
 from .several_heights import check_heights
@@ -137,6 +137,7 @@ class Run:
         lines = self.read_rings()
         if options.faults:
             lines["faults"] = self.read_faults(cloud)
+        cloud.notes += self.notes_on_files(lines)
         for data in lines.values() if options.project else ():
             set_crs(data, crs_of(data) or crs)  # lines without one are in that of the points
         names = {"points": options.files[0], **self.line_files()}
@@ -149,6 +150,11 @@ class Run:
         """{name: file} of the lines that are given."""
         files = {name: getattr(self.options, name) for name in (*RINGS, "faults")}
         return {name: path for name, path in files.items() if path}
+
+    def notes_on_files(self, lines):
+        """What was noted when the files of lines were read, which are {name: vtkPolyData}."""
+        files = self.line_files()
+        return [f"{files[name]}: {note}" for name, data in lines.items() for note in take_notes(data)]
 
     def read_rings(self):
         """{name: vtkPolyData} of those of them that are closed lines."""

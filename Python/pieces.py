@@ -297,13 +297,15 @@ class Pieces:
 
     def read_lines(self):
         """({name: rings}, notes on them, faults), before points are read."""
-        options, rings, notes, faults = self.options, self.run.read_rings(), [], None
+        options, rings, faults = self.options, self.run.read_rings(), None
+        notes = self.run.notes_on_files(rings)
         check_z(rings, self.run.line_files(), options.properties)
         for name, data in rings.items():
             rings[name], more = mended(data, getattr(options, name), options.strict, name)
             notes = notes + more
         if options.faults:
             faults = self.run.read_faults(self.cloud)
+            notes = notes + self.run.notes_on_files({"faults": faults})
             self.check_faults(faults)
         return rings, notes, faults
 

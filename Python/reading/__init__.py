@@ -12,7 +12,7 @@ from typing import Any, Union
 
 import numpy
 
-from ..clouds import Cloud, ReadOptions, make_lines, turn_over
+from ..clouds import RECOGNISED, Cloud, ReadOptions, add_words, make_lines, turn_over
 from ..description import DESCRIBED, listing
 from .formats import recognise
 from ..messages import FileError, Reason, did_you_mean
@@ -155,7 +155,7 @@ def read_faults(path, depth=False, progress=no_progress):
 
     A text file holds one line after the other, x, y and z in the first columns, a blank line
     between them. Lines without z have z 0 and are marked by the cell array WithoutZ; reconstruct()
-    drapes them. Raises FileError.
+    drapes them. The field array Recognised holds notes on how they were read. Raises FileError.
     """
     faults = Cloud(read_lines(os.fspath(path), "a fault", "faults", text_faults, progress))
     if depth:
@@ -167,8 +167,9 @@ def read_boundary(path, progress=no_progress):
     """The boundary rings of a file as vtkPolyData with lines or polygons. Progress as of faults.
 
     A text file holds one ring after the other, x and y in the first columns, a blank line between
-    rings, and each ring's first point again at its end. Raises FileError. Rings that are not closed
-    are read; reconstruct() closes small gaps.
+    rings, and each ring's first point again at its end. Rings that are not closed are read;
+    reconstruct() closes small gaps. The field array Recognised holds notes on how they were read.
+    Raises FileError.
     """
     return read_lines(os.fspath(path), "a boundary", "a boundary", text_boundary, progress)
 
@@ -176,17 +177,21 @@ def read_boundary(path, progress=no_progress):
 def read_lines(path, singular, what, read_text_lines, progress):
     with unpacked(path, progress) as (local, begun):
         progress = share(progress, begun, 1.0)
-        kind, _ = recognise(local)
+        kind, notes = recognise(local)
         if kind.module == "text.read_text":
-            return read_text_lines(local, progress)
-        if not kind.lines:
+            lines, more = read_text_lines(local, progress)
+            notes = notes + more
+        elif kind.lines:
+            lines = kind.line_reader()(local, singular, progress)
+        else:
             raise FileError(f"{local}: {kind.name} cannot be read as {what}")
-        return kind.line_reader()(local, singular, progress)
+        add_words(lines.GetFieldData(), RECOGNISED, notes)
+        return lines
 
 
 def text_lines(path, table, what):
-    """The lines of a text file as vtkPolyData: table is what read_table() gives of it."""
-    rows, numbers, starts, _ = table
+    """(the lines of a text file as vtkPolyData, notes): table is what read_table() gives of it."""
+    rows, numbers, starts, notes = table
     is_usable = numpy.isfinite(rows)
     is_usable[:, 2:3] |= numpy.isnan(rows[:, 2:3])  # such a z is missing: it comes from the surface
     bad = numpy.flatnonzero(~is_usable.all(axis=1))
@@ -196,7 +201,7 @@ def text_lines(path, table, what):
         rows = numpy.column_stack((rows, numpy.full(len(rows), numpy.nan)))
     ends = [*starts[1:], len(rows)]
     names = [f"the part from line {numbers[a]} to {numbers[b - 1]}" for a, b in zip(starts, ends)]
-    return make_lines([rows[a:b] for a, b in zip(starts, ends)], names)
+    return make_lines([rows[a:b] for a, b in zip(starts, ends)], names), notes
 
 
 def text_faults(path, progress):

@@ -153,20 +153,17 @@ class Choice:
             ways = [(names, column), (joined, "".join(plain(column)))]
             ways = [(numbers, int(column))] if column.isdecimal() else ways
             ways = [[i for i, one in enumerate(titles) if title and one == title] for titles, title in ways]
-            found = next(filter(None, ways), [])
+            found, why = next(filter(None, ways), []), ""
             if not found:
                 there = f"named {', '.join(names)}" if names else "without names: the file has no header line"
                 why = f"there is no column {column} for {axis}; lines have {self.width}, {there}"
-                raise FileError(f"{self.path}: {why}")
-            if len(found) > 1:
+            elif len(found) > 1:
                 why = f"{self.listed(found)} are all called {column}; {option('columns')} takes the number of one"
+            elif found[0] in self.indices:
+                both = f"{self.axes[self.indices.index(found[0])]} and {axis} from column {self.called(found[0])}"
+                why = f"{option('columns')} takes both {both}; each needs a column of its own"
+            if why:
                 raise FileError(f"{self.path}: {why}")
-            if found[0] in self.indices:
-                other = self.axes[self.indices.index(found[0])]
-                raise FileError(
-                    f"{self.path}: {option('columns')} takes both {other} and {axis} from column "
-                    f"{self.called(found[0])}; each needs a column of its own"
-                )
             self.indices.append(found[0])
         self.refuse_geocentric(self.indices)
 
@@ -199,9 +196,10 @@ class Choice:
         x, y = self.indices[:2]
         language = next((name for name, letters in known().x_is_north.items() if re.search(letters, self.head)), "")
         is_plain = self.meanings[x].rank == self.meanings[y].rank == 0
-        if not language or not is_plain or self.is_utm(x, y) or self.are_degrees(x, y):
+        is_east, is_north = self.is_utm(x, y), self.is_utm(y, x)
+        if not language or not is_plain or is_east and not is_north or self.are_degrees(x, y):
             return
-        if not self.is_utm(y, x):
+        if is_east or not is_north:
             why = f"X is often north in tables in {language}, and nothing shows here whether it is"
             self.ask([self.swapped(), self.indices], why)
         self.has_swapped, self.indices = True, self.swapped()
@@ -216,12 +214,6 @@ class Choice:
         """Whether columns may be longitude and latitude by their sizes and decimals."""
         return self.largest[x] <= 360 and self.largest[y] <= 90 and min(self.decimals[x], self.decimals[y]) >= 4
 
-    def is_elsewhere(self, place):
-        """Whether numbers of x and y with decimals do not lie among those of the points."""
-        return all(self.decimals[i] for i in self.indices[:2]) and not all(
-            self.low[i] <= value <= self.high[i] for i, value in zip(self.indices[:2], place)
-        )
-
     def is_too_high(self, i):
         return len(self.finite[i]) > 0 and abs(self.finite[i]).min() > known().figures["highest"]
 
@@ -230,7 +222,7 @@ class Choice:
         numbers."""
         if not self.can_be_chosen:
             raise FileError(f"{self.path}: {why}; {self.advice}")
-        ways = [f"{option('columns')} {self.numbered(one)}" for one in readings] + [other] * bool(other)
+        ways = [*map(self.way, readings)] + [other] * bool(other)
         width = min(self.width, max([SHOWN_COLUMNS, *(max(one) + 1 for one in readings)]))
         numbers, names = [str(i + 1) for i in range(width)], [self.names] if self.names else []
         shown = [[word[:16] for word in row[:width]] for row in [numbers, *names, *self.rows[:SHOWN_ROWS]]]
@@ -276,11 +268,13 @@ class Choice:
         named, ranks = {}, {}
         for axis in self.axes:
             found = [i for i, m in enumerate(self.meanings) if m.axis == axis]
-            # Next to x and y, words of a time, which a traveltime may be called, are no height.
-            times = [i for i in found if self.meanings[i].rank == 4 and all(named.values())]
-            named[axis] = [i for i in found if i in self.numeric] or [i for i in found if i not in times]
-            clocks = [i for i in named[axis] if self.meanings[i].rank == 4 and self.is_too_high(i)]
-            named[axis] = [i for i in named[axis] if i not in clocks]  # as seconds of a week
+            # Words of a time, which a traveltime may be called, are no height next to x and y or to one, and no
+            # seconds of a week.
+            times = [i for i in found if self.meanings[i].rank == 4]
+            found = [i for i in found if i not in times] or found
+            times = [i for i in times if (all(named.values()) and i not in self.numeric) or self.is_too_high(i)]
+            found = [i for i in found if i in self.numeric] or found
+            named[axis] = [i for i in found if i not in times]
             ranks[axis] = {self.meanings[i].rank for i in named[axis]}
         alike = ranks["x"] & ranks["y"]
         for axis, found in named.items():
@@ -319,10 +313,8 @@ class Choice:
         if self.needed == 3 and others and self.meanings[self.indices[2]].axis:
             self.note(f"z is {self.called(self.indices[2])}; {self.listed(others)} could be too")
         if not self.has_swapped and self.indices[-1] > x > y and self.meanings[x].rank == self.meanings[y].rank == 0:
-            self.notes.append(
-                "Y stands before X, as where X is north; x and y are taken as named "
-                f"({option('columns')} {self.numbered(self.swapped())} swaps them)"
-            )
+            why = "Y stands before X, as where X is north; x and y are taken as named"
+            self.notes.append(f"{why}; if not: {self.way(self.swapped())}")
 
     # -- values
 
@@ -338,8 +330,8 @@ class Choice:
             others = self.listed([i for i in numbers if i not in usable])
             self.ask([numbers[:count]], f"{self.none_is_named()}, and {others} may be something else by the names")
         usable = usable if len(usable) >= count else numbers
-        if not self.names and len(usable) == self.width > count == 3:
-            self.ask_for_grid()
+        if not self.names and self.width > count == 3:
+            self.ask_for_grid(len(usable) == self.width)
         left = self.without_others(usable[:MOST_JUDGED]) if self.width > count else list(range(count))
         readings = self.scored(left)
         for other in ((1, 2, 0), (2, 1, 0)) if self.width == count == 3 else ():  # as z, x, y
@@ -364,13 +356,23 @@ class Choice:
         why = "".join(f"column {self.called(i)} is {reason}; " for i, reason in reasons)
         self.note(f"columns by their values: {why}{self.taken()}")
 
-    def ask_for_grid(self):
-        """Asks where rows may be those of a grid."""
-        is_wide, layout = self.width > MOST_COLUMNS, self.layout
-        if is_wide or are_heights(self.values):
+    def ask_for_grid(self, are_numbers):
+        """Asks where rows may be those of a grid, maybe with x above and y before them.
+
+        are_numbers  whether all columns are
+        """
+        is_wide, layout = self.width > MOST_COLUMNS and (are_numbers or len(self.rows) < 5), self.layout
+        down, across = numpy.diff(self.finite[0]), numpy.diff(self.values[0, 1:])
+        has_y = abs(numpy.sign(down).sum()) == len(down) > 2
+        is_even = has_y and across[0] > 0 and all(numpy.allclose(steps, steps[0]) for steps in (down, across))
+        is_even &= not numpy.isfinite(self.values[0, 0])  # as y\x
+        is_bare = are_numbers and are_heights(self.values)
+        has_axes = has_y and not is_bare and (is_even or self.width > 4 and are_heights(self.values[:, 1:]))
+        if is_wide or has_axes or is_bare:
             lines = "(line.replace(',', '.') for line in open('{}'))" if layout.decimal_comma else "'{}'"
             between = f", delimiter={layout.separator!r}" if layout.separator else ""
-            source = f"numpy.loadtxt({lines.format(self.path)}{between})"
+            source = f"numpy.{'genfrom' if has_axes else 'load'}txt({lines.format(self.path)}{between})"
+            source = f"(a := {source})[1:, 1:], x=a[0, 1:], y=a[1:, 0]" if has_axes else source
             why = f"{self.width} columns of numbers without names may be a grid of elevations"
             self.ask([] if is_wide else [(0, 1, 2)], why, as_grid(self.path, source))
 
@@ -559,14 +561,16 @@ class Choice:
         has_ids |= any(reason in (COUNTS_UP, EACH_ONCE) for reason in self.reasons.values())
         coded = any(i > max(x, y, z) for i in texts)
         northing_first, northing_second = self.is_utm(y, x), self.is_utm(x, y)
-        is_sure = max(self.low[x], self.low[y]) > known().figures["most feet"]
+        is_sure = northing_first != northing_second and max(self.low[x], self.low[y]) > known().figures["most feet"]
         if has_ids and northing_first and is_sure:
             self.has_swapped, self.indices = True, self.swapped()
             self.notes.append(
                 f"column {self.called(x)} is taken as northing and {self.called(y)} as "
                 "easting, by their sizes"
             )
-        elif has_ids and (coded and not (northing_second and is_sure) or northing_first) or self.may_be_latitude(x, y, z):
+            return
+        may_be_north = northing_first or coded and not (northing_second and is_sure)
+        if has_ids and may_be_north or self.may_be_latitude(x, y, z):
             self.ask([self.swapped(), self.indices], "the columns can be read in two ways")
 
     def may_be_latitude(self, x, y, z):
@@ -582,9 +586,10 @@ class Choice:
 
     def is_utm(self, x, y):
         """Whether columns are easting and northing of UTM by their sizes, in metres; the easting may begin with the
-        number of its zone."""
+        number of its zone, which has one digit in the Gauss-Krueger systems of middle Europe."""
         low, high = self.low, self.high
-        zone = low[x] // 1e6 * 1e6 if 1e7 < low[x] < 61e6 else 0.0
+        has_zone = 1e7 < low[x] < 61e6 or 2e6 < low[x] < 9e6 and 4.75e6 < low[y] <= high[y] < 6.2e6
+        zone = low[x] // 1e6 * 1e6 if has_zone else 0.0
         return bool(160e3 < low[x] - zone <= high[x] - zone < 840e3 and 1.1e6 < low[y] <= high[y] < 10e6)
 
     def refuse_geocentric(self, chosen):
@@ -622,11 +627,10 @@ class Choice:
             fine = min(self.decimals[x], self.decimals[y]) >= 4
             if by_name or fine and 0 < max(self.spans[x], self.spans[y]) < 0.1 * self.spans[self.indices[2]]:
                 self.angles = "look like degrees"
-        if self.is_utm(y, x) and not self.has_swapped:
-            self.notes.append(
-                "x is as large as a northing and y as an easting of UTM; if so, "
-                f"{option('columns')} {self.numbered(self.swapped())} gives the map its true side"
-            )
+        are_words = self.meanings[x].rank == self.meanings[y].rank == 1  # as "easting"
+        if self.is_utm(y, x) and not self.is_utm(x, y) and not self.has_swapped and not are_words:
+            why = "x is as large as a northing and y as an easting of UTM or Gauss-Krueger"
+            self.notes.append(f"{why}; if so: {self.way(self.swapped())}")
 
     # -- words
 
@@ -634,7 +638,12 @@ class Choice:
         return f"no column is named as {'x, y or z' if self.needed == 3 else 'x or y'}"
 
     def note(self, words):
-        self.notes.append(f"{words} (see {option('columns')})")
+        self.notes.append(f"{words} (see {option('columns')})" if self.can_be_chosen else words)
+
+    def way(self, indices):
+        """What a user can do so that columns are taken."""
+        numbers = ",".join(str(i + 1) for i in indices)
+        return f"{option('columns')} {numbers}" if self.can_be_chosen else self.advice
 
     def taken(self):
         return ", ".join(f"{axis} = {self.called(i)}" for axis, i in zip(self.axes, self.indices))
@@ -646,10 +655,6 @@ class Choice:
     def listed(self, columns):
         words = [self.called(i) for i in columns[:6]]
         return "columns " + " and ".join(words) if len(words) > 1 else f"column {words[0]}"
-
-    @staticmethod
-    def numbered(columns):
-        return ",".join(str(i + 1) for i in columns)
 
     # -- the other columns
 
@@ -668,5 +673,5 @@ class Choice:
             is_known = name in (*self.extras.values(), *self.texts.values())
             others[i] = f"{name} (column {i + 1})" if is_known else name
         if left_out:
-            chosen = f"; {option('where')} chooses points by them" if self.texts else ""
+            chosen = f"; {option('where')} chooses points by them" if self.texts and self.can_be_chosen else ""
             self.notes.append(f"columns without numbers are left out: {', '.join(left_out)}{chosen}")

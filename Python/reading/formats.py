@@ -10,6 +10,7 @@ import re
 
 from .column_names import known_names
 from .tables import known
+from .text_blocks import wide_encoding
 from ..messages import FileError
 from ..paths import is_geodatabase, suffix_of
 
@@ -211,7 +212,7 @@ LANDXML = rb"(\xef\xbb\xbf)?\s*(<\?xml.*?\?>\s*)?(<!--.*?-->\s*)*<LandXML\b"
 PCD = rb"(#[^\n]*\n)*VERSION [.\d]+\s*\nFIELDS"
 DHI = rb"(\d+ +\d+ +)?\d+ +[A-Za-z][^\n]*\n *1\s+([-+.\deE]+\s+){3}\d+\s*\n *2\s"
 ZMAP = rb"(\s*![^\n]*\n)*\s*@[^\n]*,\s*"
-PETREL = rb"(#[^\n]*\n)*\s*VERSION \d+\s+BEGIN HEADER\s"
+PETREL = rb"(#[^\n]*\n)*\s*(VERSION \d+\s+)?(?i:BEGIN HEADER)\s"
 # Lines begin with > or ->, or end with 999 999 999.
 SEGMENT_END = rb"\n[ \t]*999(\.0*)?([ \t]+999(\.0*)?){2}[ \t]*\r?\n"
 SEGMENTS = rb"(#(?! ?@VGMT)[^\n]*\n)*(-?>|FFASCI|[ \t]*999(\.0*)?([ \t]+999(\.0*)?){2}\s*\n|.*?" + SEGMENT_END + b")"
@@ -291,6 +292,9 @@ FOREIGN = tuple(
         (rb"H\d{4}[A-Z][^\n]*\n([^\n]*\n)*?[A-Z]",
          "is a file of UKOOA P1/90: awk '/^[^H]/ {print substr($0,47,9), substr($0,56,9), substr($0,65,6)}' {path} > "
          "points.txt takes x, y and depth out of it"),
+        (rb"G00,\d\d,[^\n]*\n([A-Z]\d\d,[^\n]*\n)*?A01,",
+         "is a SIMA file, with y before x: awk -F, '$1 == \"A01\" {print $5, $4, $6}' {path} > points.txt takes x, y and z "
+         "out of it"),
         (rb"[^,\n]*,\s*\d{1,2}-[a-z]{3}-\d{2}[^\n]*\n\s*0,\s*-?\d+\.\d+,",
          "is a Surpac string file, with y before x: awk -F, '$1 + 0 > 0 {print $3, $2, $4}' {path} > points.txt takes x, "
          "y and z out of it"),
@@ -316,8 +320,8 @@ def recognise(path):
         return next(kind for kind in FORMATS if ".gdb" in kind.suffixes), []
     with open(path, "rb") as stream:
         head = stream.read(HEAD)
-    if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        head = head.decode("utf-16", "ignore").encode()
+    if encoding := wide_encoding(head):
+        head = head.decode(encoding, "ignore").encode()
     for pattern, words in FOREIGN:
         if pattern.match(head):
             raise FileError(f"{path}: {words.replace('{path}', path)}")

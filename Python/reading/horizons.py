@@ -11,6 +11,7 @@ import numpy
 from ..clouds import Cloud, add_array, make_lines, make_points
 from .column_names import meaning
 from .formats import HEAD, is_tekal
+from .layouts import Layout, notes_on_units
 from ..messages import FileError, Reason, counted
 from ..progress import no_progress, lines_with_progress
 from .rasters import raster_cloud
@@ -225,15 +226,18 @@ def read_zmap_points(path, options):
 
 def read_petrel_points(path, options):
     """Petrel's points with attributes: names of columns in a header, then rows."""
-    names, inside = [], False
+    names, head, inside = [], [], False
     with open(path, encoding="latin-1") as stream:
         for number, line in enumerate(stream, 1):
             word = line.strip()
-            if word == "END HEADER":
-                return read_table(path, names, number, options.progress)
+            if word.upper() == "END HEADER":
+                cloud = read_table(path, names, number, options.progress)
+                cloud.notes += notes_on_units(Layout(None), head, None, (0, 1, 2))
+                return cloud
+            head.append(word)
             if inside and word:
                 names.append(word.split(",")[-1])
-            inside = inside or word == "BEGIN HEADER"
+            inside = inside or word.upper() == "BEGIN HEADER"
     raise FileError(f"{path}: is cut off: its END HEADER is missing")
 
 

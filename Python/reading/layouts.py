@@ -8,6 +8,8 @@ import importlib.util
 import math
 import re
 
+import numpy
+
 from .column_names import known_names, meaning, plain, length_unit
 from .tables import known
 from ..messages import FileError
@@ -115,6 +117,50 @@ def touching_in(line):
     )
 
 
+@numpy.errstate(all="ignore")
+def title_kind(layout, line, others, count):
+    """Whether a line of numbers is a title, as "1024 2048 3", where others are rows: "sure", "doubtful" or "".
+    So many (count) lines follow in all.
+
+    Such numbers are whole, and far from all of the others that have decimals. It is doubtful where few rows, or
+    numbers of another kind, leave it open whether that is a point; where it alone lacks decimals; and where it begins
+    with the number of lines. The numbers of columns, from 0, are one if they are elsewhere than the others.
+    """
+    words = layout.words(line)
+    words, first = (words, 0) if words[0] else (words[1:], 1)  # pandas has no name for an index
+    rows = [row[first : first + len(words)] for row in map(layout.words, others) if len(row) >= len(words) - 1]
+    width = min(map(len, rows), default=0)
+    own = numpy.array([layout.number(word) for word in words[:width]], "f8")
+    values = numpy.array([[layout.number(word) for word in row[:width]] for row in rows], "f8")
+    if width < 2 or not numpy.isfinite(own).all() or not own.any():
+        return ""
+    sign = "," if layout.decimal_comma else "."
+    decimals = [
+        {len(row[i].partition(sign)[2]) for row, number in zip(rows, values[:, i]) if numpy.isfinite(number)}
+        for i in range(width)
+    ]
+    have_decimals = numpy.array([0 not in found for found in decimals])
+    low, high = (numpy.where(numpy.isnan(values), no, values) for no in (numpy.inf, -numpy.inf))
+    low, high = low.min(axis=0), high.max(axis=0)
+    away = numpy.maximum(low - own, own - high)
+    is_far = away > numpy.maximum(high - low, 0.5 * numpy.maximum(abs(low), abs(high)))
+    least = numpy.minimum(abs(low), abs(high))
+    is_near = (least > high - low) & (away < 0.1 * least)  # as map coordinates are
+    is_whole = all(map(str.isdecimal, words))
+    x_and_y = set(own[is_far][:2])  # alike, they may be nulls, which are left out later
+    is_null = len(x_and_y) == 1 and not x_and_y.isdisjoint(known().nulls["values"] + known().nulls["rows"])
+    if have_decimals.sum() > 1 and layout.separator and words == list(map(str, range(len(words)))):
+        return "sure" * bool((away[have_decimals][:2] > 0).any())
+    is_apart = is_far & (away > 10 * (high - low))
+    count_far = (is_far if is_whole else is_apart).sum()
+    if count_far > 1 and count_far + 1 >= width and not is_null and len(rows) > (2 if is_whole else 9):
+        is_sure = is_whole and (is_apart & have_decimals).sum() > 1 and len(rows) > 9
+        return "sure" if is_sure else "doubtful"
+    lacks_decimals = have_decimals.sum() > 1 and all(len(found) == 1 for found in decimals)
+    is_doubtful = is_whole and len(rows) > 9 and is_near.sum() < 2 and (lacks_decimals or own[0] == count)
+    return "doubtful" * bool(is_doubtful)
+
+
 def notes_on_marks(path, rows, columns, axes):
     """Refuses marks between thousands that look like decimal signs, where the file proves it: another sign stands
     before decimals, or numbers below 1000 have no sign and all others have it before three digits, with zeros at the
@@ -163,8 +209,6 @@ def check_names(path, layout, before, rows, names, width, advice):
     if not before or known_axes(names or []):
         return
     for other, found in splittings(layout, before[-1]):
-        while found and not found[-1]:
-            found.pop()
         if known_axes(found) < set("xyz") or len(found) == width:
             continue
         own = other.separator and other.separator == layout.separator
@@ -210,15 +254,13 @@ def find_names(layout, head, width, one_may_lack=True):
     one_may_lack  whether the first column may have none
 
     They stand in one line, with the separator of the data or another; or a line each, numbered as
-    "3: X", or below their count as GSLIB has them, or between BEGIN HEADER and END HEADER.
+    "3: X", or below their count as GSLIB has them.
     """
     numbered = filter(None, map(known().patterns["numbered name"].match, head))
     found = {int(match.group(1)): match.group(2).strip('" ') for match in numbered}
     candidates = [[found[i] for i in range(1, width + 1) if i in found]]
     if len(head) == width + 2 and head[1].split()[:1] == [str(width)]:
         return head[2:]  # whatever the title's words mean
-    for part in re.findall(r"(?ims)^begin header\n(.*?)\nend header$", "\n".join(head)):
-        candidates.append([name.split(",")[-1] for name in part.split("\n")])
     for line in reversed(head):
         for other, words in splittings(layout, line):
             others = [words]
@@ -227,8 +269,8 @@ def find_names(layout, head, width, one_may_lack=True):
                 others += [re.split(r"\s{2,}|\t", line.strip()), [w for w in words if re.sub(r"[(\[{].*|\W|_", "", w)]]
             if one_may_lack and len(words) == width - 1 and known_names(words):
                 others.append(["", *words])  # as R writes it: row names have no name
-            if len(words) == width + 1 and not words[-1]:
-                others.append(words[:-1])
+            if not any(words[width:]):  # as behind separators at the end
+                others.append(words[:width])
             # With another separator than the data has, words that mean nothing are a sentence.
             candidates += [names for names in others if other is layout or known_names(names) > 1]
     candidates = [names for names in candidates if len(names) == width and not all(map(is_number, names))]

@@ -11,6 +11,23 @@ import types
 from ..messages import FileError
 
 TABLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "tables.ini")
+ASKED_FOR = {  # by name, so that they must be there
+    "other words": "beside axes, time, horizons, seismic, letters of axes",
+    "colours": "red, green, blue",
+    "lines": "x, y",
+    "finnish": "p, i",
+    "signs": "comments, missing, encodings",
+    "refusals": "thousands, sexagesimals, letters, shortened, commas twice",
+    "patterns": "touching, date, grouped, pairs, sexagesimal, with decimals, numbered name, summary",
+    "nulls": "values, rows",
+    "weights": "one pair, as many decimals, as wide as high, z spans less, z is higher than any place, stands first, "
+    "x rises, x is a line, a column is left out, x and y are of UTM, x and y count, z is flat or rises along lines, "
+    "z behind lines",
+    "figures": "good, clear, clear of poor, most step of lines, highest, most feet",
+    "earth": "figures",
+    "parts of time": "year, month, day, day of year, hour, minute, second",
+    "times": "orders",
+}
 
 
 @functools.lru_cache(maxsize=None)
@@ -26,6 +43,9 @@ def known():
     try:
         with open(TABLES, encoding="utf-8") as stream:
             parser.read_file(stream)
+        for section, names in ASKED_FOR.items():
+            for name in set(names.split(", ")) - set(parser[section]):
+                raise ValueError(f"[{section}] has no {name}")
         return converted(parser)
     except KeyError as error:
         why = f"it has no {error}"

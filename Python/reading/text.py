@@ -3,8 +3,8 @@
 """Tables of numbers in text files: separator, header, comments and columns are found out here.
 
 A file is read in blocks of whole lines. vtkTextRows parses a block of nothing but rows of numbers,
-several million lines a second; numpy any other, exactly as well, but for blanks and comments. What
-numpy does not take is parsed line by line, so that an error can name the line.
+several million lines a second. Of others numpy reads many lines at once, exactly as well. What it
+does not take is parsed line by line, so that an error can name the line.
 """
 
 import collections
@@ -13,10 +13,10 @@ import math
 import re
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDoubleArray
 
-from ..clouds import WHOLE, Cloud, ReadOptions, add_array, lines_at, points_of
+from ..clouds import WHOLE, Cloud, ReadOptions, add_array, make_points
 from .columns import Choice, advice_on_columns
 from ..passes import in_vtk
 from ..vtkElevationSurfacePieces import vtkTextRows
@@ -28,18 +28,21 @@ from .layouts import (
     known_axes,
     notes_on_marks,
     notes_on_units,
+    title_kind,
     touching_in,
 )
 from .nulls import leave_out
 from .tables import known
 from .text_blocks import Blocks, block_lines, encoding_of
 from ..messages import FileError, counted
-from ..progress import no_progress, items_with_progress
+from ..progress import no_progress
 from ..projecting import note_on_degrees
 from ..selecting import MOST_VALUES, WordReader
 from ..names import option
 
 TAIL = 50  # lines at the end of a block among which summaries are looked for
+ROWS_BELOW = 100  # lines with which one that may be a title is compared
+AT_ONCE = 20_000  # lines that numpy reads, all or none
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 NAMED, MOST_SUMMARIES = 3, 5  # that many lines of other kinds, and of summaries, are named
 MOST_UNEVEN = 0.5, 0.08  # lines of numbers that are longer than others or left out, as a share of rows
@@ -77,7 +80,7 @@ class Table:
         lines = block_lines(block, self.encoding)
         self.skips, self.can_skip, self.bad_lines = options.skip_bad_lines, advice is None, []
         self.layout = find_layout(path, lines[:5000], needed)
-        self.head_lines, self.has_summaries = set(), False
+        self.head_lines, self.has_summaries, self.titles = set(), False, {}
         head, preamble = self.read_head(lines)
         near = self.first + SAMPLE
         behind = lines[self.first : near] + lines[max(near, len(lines) - TAIL) :]
@@ -114,11 +117,14 @@ class Table:
             if is_comment(line):
                 head.append(line.strip().lstrip("#%/!*> "))
                 self.comments += 1
-            elif self.is_like(line) and not (
-                known_axes(self.layout.words(line)) >= set("xyz")  # as x,y,z,0,1
-                or self.numbers_columns(line) and any(map(self.is_like, set(lines[:SAMPLE]) - {line}))
-            ):
-                break
+            elif self.is_like(line) and not known_axes(self.layout.words(line)) >= set("xyz"):  # as x,y,z,0,1
+                below, plain = lines[self.first + 1 :], line.strip()
+                near = [other for other in below[:ROWS_BELOW] if self.is_like(other) and other.strip() != plain]
+                kind = title_kind(self.layout, line, near, sum(map(bool, map(str.strip, below))))
+                if not kind and title_kind(self.layout, line, near[3:], 0) != "sure":  # others may follow
+                    break
+                self.titles[plain] = kind or "sure"
+                preamble.append((self.first + 1, line))
             elif line.strip():
                 head.append(line.strip())
                 preamble.append((self.first + 1, line))
@@ -137,15 +143,6 @@ class Table:
     def is_like(self, line):
         """Whether a line holds enough numbers for a row."""
         return self.layout.numbers(line) >= self.needed
-
-    def numbers_columns(self, line):
-        """Whether a line holds nothing but the numbers of columns from 0, as pandas heads a table without names, or of
-        some with an index."""
-        if not self.layout.separator:
-            return False
-        words = self.layout.words(line)
-        words = words[not words[0] :]
-        return len(words) >= self.needed and words == list(map(str, range(len(words))))
 
     def bad_line(self, number, line, why, advice=""):
         """The error for a line that is not a row."""
@@ -175,10 +172,12 @@ class Table:
         plain = line.strip()
         if not plain:
             return "blank"
-        if is_comment(plain):
-            return "comment"
         if plain in self.head_lines:
             return "repeated"
+        if plain[0] in "0123456789.-":  # most lines: the rest takes longer
+            return "row"
+        if is_comment(plain):
+            return "comment"
         return "summary" if self.summary(line) else "row"
 
     def is_row(self, line):
@@ -195,11 +194,11 @@ class Table:
         self.words = self.width = widths.most_common(1)[0][0]
         if not self.skips:
             self.words = self.width = max(len(rows[0]), self.width)
-        # Where lines end with a separator, nothing stands behind it.
-        ends = self.width > self.needed and not any("".join(row[self.width - 1 :]) for row in rows)
-        self.names = find_names(self.layout, head, self.width, not ends)
-        if ends and not (self.names and self.names[-1]):
-            self.width -= 1
+        # Where lines end with separators, nothing stands behind these.
+        filled = max([self.needed, *(i + 1 for row in rows for i, word in enumerate(row[: self.width]) if word)])
+        self.names = find_names(self.layout, head, self.width, filled == self.width)
+        if not any((self.names or [])[filled:]):
+            self.width = min(filled, self.width)
             self.names = find_names(self.layout, head, self.width)
 
     def is_data(self, number, line):
@@ -208,11 +207,15 @@ class Table:
         words, error = self.layout.words(line), None
         values = [self.layout.number(word) for word in words]
         chosen = [values[i] for i in self.indices if i < len(words)]
-        if self.numbers_columns(line) and self.choice.is_elsewhere(chosen):
-            self.notes.append(f"line {number} is left out: it holds the numbers of columns, not a point")
+        plain = line.strip()
+        if self.titles.get(plain) == "sure":
+            self.notes.append(f"line {number} is left out: {' '.join(words)[:40]} is a title, not a point")
             return False
         good = sum(v is not None and not math.isnan(v) for v in chosen)
-        if len(words) < self.width:
+        if plain in self.titles:
+            why = f"{' '.join(words)[:40]} is unlike all rows below it, as a title is; a point may stand behind others"
+            error = self.bad_line(number, "", why)
+        elif len(words) < self.width:
             no_words = None not in values or re.fullmatch(r"[-+\d.,;\seE]+", " ".join(words))
             error = self.few_words(number, line, len(words)) if len(words) > 1 and no_words else None
         elif None in chosen and good >= len(chosen) - 1:
@@ -220,7 +223,7 @@ class Table:
         if error and not self.skips:
             raise error
         if error:
-            self.bad_lines.append([number, line.strip()])
+            self.bad_lines.append([number, plain])
         return not error and len(words) >= self.width and None not in chosen and good > 0
 
 
@@ -242,10 +245,9 @@ class Parser:
         self.texts = {index: WordReader() for index in table.choice.texts}
         self.used = [*table.indices, *table.choice.extras]
         self.comments = "".join(known().signs["comments"])
-        self.comment = re.compile(rb"\n[ \t]*[" + self.comments.encode() + b"]")
         heads = [re.escape(line.encode()) for line in table.head_lines if table.is_like(line)]
         self.head = re.compile(rb"(?:\A|\n)[ \t]*(?:" + b"|".join(heads) + rb")[ \t]*(?:\n|\Z)") if heads else None
-        self.parts, self.array, self.line = [], None, 0
+        self.parts, self.line = [], 0
         self.breaks = [0]  # numbers of lines behind which another line or ring begins
         self.before = None  # lines before this part of the file, once a message needs their number
         first = table.bad_lines if blocks.begin == 0 else []
@@ -259,133 +261,79 @@ class Parser:
 
     def add(self, block):
         """Takes the lines of a block."""
-        table = self.table
-        skip = table.first if self.line == 0 and self.blocks.begin == 0 else 0  # lines that are not data
-        if self.add_plain(block, skip):
+        if self.line == 0 and self.blocks.begin == 0:  # those before the data are known
+            self.line = self.table.first
+            block = block.split(b"\n", self.line)[-1]
+        rows = self.plain_rows(block)
+        if rows is not None:
+            self.add_rows(rows, range(self.line + 1, self.line + 1 + len(rows)), len(rows))
             return
-        lines = block_lines(block, table.encoding)
-        odd = [i for i in self.odd_lines(block, lines) if i >= skip and table.is_row(lines[i])]
-        words = {i: table.layout.words(lines[i]) for i in odd}
-        longer = [i for i in odd if len(words[i]) > table.words]
-        self.facts["ragged"] = self.facts["ragged"] or [[self.number(i), len(words[i])] for i in longer[:1]]
-        self.facts["uneven"] += sum(table.layout.numbers(lines[i]) == len(words[i]) for i in longer)
-        short = {i for i in odd if self.is_short(words[i])}
-        self.add_rows(lines, self.rows_among(block, lines, skip), short, b'"' in block)
-        self.line += len(lines)
+        lines = block_lines(block, self.table.encoding)
+        for some in (lines[i : i + AT_ONCE] for i in range(0, len(lines), AT_ONCE)):
+            self.alive(0.0)
+            places = self.rows_among(some)
+            rows = self.loaded([some[i] for i in places])
+            if rows is None:
+                rows, places = self.rows_one_by_one(some, places)
+            if self.texts:
+                self.keep_words([some[i] for i in places])
+            self.add_rows(rows, self.line + 1 + numpy.array(places, "i8"), len(some))
 
-    def add_plain(self, block, skip):
-        """Takes a block of nothing but rows of numbers, the usual case, many times as fast as others.
-        Returns whether it is one."""
-        table, layout, rows = self.table, self.table.layout, vtkDoubleArray()
-        if self.texts or layout.decimal_comma or table.sees_summaries or b'"' in block or not block.isascii():
-            return False
-        tail = block.rsplit(b"\n", TAIL + 1)[-TAIL - 1 :] if table.has_summaries else []
-        first = 0
-        for _ in range(skip):
-            first = block.find(b"\n", first) + 1
-        if self.head and self.head.search(block, max(first - 1, 0)):
-            return False
-        plain = not any(map(table.summary, map(bytes.decode, tail))) and vtkTextRows.Parse(
-            block, first, layout.separator or "", table.words, in_vtk(numpy.array(self.used, dtype="i4")),
-            self.comments, rows,
-        )
-        if not plain or not rows.GetNumberOfTuples():
-            return False
-        self.add_numbers(vtk_to_numpy(rows), range(skip, skip + rows.GetNumberOfTuples()))
-        self.line += skip + rows.GetNumberOfTuples()
-        return True
-
-    def add_numbers(self, rows, places):
-        """Adds rows, given the places of their lines in the block."""
-        first = self.line + 1
-        if isinstance(places, range):
-            numbers = range(first + places.start, first + places.stop)
-        else:
-            numbers = first + numpy.array(places, dtype="i8")
-        self.parts.append((rows, numbers))
+    def add_rows(self, rows, numbers, count):
+        """Adds the rows among so many lines, and the numbers of their lines."""
+        if len(rows):
+            self.parts.append((rows, numbers))
         self.facts["count"] += len(rows)
+        self.line += count
 
-    def odd_lines(self, block, lines):
-        """The places of lines that may have more or fewer words than the others."""
-        separator = self.table.layout.separator
-        letters = numpy.frombuffer(re.sub(rb'"[^"\n]*"', b"q", block) if b'"' in block else block, "u1")
-        if separator:
-            marks, expected = letters == ord(separator), self.table.words - 1
-        else:  # where words begin
-            blank = letters <= 32
-            marks, expected = ~blank & numpy.append(True, blank[:-1]), self.table.words
-        ends = numpy.append(numpy.flatnonzero(letters == 10), len(letters))[: len(lines)]
-        counts = numpy.diff(numpy.searchsorted(numpy.flatnonzero(marks), ends), prepend=0)
-        return numpy.flatnonzero(counts != expected).tolist()
+    def plain_rows(self, block):
+        """The rows of a block of nothing but rows of numbers, the usual case, many times as fast as others; None of
+        another."""
+        table, layout, rows = self.table, self.table.layout, vtkDoubleArray()
+        if self.texts or table.sees_summaries or b'"' in block or not block.isascii():
+            return None
+        tail = block.rsplit(b"\n", TAIL + 1)[-TAIL - 1 :] if table.has_summaries else []
+        if any(map(table.summary, map(bytes.decode, tail))) or self.head and self.head.search(block):
+            return None
+        is_plain = vtkTextRows.Parse(
+            block.replace(b",", b".") if layout.decimal_comma else block, 0, layout.separator or "", table.words,
+            in_vtk(numpy.array(self.used, dtype="i4")), self.comments, rows,
+        )
+        return vtk_to_numpy(rows) if is_plain and rows.GetNumberOfTuples() else None
 
-    def is_short(self, words):
-        """Whether x, y or z lacks, or blanks part fewer words than others have, unless only text lacks behind
-        numbers."""
-        table = self.table
-        needed = table.indices if table.layout.separator else {*table.indices, *table.choice.of_numbers}
-        are_there = (i < len(words) and table.layout.number(words[i]) is not None for i in needed)
-        return len(words) < table.words and not all(are_there)
-
-    def rows_among(self, block, lines, skip):
+    def rows_among(self, lines):
         """The places of the rows. Counts other lines, and keeps the breaks between rows."""
-        table, facts = self.table, self.facts
-        plain = not skip and not is_comment(lines[0]) and not self.comment.search(block)
-        plain = plain and not (self.head and self.head.search(block))
-        plain = plain and not table.sees_summaries and not any(map(table.summary, lines[-TAIL:]))
-        if plain and all(map(str.strip, lines)):
-            return range(len(lines))
         rows = []
-        for i, line in enumerate(items_with_progress(lines, self.alive, len(lines), 20_000)):
-            kind = table.kind(line) if i >= skip else "head"
+        for i, line in enumerate(lines):
+            kind = self.table.kind(line)
             if kind == "row":
                 rows.append(i)
             elif kind == "summary":
-                facts["summary"].append([self.number(i), table.summary(line)])
+                self.facts["summary"].append([self.number(i), self.table.summary(line)])
             elif kind in ("comment", "repeated"):
-                facts[kind] += 1
+                self.facts[kind] += 1
             if kind == "blank" or kind == "comment" and line.lstrip().startswith(">"):
                 self.breaks.append(self.line + 1 + i)
         return rows
 
-    def add_rows(self, lines, places, short, quoted):
-        """Adds the lines at some places of a block. numpy reads all or none: then a tenth at once, and the
-        last one by one. Those that are too short it would read wrongly."""
-        at = places
-        chosen = lines[at.start : at.stop] if isinstance(at, range) else [lines[i] for i in at]
-        rows = self.load(chosen, quoted) if short.isdisjoint(places) else None
-        if rows is None and len(places) > 10:
-            step = -(-len(places) // 10)
-            for start in range(0, len(places), step):
-                self.add_rows(lines, places[start : start + step], short, quoted)
-            self.alive(0.0)
-            return
-        if rows is None:
-            rows, at = self.rows(lines, places)
-            chosen = [lines[i] for i in at]
-        if not len(at):
-            return
-        if self.texts:
-            self.keep_words(chosen)
-        self.add_numbers(rows, at)
-
-    def load(self, lines, quoted):
-        """numpy's rows of some lines, or None where a word is not a number."""
-        layout = self.table.layout
-        if not lines or quoted and layout.decimal_comma:
+    def loaded(self, lines):
+        """numpy's rows of lines; None where some have more or fewer words than others, or one that is no number."""
+        layout, are_quoted = self.table.layout, any('"' in line for line in lines)
+        bare = [re.sub('"[^"]*"', "q", line) for line in lines] if are_quoted else lines
+        counts = {len(line.split(layout.separator)) for line in bare}
+        if counts != {self.table.words} or layout.decimal_comma and are_quoted:
             return None
         if layout.decimal_comma:
             lines = [line.replace(",", ".") for line in lines]
-        quotes = {"quotechar": '"'} if quoted else {}
+        quotes = {"quotechar": '"'} if are_quoted else {}
         try:
-            rows = numpy.loadtxt(
-                lines, delimiter=layout.separator, usecols=self.used, comments=None, ndmin=2, **quotes
-            )
+            rows = numpy.loadtxt(lines, delimiter=layout.separator, usecols=self.used, comments=None, ndmin=2, **quotes)
         except ValueError:
             return None
-        return rows if len(rows) == len(lines) else None
+        return rows if len(rows) == len(lines) else None  # a quote that is not closed takes the next line in
 
-    def rows(self, lines, places):
-        """(the rows of the lines at some places, the places without those that are skipped)."""
+    def rows_one_by_one(self, lines, places):
+        """(the rows at some places, the places without those that are skipped)."""
         rows, kept = [], []
         for i in places:
             try:
@@ -401,23 +349,32 @@ class Parser:
         return numpy.array(rows), kept
 
     def row(self, line, i):
-        """The numbers of a line, its place in the block being i. Raises BadLine."""
-        table = self.table
-        words = table.layout.words(line)
-        for axis, index in enumerate(table.indices):
-            if index < len(words) and table.layout.number(words[index]) is None:
-                raise table.no_number(self.number(i), line, words, axis)
-        if self.is_short(words):
+        """The numbers of a line, its place among some being i. Raises BadLine."""
+        table, layout, facts = self.table, self.table.layout, self.facts
+        words = layout.words(line)
+        row = [layout.number(words[index]) if index < len(words) else math.nan for index in self.used]
+        if len(words) > table.words:
+            facts["ragged"] = facts["ragged"] or [[self.number(i), len(words)]]
+            facts["uneven"] += layout.numbers(line) == len(words)
+        axes = row[: table.needed]
+        if None in axes:
+            raise table.no_number(self.number(i), line, words, axes.index(None))
+        if len(words) < table.words and not self.has_all(words):
             raise table.few_words(self.number(i), line, len(words))
-        row = [table.layout.number(words[index]) if index < len(words) else math.nan for index in self.used]
         for index, value in zip(self.used, row):
             if value is None:
-                found = self.facts["no_numbers"].setdefault(str(index), [[0, self.number(i), words[index]]])
+                found = facts["no_numbers"].setdefault(str(index), [[0, self.number(i), words[index]]])
                 found[0][0] += 1
         return [math.nan if value is None else value for value in row]
 
+    def has_all(self, words):
+        """Whether x, y and z are there, and between blanks all numbers, so that only text behind them may lack."""
+        table = self.table
+        needed = table.indices if table.layout.separator else {*table.indices, *table.choice.of_numbers}
+        return all(i < len(words) and table.layout.number(words[i]) is not None for i in needed)
+
     def number(self, i):
-        """The number in the file of line i of the block."""
+        """The number in the file of line i of those that are parsed."""
         if self.before is None:
             self.before = self.blocks.lines_before()
         return self.before + self.line + 1 + i
@@ -435,21 +392,13 @@ class Parser:
         return {self.table.choice.texts[index]: reader.take() for index, reader in self.texts.items()}
 
     def take(self):
-        """(rows, line numbers) since the last call. There must be some. The rows are those of array, the
-        numbers an array or a range."""
-        count, at = sum(len(rows) for rows, _ in self.parts), 0
-        self.array = vtkDoubleArray()
-        self.array.SetNumberOfComponents(len(self.used))
-        self.array.SetNumberOfTuples(count)
-        rows = vtk_to_numpy(self.array).reshape(count, -1)
-        for some, _ in self.parts:
-            rows[at : at + len(some)] = some
-            at += len(some)
-        numbers, self.parts = [numbers for _, numbers in self.parts], []
-        if all(isinstance(some, range) for some in numbers):
-            if all(one.stop == other.start for one, other in zip(numbers, numbers[1:])):
-                return rows, range(numbers[0].start, numbers[-1].stop)
-        return rows, numpy.concatenate([lines_at(some, numpy.arange(len(some))) for some in numbers])
+        """(rows, line numbers) since the last call. There must be some. The numbers are an array or a range."""
+        rows, numbers = zip(*self.parts)
+        rows, self.parts = numpy.concatenate(rows), []
+        are_ranges = all(isinstance(some, range) for some in numbers)
+        if are_ranges and all(one.stop == other.start for one, other in zip(numbers, numbers[1:])):
+            return rows, range(numbers[0].start, numbers[-1].stop)
+        return rows, numpy.concatenate(numbers)
 
     def final_notes(self):
         """Notes, once all lines are read. Raises FileError where many rows have other numbers of columns."""
@@ -546,8 +495,7 @@ def read_text(path, options):
     """
     parser, rows, numbers, notes = parse(path, options)
     choice = parser.table.choice
-    array = parser.array if rows.shape[1] == 3 else numpy_to_vtk(numpy.ascontiguousarray(rows[:, :3]), deep=True)
-    cloud = Cloud(points_of(array), notes, lines=numbers)
+    cloud = Cloud(make_points(rows[:, :3], copy=False), notes, lines=numbers)
     add_arrays(cloud.points, choice.extras, rows[:, 3:])
     cloud.z_name, cloud.is_horizon, cloud.angles = choice.z_name, choice.is_horizon, choice.angles
     cloud.words = parser.take_words()

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The lines of a text file, in blocks that memory holds: bytes, encodings and ends of lines."""
 
+import codecs
 import io
 import os
 import re
@@ -12,13 +13,17 @@ from ..clouds import WHOLE, Part
 from ..messages import FileError
 
 END_MARKS = b"\0\x1a\r\n "  # what DOS and full disks write behind the last line
+MARKS = {  # of encodings with two or four bytes a letter, the longer ones first
+    codecs.BOM_UTF32_LE: "utf-32", codecs.BOM_UTF32_BE: "utf-32",
+    codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16",
+}
 BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
 
 
 class Blocks:
     """The whole lines of a text file as bytes, some 8 MB at once: iterate to get (block, fraction).
 
-    UTF-16 with its mark becomes UTF-8; the mark of UTF-8 is taken away. A part of a file has the lines that
+    UTF-16 and UTF-32 become UTF-8; the mark of UTF-8 is taken away. A part of a file has the lines that
     begin in some of the blocks of the whole file.
 
     begin  where the first line begins
@@ -28,10 +33,10 @@ class Blocks:
         self.path, self.file, self.stream = path, stream, stream
         self.size = os.fstat(stream.fileno()).st_size
         head = self.read(0, 4096)
-        if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
-            self.take(self.read(0, self.size).decode("utf-16", "replace").encode())
+        if encoding := wide_encoding(head):
+            self.take(self.read(0, self.size).decode(encoding, "replace").encode())
         elif b"\0" in (head.rstrip(END_MARKS) or head):
-            raise FileError(f"{path}: is not a text file")
+            raise FileError(f"{path}: is not a text file; save a table as .csv, in UTF-8")
         elif b"\r" in head and b"\n" not in head:  # of old Macintoshes
             self.take(plain(self.read(0, self.size)))
         self.count = max(1, -(-self.size // BLOCK))
@@ -68,6 +73,23 @@ class Blocks:
         """How many lines there are before this part."""
         before = Blocks(self.path, self.file, Part(0, self.blocks.start, self.count))
         return sum(block.count(b"\n") for block, _ in before)
+
+
+def wide_encoding(head):
+    """The encoding of text with two or four bytes a letter: by its mark, or where all of its letters are such and
+    most are of ASCII, so that every second byte is zero. Else ""."""
+    for mark, encoding in MARKS.items():
+        if head.startswith(mark):
+            return encoding
+    for encoding in ("utf-32-le", "utf-32-be", "utf-16-le", "utf-16-be") if b"\0" in head else ():
+        try:
+            text = head[: len(head) & ~3].decode(encoding).rstrip("\0\x1a")
+        except UnicodeDecodeError:
+            continue
+        are_letters = all(letter.isprintable() or letter.isspace() for letter in text)
+        if are_letters and 2 * sum(map(str.isascii, text)) > len(text):
+            return encoding
+    return ""
 
 
 def plain(data):

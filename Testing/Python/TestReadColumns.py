@@ -163,6 +163,9 @@ class Doubts(Tables):
 
     def test_northing_before_easting_without_a_header_is_noted(self):
         rows, _ = columns_of("y x z")
+        feet = [f"{1.5e6 + x},{17.7e6 + y},{z}\n" for x, y, z in zip(NEAR_X, NEAR_Y, Z)]
+        cloud = self.read("easting,northing,z\n" + "".join(feet))
+        self.assertNotIn("as large as a northing", " ".join(cloud.notes))
         text = "".join(" ".join(row) + "\n" for row in rows)
         cloud = self.read(text)
         self.assert_rows(cloud, numpy.column_stack((Y, X, Z)))
@@ -178,10 +181,12 @@ class Doubts(Tables):
     def test_comments_do_not_hide_the_names_and_separators_may_end_lines(self):
         self.assert_rows(self.read("# z y x\n# made by hand\n1 2 3\n4 5 7\n"),
                                 [(3, 2, 1), (7, 5, 4)])
-        for head in ("", "z,x,y,\n", "z,x,y\n"):
+        for head in ("", "z,x,y,\n", "z,x,y\n", "z,x,y,,,\n"):
             cloud = self.read(head + "1,2,3,\n4,5,7,\n")
             self.assertEqual(cloud.points.GetPoint(0), (2, 3, 1) if head else (1, 2, 3))
             self.assertEqual(len(cloud.notes), 2)
+            cloud = self.read(head + "1,2,3,,,\n4,5,7,,,\n")
+            self.assertEqual(cloud.points.GetPoint(0), (2, 3, 1) if head else (1, 2, 3))
 
     def test_what_is_not_a_plain_number_is_reported(self):
         for text, words in (
@@ -310,11 +315,85 @@ class Doubts(Tables):
             text = head + "".join(index.format(i) + ",".join(row) + "\n" for i, row in enumerate(rows))
             cloud = self.read(text)
             self.assert_rows(cloud, expected)
-            self.assertIn("line 1 is left out: it holds the numbers of columns", " ".join(cloud.notes))
+            self.assertIn("is a title, not a point", " ".join(cloud.notes))
         # Where it may be a point, it is one.
         head, among = "0,1,2\n", "-1.5,0.5,3.5\n5.5,6.5,7.5\n"
         for text in (head, 2 * head, head + "1,2,3\n5,6,7\n", head + among, "0 1 2\n5.5 6.5 7.5\n"):
             self.assertEqual(self.read(text).points.GetPoint(0), (0, 1, 2))
+
+    def test_a_title_of_numbers_is_left_out_or_asked_about(self):
+        rows = [" ".join(row) for row in columns_of("x y z")[0]]
+        near = [" ".join(f"{v:.2f}" for v in row) for row in zip(NEAR_X - 2900, NEAR_Y, Z)]
+        whole = [" ".join(f"{v:.0f}" for v in row) for row in zip(X, Y, Z)]
+        degrees = [f"{lon} {lat} {z} 1" for lon, lat, z in zip(LON, LAT, Z)]
+        for title, lines, is_sure in (
+            ("1024 2048 3", rows, True), ("14 7 1", rows, True), ("60 0 0", rows, True), ("1 2 3 4", rows, True),
+            ("2 7 1 60", [f"{row} {i % 4}" for i, row in enumerate(rows)], True), ("60 2 1 0", degrees, True),
+            ("60 7 2", near, False), ("60 7 2", whole, False), ("60 7 0.5", rows, False),
+            ("1024 2048 3", rows[:4], False), ("60 3 7", [f"{i % 70} {i % 9} {i % 11}" for i in range(60)], False),
+        ):
+            text = "\n".join([title, *lines]) + "\n"
+            with self.subTest(text[:80]):
+                if is_sure:
+                    cloud = self.read(text, columns="1,2,3")
+                    self.assertIn(f"line 1 is left out: {title} is a title, not a point", cloud.notes)
+                else:
+                    self.assertIn(f"line 1: {title} is unlike all rows below it, as a title is", self.refusal(text))
+                    cloud = self.read(text, skip_bad_lines=True)
+                    self.assertIn(f"lines of other kinds are left out: line 1 ({title})", cloud.notes)
+                    self.assertIn("mark it with #", str(self.lines_refusal(text)))
+                self.assertEqual(cloud.points.GetNumberOfPoints(), len(lines))
+                self.assertEqual(self.read("\n".join(["# " + title, *lines]), columns="1,2,3").lines[0], 2)
+                if is_sure:  # of another file behind it
+                    cloud = self.read(text + text, columns="1,2,3")
+                    self.assertIn("header lines that come again are left out: 1", cloud.notes)
+
+    def test_a_grid_whose_first_column_rises_has_no_axes(self):
+        for width in (6, 14):
+            heights = [[f"{500 + 0.7 * i + 0.4 * k + i * k % 3 / 10:.2f}" for i in range(width)] for k in range(20)]
+            text = "".join(" ".join(row) + "\n" for row in heights)
+            self.assertIn(f"numpy.savez('a.npz', z=numpy.loadtxt('{self.path('a.txt')}'))", self.refusal(text))
+            above = " ".join(["0", *(str(25 * i) for i in range(width))]) + "\n"
+            before = "".join(" ".join([str(100 + 10 * k), *row]) + "\n" for k, row in enumerate(heights))
+            self.assertIn("[1:, 1:], x=a[0, 1:], y=a[1:, 0]", self.refusal(above + before))
+        rough = "".join(f"{10 * k},{k * 37 % 90}.5,{k * 53 % 70}.5,{k * 29 % 80}.5\n" for k in range(1, 30))
+        self.assertIn("[1:, 1:], x=a[0, 1:], y=a[1:, 0]", self.refusal("y\\x,0,25,50\n" + rough))
+
+    def test_titles_in_several_lines_are_left_out(self):
+        rows = [" ".join(row) for row in columns_of("x y z")[0]]
+        cloud = self.read("\n".join(["60 3 1", "1 2 3", *rows]))
+        self.assertEqual(list(cloud.lines), list(range(3, 63)))
+        for title in ("line 1 is left out: 60 3 1", "line 2 is left out: 1 2 3"):
+            self.assertIn(title + " is a title, not a point", cloud.notes)
+
+    def lines_refusal(self, text):
+        with self.assertRaises(FileError) as caught:
+            read_table(self.file("a.txt", text), needed=2)
+        return caught.exception
+
+    def test_a_first_point_is_no_title(self):
+        generator = numpy.random.default_rng(5)
+        for first, low, high, decimals in (
+            ((500000, 4100000, 1300), (505000, 4105000, 1310), (505300, 4105400, 1340), 2),  # a base 5 km away
+            ((0, 0, 0), (452000, 5411000, 200), (453000, 5412000, 250), 2),  # a null
+            ((0, 0, 5), (0, 0, 3), (100, 100, 9), 1), ((1, 1, 5), (2, 2, 3), (40, 50, 9), 0),
+            ((1000, 1000, 100), (1005, 1012, 98), (1300, 1200, 105), 0), ((-3, -2, 0), (-2, -3, 1), (9, 9, 5), 0),
+            ((636767, 849053, 1427), (636720, 849010, 1420), (636990, 849200, 1430), 2),
+            ((7.5, 0.25, 427), (0.5, 16, 424), (3.5, 28, 425), 2),  # turns round
+            ((0, 0, 0), (0, 5, 0), (90, 90, 9), 0),
+            ((500000, 4000000, 0), (500001, 4000000, 1), (501000, 4000900, 9), 0),
+        ):
+            for count in (1, 5, 40):
+                points = generator.uniform(low, high, (count, 3))
+                lines = [[f"{v:.{decimals}f}" for v in point] for point in points]
+                if min(first) < 1000 or count < 40:
+                    lines = [[word.rstrip("0" * (decimals > 0)).rstrip(".") for word in line] for line in lines]
+                text = "\n".join(map(" ".join, [map(str, first), *lines])) + "\n"
+                with self.subTest(text[:80]):
+                    self.assertEqual(self.read(text).points.GetPoint(0), first)
+        for lines in (["0 13800 1101", "0 13830 1098", *(f"{30 * i} {i % 4} 99.5" for i in range(1, 30))],
+                      ["14846.0 365.3 639.6", "14896.0 366.7 639.1", "0.4 0.4 994.2", "50.4 1.8 989.7"]):
+            self.assertEqual(self.read("\n".join(lines)).lines[0], 1)
 
     def test_a_name_before_large_numbers_is_not_a_mark_between_thousands(self):
         with self.assertRaisesRegex(FileError, "no line holds 3 numbers; the most is 2"):
@@ -347,6 +426,11 @@ class Doubts(Tables):
                 self.assertIn(words, " ".join(cloud.notes))
         cloud = self.read("ID X Y Z\n1 2 3 4\n2 5 7 8\nMean 3.5 5 6\n")
         self.assert_rows(cloud, [(2, 3, 4), (5, 7, 8)])
+        words = "Promedio|Durchschnitt|Anzahl|Gesamtsumme|Ergebnis|Průměr|Celkem|Razem|Średnia|Átlag|Összesen|Ortalama|"
+        for word in (words + "Toplam|Gjennomsnitt|Medelvärde|Gemiddeld|Итого|Среднее|合計|平均").split("|"):
+            rows = [f"P{i};{i},5;{i * i % 7};{i},25\n" for i in range(40)]
+            cloud = self.read("ID;X;Y;Z\n" + "".join(rows) + f"{word};7;7;7\n")
+            self.assertIn(f"summary lines are left out: line 42 ({word})", cloud.notes)
         # Other words among numbers are kept and noted.
         rows = [f"{i},{i}.5,{i * i % 7},{i}.25\n" for i in range(40)]
         cloud = self.read("ID,X,Y,Z\n" + "".join(rows) + "BM7,1,2,3\n")

@@ -16,9 +16,6 @@ from vtkelevationsurface.reading.column_names import meaning, plain
 
 # Program, head of the file, separator, what the columns hold, words of the notes.
 EXPORTS = (
-    ("Petrel, points with attributes",
-     "# Petrel Points with attributes\n# Unit in X and Y direction: m\nVERSION 1\nBEGIN HEADER\nX\n"
-     "Y\nZ\nFLOAT,Amplitude\nEND HEADER\n", " ", "x y down amp", ""),
     ("Petrel, lines", "# Type: scattered data\n# Field: 1 x\n# Field: 2 y\n# Field: 3 z meters\n"
      "# Field: 4 column\n# Field: 5 row\n# End:\n", " ", "gx gy down xl il", "x = 1 (x)"),
     ("OpendTect, one line", '#"Inline"\t"Crossline"\t"X"\t"Y"\t"Z (ms)"\n', "\t",
@@ -121,6 +118,10 @@ NAMES = (
      "Antenna_height|Horizon|UserData|ScanAngleRank|Sample (Height)"),
 )
 
+# Sections of tables.ini whose entries are not asked for by name.
+TAKEN_AS_THEY_ARE = ("axes", "roles", "units of length", "letters", "x is north", "separators", "not tables",
+                      "not numbers")
+
 
 class Names(unittest.TestCase):
     def test_names_mean_what_they_mean_in_their_language(self):
@@ -189,35 +190,50 @@ class Known(Tables):
             self.assertEqual(sorted(set(words)), sorted(words), section)
             self.assertEqual([word for word in words if "".join(plain(word)) != word], [], section)
 
-    def test_names_in_lines_of_their_own_are_those_of_gslib_and_earthvision(self):
-        for head, words in (
-            ("x y grade\n3\na\nb\nc\n", "x = 1 (a), y = 2 (b), z = 3 (c)"),
-            ("Begin Header\nz\ny\nx\nEnd Header\nend header\n", "x = 3 (x), y = 2 (y), z = 1 (z)"),
-        ):
-            self.assertIn(words, " ".join(self.read(head + "1.5 2.5 3.5\n4.5 5.5 6.5\n").notes))
+    def test_names_in_lines_of_their_own_are_those_of_gslib(self):
+        notes = self.read("x y grade\n3\na\nb\nc\n1.5 2.5 3.5\n4.5 5.5 6.5\n").notes
+        self.assertIn("x = 1 (a), y = 2 (b), z = 3 (c)", " ".join(notes))
 
     def test_it_is_not_read_before_a_table_is(self):
         code = ("import vtkelevationsurface.command, vtkelevationsurface.reading.tables as tables;"
                 "print(tables.known.cache_info().currsize)")
         self.assertEqual(subprocess.check_output([sys.executable, "-c", code]).split(), [b"0"])
 
+    def refusal_with(self, content):
+        """The error where content, or nothing, stands in place of the file."""
+        path = self.file("tables.ini", content) if content is not None else self.path("tables.ini")
+        self.addCleanup(tables.known.cache_clear)
+        tables.known.cache_clear()
+        with mock.patch.object(tables, "TABLES", path):
+            error = self.refusal("x y z\n1 2 3\n")
+        self.assertTrue(error.startswith(path) and error.endswith("; install the package again"), error)
+        return error
+
     def test_where_it_lacks_or_is_damaged_an_error_names_it(self):
         with open(tables.TABLES, encoding="utf-8") as stream:
             text = stream.read()
-        path = self.path("tables.ini")
-        self.addCleanup(tables.known.cache_clear)
         for damaged, words in (
-            (None, "No such file"), ("", "it has no 'refusals'"), (b"\xff\xfe", "can't decode"),
-            (text[: len(text) // 2], "it has no"), (text.replace("[nulls]", "[nulls"), "parsing errors"),
+            (None, "No such file"), ("", "it has no 'other words'"), (b"\xff\xfe", "can't decode"),
+            (text[: text.index("[nulls]")], "it has no 'nulls'"), (text.replace("[nulls]", "[nulls"), "parsing errors"),
             (text.replace("\ndate = ", "\ndate = ("), "missing )"), (text.replace("-9999", "nine", 1), "'nine'"),
         ):
-            if damaged is not None:
-                self.file("tables.ini", damaged)
-            tables.known.cache_clear()
-            with mock.patch.object(tables, "TABLES", path):
-                error = self.refusal("x y z\n1 2 3\n")
-            self.assertTrue(error.startswith(path) and error.endswith("; install the package again"), error)
-            self.assertIn(words, error)
+            self.assertIn(words, self.refusal_with(damaged))
+
+    def test_an_entry_that_is_asked_for_by_name_and_lacks_is_named_with_its_section(self):
+        with open(tables.TABLES, encoding="utf-8") as stream:
+            lines = stream.read().split("\n")
+        section, count = "", 0
+        for at, line in enumerate(lines):
+            section = line.strip("[]") if line.startswith("[") else section
+            if section in TAKEN_AS_THEY_ARE or not re.match(r"[^;\[\s]", line):
+                continue
+            behind = at + 1
+            while lines[behind].startswith(" "):
+                behind += 1
+            error = self.refusal_with("\n".join(lines[:at] + lines[behind:]))
+            self.assertIn(f"[{section}] has no {line.partition(' =')[0]};", error)
+            count += 1
+        self.assertGreater(count, 50)
 
 
 if __name__ == "__main__":

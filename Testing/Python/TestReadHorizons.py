@@ -177,6 +177,12 @@ class Horizons(InFolder):
             vtk_to_numpy(data.GetArray("Amplitude")), [0.5, math.nan, math.nan, math.nan]
         )
 
+    def test_points_of_petrel_have_the_notes_of_tables(self):
+        text = PETREL.replace("in X and Y:", "in X and Y direction:").replace("VERSION 1", "# Unit in depth: ft")
+        notes = self.read(text.replace("BEGIN HEADER", "Begin Header"), "a").notes
+        self.assertIn("x and y are in metres and z is in feet, by the header", " ".join(notes))
+        self.assertIn("columns by the header: X, Y, Z, Amplitude", notes)
+
     def test_depths_of_gocad_are_turned_over_once(self):
         turned = [(x, y, -z) for x, y, z in CORNERS]
         cloud = self.read(SURFACE, "a.ts")

@@ -91,6 +91,13 @@ class Parsing(Tables):
         bad = line * (count - 1000) + b"1 two 3\n"
         self.assertIn(f"line {count - 999}: 'two' in column 2 (y)", self.refusal(bad))
 
+    def test_quotes_that_are_not_closed_lose_no_row(self):
+        """Quotes around the ends of lines, as of a program that writes \\r\\n into its last column."""
+        text = "".join(f'"{i}.5","{i * i % 7}.25","{i % 5}.125\r"\n' for i in range(30))
+        self.assertIn("line 2: 1 column found", self.refusal(text))
+        rows = read_table(self.file("a.txt", '"x","y","z\r"\n' + text), needed=2)[0]
+        self.assertEqual(rows.tolist(), [[i + 0.5, i * i % 7 + 0.25] for i in range(30)])
+
     def test_progress_is_reported(self):
         seen = []
         path = self.file("a.txt", "1 2 3\n4 5 6\n")

@@ -12,7 +12,7 @@ import numpy
 from in_folder import InFolder, coordinates
 from vtkelevationsurface import paths, reading, writing
 from vtkelevationsurface.reading import vtk_checks, vtk_files
-from vtkelevationsurface.clouds import make_points, line_parts
+from vtkelevationsurface.clouds import RECOGNISED, line_parts, make_points, words_in
 from vtkelevationsurface.messages import FileError, Messages, plain_message
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkObject
@@ -98,7 +98,8 @@ class Text(InFolder):
         self.assert_refused("only blank or comment lines", "# x y z\n\n")
 
     def test_a_binary_file_is_not_text(self):
-        self.assert_refused("not a text file", b"\x00\x01\x02" * 50)
+        for content in (b"\x00\x01\x02" * 50, b"1 2 \0 3\n4 5 6\n", b"\1\0\2\0" * 60, bytes(range(256)) * 9):
+            self.assert_refused("is not a text file; save a table as .csv, in UTF-8", content)
 
     def test_rows_without_a_value_stay_as_points_that_are_not_finite(self):
         for missing in ("nan", "NaN", "NA", "null", ""):
@@ -116,7 +117,9 @@ class Text(InFolder):
 
     def test_other_encodings_are_read(self):
         text = "x y z\n1 2 3.5\n4.25 5 6\n-7 8 9\n"
-        self.assert_rows(self.read(text.encode("utf-16")), ROWS)
+        for encoding in ("utf-16", "utf-16-le", "utf-16-be", "utf-32", "utf-32-le", "utf-32-be"):
+            self.assert_rows(self.read(text.encode(encoding)), ROWS)
+            self.assert_rows(self.read(("# H\u00f6he, \u03cd\u03c8\u03bf\u03c2\n" + text).encode(encoding)), ROWS)
         self.assert_rows(self.read("# H\u00f6he\n".encode("latin-1") + text.encode()), ROWS)
         self.assert_rows(self.read(b"\xef\xbb\xbf" + text.encode()), ROWS)
         self.assert_rows(self.read(text.replace("\n", "\r\n")), ROWS)
@@ -452,6 +455,15 @@ class Boundary(InFolder):
         ):
             data = reading.read_boundary(self.file("b.txt", rows))
             numpy.testing.assert_array_equal([data.GetPoint(i)[2] for i in range(3)], z)
+
+    def test_notes_say_how_it_was_read(self):
+        for read in (reading.read_boundary, reading.read_faults):
+            lines = read(self.file("b.gmt", "name,northing,easting\na,0,0\na,0,10\na,10,10\na,0,0\n"))
+            notes = words_in(lines.GetFieldData(), RECOGNISED)
+            for words in ("by its content this is a text table, not a vector file", "text: separated by commas",
+                          "columns by their names: x = 3 (easting), y = 2 (northing)"):
+                self.assertIn(words, " | ".join(notes))
+            self.assertNotIn("--", " | ".join(notes))  # options are for points
 
     def test_rings_are_named_by_their_lines(self):
         data = reading.read_boundary(self.file("b.txt", self.RING + "\n2 2\n4 2\n4 4\n"))
