@@ -21,11 +21,12 @@
 namespace
 {
 using elevation::Index;
+using elevation::MarkedCells;
 using elevation::Point2;
 
 constexpr vtkIdType AtOnce = 1 << 20; // triangles
 constexpr int Rings = 6;              // of a cell, around its middle
-constexpr int Bins = 1024;            // side by side, where triangles near places are looked for
+constexpr Index Bins = 1024;          // side by side, where triangles near places are looked for
 constexpr std::size_t Ahead = 32;     // points for which memory is asked for at once
 
 /** Calls work(); false where memory does not suffice. */
@@ -243,10 +244,10 @@ public:
     }
   }
 
-  std::size_t Bin(double value, int axis) const
+  Index Bin(double value, int axis) const
   {
     const double bin = (value - this->Lowest[axis]) * this->Scale[axis];
-    return bin > 0.0 ? static_cast<std::size_t>(std::min(bin, Bins - 1.0)) : 0; // NaN: 0
+    return bin > 0.0 ? static_cast<Index>(std::min(bin, Bins - 1.0)) : 0; // NaN: 0
   }
 
   /** A point of the smallest bin around a place that has some. */
@@ -274,54 +275,6 @@ private:
   std::vector<std::vector<Index>> Levels;
 };
 
-/** Sums over rectangles of bins of how many squares lie over each. */
-class SquaresOverBins
-{
-public:
-  SquaresOverBins()
-    : Sums(static_cast<std::size_t>(Width) * Width, 0)
-  {
-  }
-  void Add(std::size_t x0, std::size_t y0, std::size_t x1, std::size_t y1)
-  {
-    this->Sums[(y0 + 1) * Width + x0 + 1] += 1;
-    this->Sums[(y1 + 2) * Width + x1 + 2] += 1;
-    this->Sums[(y0 + 1) * Width + x1 + 2] -= 1;
-    this->Sums[(y1 + 2) * Width + x0 + 1] -= 1;
-  }
-  /** Once all are added: the number of bins under a square, of all before each bin. */
-  void Finish()
-  {
-    this->AddUp();
-    std::transform(this->Sums.begin(), this->Sums.end(), this->Sums.begin(),
-      [](int over) { return over > 0 ? 1 : 0; });
-    this->AddUp();
-  }
-  bool IsUnder(std::size_t x0, std::size_t y0, std::size_t x1, std::size_t y1) const
-  {
-    const int* const sums = this->Sums.data();
-    return sums[(y1 + 1) * Width + x1 + 1] - sums[y0 * Width + x1 + 1] -
-      sums[(y1 + 1) * Width + x0] + sums[y0 * Width + x0] >
-      0;
-  }
-
-private:
-  void AddUp()
-  {
-    for (std::size_t i = 0; i < this->Sums.size(); ++i)
-    {
-      this->Sums[i] += i % Width ? this->Sums[i - 1] : 0;
-    }
-    for (std::size_t i = Width; i < this->Sums.size(); ++i)
-    {
-      this->Sums[i] += this->Sums[i - Width];
-    }
-  }
-
-  static constexpr std::size_t Width = Bins + 2;
-  std::vector<int> Sums;
-};
-
 template <typename Value, typename Id>
 std::vector<Index> NearTriangles(
   const Value* xyz, vtkIdType points, const Id* corners, vtkIdType triangles, vtkDataArray* places)
@@ -344,7 +297,7 @@ std::vector<Index> NearTriangles(
   }
   const NearBins bins(xyz, used, low, high);
   used = std::vector<Index>();
-  SquaresOverBins squares;
+  MarkedCells squares(Bins, Bins);
   for (vtkIdType i = 0; i < places->GetNumberOfTuples(); ++i)
   {
     double p[3];
@@ -354,30 +307,30 @@ std::vector<Index> NearTriangles(
       xyz[3 * known + 2] - p[2] };
     const double reach =
       1.000001 * std::sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
-    squares.Add(bins.Bin(p[0] - reach, 0), bins.Bin(p[1] - reach, 1), bins.Bin(p[0] + reach, 0),
+    squares.Mark(bins.Bin(p[0] - reach, 0), bins.Bin(p[1] - reach, 1), bins.Bin(p[0] + reach, 0),
       bins.Bin(p[1] + reach, 1));
   }
   squares.Finish();
   // The bins of all points: of points in any order they are found faster than the points.
-  std::vector<std::uint32_t> binOf(static_cast<std::size_t>(points));
+  std::vector<Index> binOf(static_cast<std::size_t>(points));
   vtkSMPTools::For(0, points, AtOnce, [&](vtkIdType first, vtkIdType last) {
     for (vtkIdType i = first; i < last; ++i)
     {
       const Point2 p = PlaceOf(xyz, i);
-      binOf[i] = static_cast<std::uint32_t>(bins.Bin(p.Y, 1) << 16 | bins.Bin(p.X, 0));
+      binOf[i] = bins.Bin(p.Y, 1) << 16 | bins.Bin(p.X, 0);
     }
   });
   return Selected(triangles, [&](vtkIdType begin, vtkIdType end, std::vector<Index>& list) {
     for (vtkIdType t = begin; t < end; ++t)
     {
-      std::uint32_t x[3], y[3];
+      Index x[3], y[3];
       for (int k = 0; k < 3; ++k)
       {
-        const std::uint32_t bin = binOf[corners[3 * t + k]];
-        x[k] = bin & 0xFFFFu;
+        const Index bin = binOf[corners[3 * t + k]];
+        x[k] = bin & 0xFFFF;
         y[k] = bin >> 16;
       }
-      if (squares.IsUnder(std::min({ x[0], x[1], x[2] }), std::min({ y[0], y[1], y[2] }),
+      if (squares.AreAny(std::min({ x[0], x[1], x[2] }), std::min({ y[0], y[1], y[2] }),
             std::max({ x[0], x[1], x[2] }), std::max({ y[0], y[1], y[2] })))
       {
         list.push_back(static_cast<Index>(t));

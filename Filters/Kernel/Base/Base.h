@@ -20,6 +20,7 @@
 #include "EdgeLimit.h"
 #include "Extent.h"
 #include "IdSet.h"
+#include "MarkedCells.h"
 #include "Memory.h"
 #include "Points.h"
 #include "Predicates.h"
