@@ -20,6 +20,7 @@
 
 namespace
 {
+using elevation::HashSieve;
 using elevation::Index;
 using elevation::MarkedCells;
 using elevation::Point2;
@@ -339,41 +340,9 @@ std::vector<Index> NearTriangles(
   });
 }
 
-/** Bits, of which one belongs to each hash. */
-class Bits
-{
-public:
-  explicit Bits(std::size_t least)
-  {
-    std::size_t words = 1;
-    while (64 * words < least)
-    {
-      words *= 2;
-    }
-    this->Words.resize(words, 0);
-    this->Mask = words - 1;
-  }
-  void Prefetch(std::size_t hash) const
-  {
-    elevation::Prefetch(&this->Words[hash >> 6 & this->Mask]);
-  }
-  bool Has(std::size_t hash) const
-  {
-    return this->Words[hash >> 6 & this->Mask] >> (hash & 63) & 1;
-  }
-  void Set(std::size_t hash)
-  {
-    this->Words[hash >> 6 & this->Mask] |= std::uint64_t(1) << (hash & 63);
-  }
-
-private:
-  std::vector<std::uint64_t> Words;
-  std::size_t Mask = 0;
-};
-
 /** Calls work(i, hash) for the points that are finite, in order. */
 template <typename Value, typename Work>
-void ForEachHash(const Value* xyz, vtkIdType points, const Bits& bits, const Work& work)
+void ForEachHash(const Value* xyz, vtkIdType points, const HashSieve& sieve, const Work& work)
 {
   std::size_t hashes[Ahead];
   bool areFinite[Ahead];
@@ -385,7 +354,7 @@ void ForEachHash(const Value* xyz, vtkIdType points, const Bits& bits, const Wor
       const Value* const p = xyz + 3 * (begin + i);
       areFinite[i] = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
       hashes[i] = elevation::PointHash()(PlaceOf(xyz, begin + i));
-      bits.Prefetch(hashes[i]);
+      sieve.Prefetch(hashes[i]);
     }
     for (std::size_t i = 0; i < count; ++i)
     {
@@ -400,17 +369,18 @@ void ForEachHash(const Value* xyz, vtkIdType points, const Bits& bits, const Wor
 template <typename Value>
 std::vector<Index> MaybeShared(const Value* xyz, vtkIdType points)
 {
-  Bits once(16 * static_cast<std::size_t>(points)), again(16 * static_cast<std::size_t>(points));
+  const std::size_t bits = 16 * static_cast<std::size_t>(points);
+  HashSieve once(bits), again(bits);
   ForEachHash(xyz, points, once, [&](std::size_t, std::size_t hash) {
-    if (once.Has(hash))
+    if (once.MayHave(hash))
     {
-      again.Set(hash);
+      again.Add(hash);
     }
-    once.Set(hash);
+    once.Add(hash);
   });
   std::vector<Index> ids;
   ForEachHash(xyz, points, again, [&](std::size_t i, std::size_t hash) {
-    if (again.Has(hash))
+    if (again.MayHave(hash))
     {
       ids.push_back(static_cast<Index>(i));
     }
@@ -604,12 +574,12 @@ bool vtkSurfacePasses::FlagEdges(
     const elevation::PointHash hash;
     const double* const ends = edges->GetPointer(0);
     const vtkIdType count = edges->GetNumberOfValues() / 4;
-    Bits starts(1 << 15);
+    HashSieve starts(1 << 15);
     std::unordered_multimap<std::size_t, vtkIdType> edgesFrom;
     for (vtkIdType i = 0; i < count; ++i)
     {
       const std::size_t from = hash({ ends[4 * i], ends[4 * i + 1] });
-      starts.Set(from);
+      starts.Add(from);
       edgesFrom.emplace(from, i);
     }
     WithReals(points, [&](const auto* xyz) {
@@ -618,7 +588,7 @@ bool vtkSurfacePasses::FlagEdges(
         for (std::size_t i = 0; i < isStart.size(); ++i)
         {
           const std::size_t at = hash(PlaceOf(xyz, i));
-          isStart[i] = starts.Has(at) && edgesFrom.count(at) > 0;
+          isStart[i] = starts.MayHave(at) && edgesFrom.count(at) > 0;
         }
         for (vtkIdType i = 0; i < corners->GetNumberOfValues(); ++i)
         {

@@ -82,30 +82,16 @@ private:
     {
       this->VertexAt.emplace(this->Points[point], None);
     }
-    // Most corners of the mesh are not points of rings, and look-ups in a map are slow. The sieve
-    // has 128 bits or more for each point, so of the corners that are no ring's less than one in a
-    // hundred is looked up in vain.
-    int bits = 6;
-    while (bits < 30 && std::size_t(1) << bits < 128 * this->VertexAt.size())
-    {
-      ++bits;
-    }
-    const auto bitOf = [=](const Point2& p) {
-      // The high bits of the hash; the map uses the low ones.
-      return static_cast<Index>(PointHash()(p) >> (64 - bits));
-    };
-    IdSet sieve(Index(1) << bits);
+    // Most corners of the mesh are not points of rings, and look-ups in a map are slow.
+    HashSieve sieve(128 * this->VertexAt.size());
     for (const auto& entry : this->VertexAt)
     {
-      sieve.Add(bitOf(entry.first));
+      sieve.Add(PointHash()(entry.first));
     }
     std::vector<char> isToMatch(mesh.Points.size());
-    ForEachStretch(mesh.NumberOfPoints(), stages.Next(), [&](Index begin, Index end) {
-      for (Index v = begin; v < end; ++v)
-      {
-        const Point2& p = mesh.PointOf(v);
-        isToMatch[v] = sieve.Has(bitOf(p)) && this->VertexAt.count(p) > 0;
-      }
+    ForEachNumber(mesh.NumberOfPoints(), stages.Next(), [&](Index v) {
+      const Point2& p = mesh.PointOf(v);
+      isToMatch[v] = sieve.MayHave(PointHash()(p)) && this->VertexAt.count(p) > 0;
     });
     const Progress matching = stages.Next();
     // Over half-edges, not points: a point that no triangle uses is not a corner, and two at the
