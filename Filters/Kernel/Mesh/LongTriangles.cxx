@@ -354,12 +354,9 @@ std::vector<Index> NumberRegions(const Mesh& mesh, double longest, const Progres
   const EdgeLimit limit(longest);
   const Index count = mesh.NumberOfTriangles();
   std::vector<char> isLong(count);
-  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      isLong[t] = !limit.Admits([&](Index v) -> const Point2& { return mesh.PointOf(v); },
-        mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2));
-    }
+  ForEachNumber(count, stages.Next(), [&](Index t) {
+    isLong[t] = !limit.Admits([&](Index v) -> const Point2& { return mesh.PointOf(v); },
+      mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2));
   });
   std::vector<Index> regionOf;
   if (std::find(isLong.begin(), isLong.end(), 1) == isLong.end())
