@@ -28,9 +28,8 @@ std::vector<HoleExtent> ExtentsOf(const Holes& holes, const PointView& points)
   {
     HoleExtent extent{ Box(), 0.0, holes.NumberOfEdges(hole) };
     holes.VisitEdges(hole, [&](Index a, Index b) {
-      const Point2 p = points.At(a), q = points.At(b);
-      extent.OfRim.Add(p);
-      extent.MeanEdge += std::hypot(q.X - p.X, q.Y - p.Y) / extent.NumberOfEdges;
+      extent.OfRim.Add(points.At(a));
+      extent.MeanEdge += Distance(points.At(a), points.At(b)) / extent.NumberOfEdges;
     });
     extents.push_back(extent);
   }

@@ -395,10 +395,9 @@ private:
       for (int k = 0; k < 3; ++k)
       {
         const Index corner = walk.CornerOf(k);
-        const Point2& p = known.Triangles.PointOf(corner);
         spot.Corners[k] = known.Numbers[corner];
         spot.Shares[k] = walk.ShareOf(k);
-        least = std::min(least, std::hypot(p.X - places[i].X, p.Y - places[i].Y));
+        least = std::min(least, Distance(known.Triangles.PointOf(corner), places[i]));
       }
       spot.Distance = least;
       spot.Gap = LargestHeight(known.Triangles, walk.CurrentTriangle());

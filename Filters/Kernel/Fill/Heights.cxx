@@ -268,8 +268,8 @@ std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& va
       {
         return true;
       }
-      const Point2& q = this->Surface.PointOf(other);
-      const double slope = std::fabs(values(other) - values(id)) / std::hypot(q.X - p.X, q.Y - p.Y);
+      const double slope =
+        std::fabs(values(other) - values(id)) / Distance(p, this->Surface.PointOf(other));
       if (!std::isnan(slope))
       {
         // The median is that over the edges of all triangles.
@@ -473,14 +473,11 @@ double Heights::ErrorAt(double distance) const
 
 std::vector<double> Heights::StandardErrors() const
 {
-  const Index boundary = this->Patch.NumberOfBoundaryVertices();
   std::vector<double> result(
     this->Patch.NumberOfNewVertices(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < result.size() && !this->ErrorCurve.empty(); ++i)
   {
-    const Point2 p = this->Patch.At(boundary + static_cast<Index>(i));
-    const Point2 q = this->Patch.At(this->Patch.Nearest[i]);
-    result[i] = this->ErrorAt(std::hypot(p.X - q.X, p.Y - q.Y));
+    result[i] = this->ErrorAt(this->Patch.DistanceFromBoundary(static_cast<Index>(i)));
   }
   return result;
 }
@@ -582,9 +579,8 @@ Heights::RimSlopes Heights::MeasureSlopes(const Values& values, double unit) con
   std::vector<double> lengths;
   for (const Pair& pair : this->Slopes)
   {
-    const Point2& a = this->Surface.PointOf(pair.Boundary);
-    const Point2& b = this->Surface.PointOf(pair.Away);
-    lengths.push_back(std::hypot(b.X - a.X, b.Y - a.Y));
+    lengths.push_back(
+      Distance(this->Surface.PointOf(pair.Boundary), this->Surface.PointOf(pair.Away)));
     // Of scaled values and lengths, in the range of double; then for the caller's unit of length.
     const double slope =
       (values(pair.Boundary) - values(pair.Away)) / unit / (lengths.back() * this->Scale);
@@ -626,9 +622,8 @@ void Heights::Bound(const std::vector<double>& scaled, const Values& values, dou
   }
   for (std::size_t i = 0; i < result.size(); ++i)
   {
-    const Point2 p = this->Patch.At(boundary + static_cast<Index>(i));
-    const Point2 q = this->Patch.At(this->Patch.Nearest[i]);
-    const double distance = std::min(std::hypot(p.X - q.X, p.Y - q.Y), slopes.Reach);
+    const double distance =
+      std::min(this->Patch.DistanceFromBoundary(static_cast<Index>(i)), slopes.Reach);
     const double rise = slopes.Inward * distance;
     if (!flat.empty())
     {

@@ -172,9 +172,7 @@ Mistie MistieAt(const Mesh& mesh, const Crossing& crossing, const std::vector<do
     const double part = PartOf(mesh, crossing, line);
     const std::vector<Index>* const arms = crossing.Arms[line];
     const auto lengthOf = [&](Index a, Index b) {
-      const Point2& p = mesh.PointOf(a);
-      const Point2& q = mesh.PointOf(b);
-      return std::hypot(q.X - p.X, q.Y - p.Y);
+      return Distance(mesh.PointOf(a), mesh.PointOf(b));
     };
     const double length = lengthOf(arms[0].front(), arms[1].front());
     const double ends[2] = { heights[arms[0].front()], heights[arms[1].front()] };

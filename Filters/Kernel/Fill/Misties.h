@@ -36,7 +36,7 @@ namespace elevation
 /** The direction from one point to another; 0 where both are the same. */
 inline Point2 UnitVector(const Point2& p, const Point2& q)
 {
-  const double length = std::hypot(q.X - p.X, q.Y - p.Y);
+  const double length = Distance(p, q);
   return { length > 0.0 ? (q.X - p.X) / length : 0.0, length > 0.0 ? (q.Y - p.Y) / length : 0.0 };
 }
 

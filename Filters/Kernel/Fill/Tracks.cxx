@@ -542,11 +542,8 @@ std::vector<double> OffsetsOf(
     for (const Index* v = tracks.Begin(t) + 1; v + 1 < tracks.End(t); ++v)
     {
       const Point2& p = mesh.PointOf(*v);
-      const auto distanceTo = [&](Index other) {
-        const Point2& q = mesh.PointOf(other);
-        return std::hypot(q.X - p.X, q.Y - p.Y);
-      };
-      const double before = distanceTo(v[-1]), behind = distanceTo(v[1]);
+      const double before = Distance(p, mesh.PointOf(v[-1]));
+      const double behind = Distance(p, mesh.PointOf(v[1]));
       const double even = (behind * heights[v[-1]] + before * heights[v[1]]) / (before + behind);
       offsets[*v] = std::max(offsets[*v], std::fabs(heights[*v] - even));
     }
