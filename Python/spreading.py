@@ -16,7 +16,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 from .clouds import cells_of, joined, marked_points, some_points
 from .messages import ElevationSurfaceError, Messages
-from .passes import corner_flags, kept_tuples, renumbered
+from .passes import corner_flags, keep_flagged
 from .ranks import agreed, all_values, before, collected, packed, shared, together, total, unpacked
 from .vtkElevationSurface import vtkTrimOutwardTriangles
 
@@ -143,27 +143,11 @@ def without_unused(ranks, surface, used, last, frees=False):
     if frees:
         surface.Initialize()
     if not used.all():
+        whole.SetVerts(None)
+        whole.SetLines(None)
         keep_flagged(whole, used)
     whole.GetPointData().AddArray(original)
     return whole
-
-
-def keep_flagged(surface, flags):
-    """Leaves the points with a flag, which are all that the triangles have: one array after the other."""
-    places = vtkPoints()
-    places.SetData(kept_tuples(surface.GetPoints().GetData(), flags))
-    surface.SetPoints(places)
-    old, new = surface.GetPointData(), vtkPolyData().GetPointData()
-    for i in range(old.GetNumberOfArrays()):
-        kind = old.IsArrayAnAttribute(0)
-        new.AddArray(kept_tuples(old.GetAbstractArray(0), flags))
-        old.RemoveArray(0)
-        if kind >= 0:
-            new.SetActiveAttribute(i, kind)
-    old.ShallowCopy(new)
-    surface.SetPolys(renumbered(surface.GetPolys(), flags))
-    surface.SetVerts(None)
-    surface.SetLines(None)
 
 
 def places_of(ranks, wanted, ids):

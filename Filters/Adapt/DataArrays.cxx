@@ -165,6 +165,14 @@ vtkSmartPointer<vtkAbstractArray> KeptTuples(vtkAbstractArray* array,
   SetTuples(count, kept);
   const auto flags = areKept.begin();
   const vtkIdType all = static_cast<vtkIdType>(areKept.size());
+  // As bytes, where tuples are such: calls for a few tuples each take longer than the copies.
+  const auto* const numbers = vtkArrayDownCast<vtkDataArray>(array);
+  const bool areBytes =
+    numbers && numbers->HasStandardMemoryLayout() && array->GetDataType() != VTK_BIT;
+  const char* const from = areBytes ? static_cast<const char*>(array->GetVoidPointer(0)) : nullptr;
+  char* const to = areBytes ? static_cast<char*>(kept->GetVoidPointer(0)) : nullptr;
+  const vtkIdType size =
+    static_cast<vtkIdType>(array->GetDataTypeSize()) * array->GetNumberOfComponents();
   vtkIdType next = 0;
   for (vtkIdType begin = 0; begin < all; begin += TuplesAtOnce)
   {
@@ -177,7 +185,14 @@ vtkSmartPointer<vtkAbstractArray> KeptTuples(vtkAbstractArray* array,
       last = std::find(flags + first, flags + end, char(0)) - flags;
       if (first < last)
       {
-        kept->InsertTuples(next, last - first, first, array);
+        if (areBytes)
+        {
+          std::copy(from + size * first, from + size * last, to + size * next);
+        }
+        else
+        {
+          kept->InsertTuples(next, last - first, first, array);
+        }
         next += last - first;
       }
     }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfacePasses.h"
 
+#include "Adapt/Adapt.h"
 #include "Kernel/Base/Base.h"
 
 #include "vtkDataArray.h"
@@ -404,45 +405,13 @@ bool vtkSurfacePasses::FlagCorners(vtkDataArray* corners, vtkUnsignedCharArray* 
   return true;
 }
 
-bool vtkSurfacePasses::KeepTuples(
-  vtkDataArray* array, vtkUnsignedCharArray* flags, vtkDataArray* kept)
-{
-  const std::size_t size =
-    static_cast<std::size_t>(array->GetDataTypeSize()) * array->GetNumberOfComponents();
-  const char* const from = static_cast<const char*>(array->GetVoidPointer(0));
-  char* to = static_cast<char*>(kept->GetVoidPointer(0));
-  const unsigned char* const flag = flags->GetPointer(0);
-  const unsigned char* const end = flag + flags->GetNumberOfValues();
-  for (const unsigned char *first = flag, *last; first < end; first = last)
-  {
-    first = std::find(first, end, 1);
-    last = std::find(first, end, 0);
-    to = std::copy(from + size * (first - flag), from + size * (last - flag), to);
-  }
-  return true;
-}
-
-bool vtkSurfacePasses::Renumber(
-  vtkDataArray* corners, vtkUnsignedCharArray* flags, vtkIntArray* renumbered)
+bool vtkSurfacePasses::KeepFlagged(vtkUnsignedCharArray* flags, vtkPolyData* surface)
 {
   return Try([&]() {
-    std::vector<Index> places(static_cast<std::size_t>(flags->GetNumberOfValues()));
-    Index next = 0;
-    for (std::size_t i = 0; i < places.size(); ++i)
-    {
-      places[i] = next;
-      next += flags->GetValue(static_cast<vtkIdType>(i));
-    }
-    renumbered->SetNumberOfValues(corners->GetNumberOfValues());
-    Index* const result = renumbered->GetPointer(0);
-    WithIds(corners, [&](const auto* ids) {
-      vtkSMPTools::For(0, corners->GetNumberOfValues(), AtOnce, [&](vtkIdType i, vtkIdType end) {
-        for (; i < end; ++i)
-        {
-          result[i] = places[ids[i]];
-        }
-      });
-    });
+    const unsigned char* const flag = flags->GetPointer(0);
+    const std::vector<char> areKept(flag, flag + flags->GetNumberOfValues());
+    const int threads = std::max(1, vtkSMPTools::GetEstimatedNumberOfThreads());
+    elevation::KeepFlagged(areKept, threads, elevation::Progress(), surface);
   });
 }
 
