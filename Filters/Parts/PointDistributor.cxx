@@ -234,20 +234,14 @@ void PointDistributor::KeepSample()
 void PointDistributor::NumberPoints(SurfacePart& common)
 {
   this->AllRanks.Agree([&]() {
-    try
-    {
+    this->AllRanks.NameErrors([&]() {
       if (this->Input)
       {
         CheckPointArrays(this->Input);
         const bool areDouble = ViewPoints(this->Input).View.Double != nullptr;
         this->PointType = areDouble ? VTK_DOUBLE : VTK_FLOAT;
       }
-    }
-    // Rank 0 reports for all, so the message has to say whose points these are.
-    catch (const Error& error)
-    {
-      throw Error("On rank " + std::to_string(this->AllRanks.OwnRank()) + ": " + error.what());
-    }
+    });
   });
   vtkPointData* const arrays = this->Input ? this->Input->GetPointData() : this->Arrays.Get();
   common.Kinds =
