@@ -355,24 +355,14 @@ private:
       known.Centers = known.Numbers;
       return;
     }
-    const std::vector<Point2>& points = known.Triangles.Points;
+    // All of them, if it has to be, also two at one place.
+    constexpr double any = -1.0;
     std::vector<double> squares(count, std::numeric_limits<double>::infinity());
-    std::size_t next = 0;
-    for (std::size_t k = 0; k < most; ++k)
+    std::vector<Index> taken;
+    TakeFarthest(known.Triangles.Points, count, most, any, progress, squares, taken);
+    for (const Index place : taken)
     {
-      CountWork(count);
-      ReportStep(progress, k, most, 16);
-      known.Centers.push_back(known.Numbers[next]);
-      const Point2 p = points[next];
-      double largest = -1.0;
-      for (std::size_t i = 0; i < count; ++i)
-      {
-        const double x = points[i].X - p.X;
-        const double y = points[i].Y - p.Y;
-        squares[i] = std::min(squares[i], x * x + y * y);
-        next = squares[i] > largest ? i : next;
-        largest = std::max(largest, squares[i]);
-      }
+      known.Centers.push_back(known.Numbers[place]);
     }
     std::sort(known.Centers.begin(), known.Centers.end());
   }

@@ -299,13 +299,10 @@ void Heights::ChooseCenters(
 {
   const std::size_t boundary = this->Patch.BoundaryIds.size();
   const std::size_t count = this->KnownVertices.size();
-  std::vector<double> x(count);
-  std::vector<double> y(count);
-  for (std::size_t i = 0; i < count; ++i)
+  std::vector<Point2> points;
+  for (const Index id : this->KnownVertices)
   {
-    const Point2 p = this->Normalized(this->Surface.PointOf(this->KnownVertices[i]));
-    x[i] = p.X;
-    y[i] = p.Y;
+    points.push_back(this->Normalized(this->Surface.PointOf(id)));
   }
   const double least = LeastDistance * this->Patch.Spacing * this->Scale;
   // Each point's squared distance to the nearest centre so far; infinite before there is one, so
@@ -316,33 +313,11 @@ void Heights::ChooseCenters(
   {
     squares[i] = isStray[i] ? -1.0 : squares[i];
   }
-  // The point farthest from all centres is the next one, until it would be too near to one.
-  const auto choose = [&](std::size_t end, std::size_t most) {
-    while (this->Centers.size() < most)
-    {
-      const std::size_t best = static_cast<std::size_t>(
-        std::max_element(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(end)) -
-        squares.begin());
-      if (!(squares[best] > least * least))
-      {
-        return;
-      }
-      CountWork(count);
-      ReportStep(progress, this->Centers.size(), most, 16);
-      this->Centers.push_back(static_cast<Index>(best));
-      for (std::size_t i = 0; i < count; ++i)
-      {
-        const double square =
-          (x[i] - x[best]) * (x[i] - x[best]) + (y[i] - y[best]) * (y[i] - y[best]);
-        squares[i] = square < squares[i] ? square : squares[i];
-      }
-    }
-  };
   const std::size_t most =
     std::min(MostCentersWithPointsInside, MostCenters + this->Patch.NumberOfPointsInside);
   // Half of them on the boundary, where patch and surface meet; then wherever points are farthest.
-  choose(boundary, most / 2);
-  choose(count, most);
+  TakeFarthest(points, boundary, most / 2, least * least, progress, squares, this->Centers);
+  TakeFarthest(points, count, most, least * least, progress, squares, this->Centers);
   // By place: the boundary's come first, in the order of its vertices, as HeightTrials.h expects.
   std::sort(this->Centers.begin(), this->Centers.end());
   this->AllBoundaryIsCenter = this->Centers.size() >= boundary &&
