@@ -27,14 +27,7 @@ using Neighbors = std::vector<std::vector<Index>>;
 /** An arm's way out: the vertices from the first one outside on. */
 std::vector<Index> FollowOut(const Neighbors& neighbors, Index from, Index to)
 {
-  std::vector<Index> path{ to };
-  while (path.size() < MostOfArm && neighbors[to].size() == 2)
-  {
-    const Index next = neighbors[to][neighbors[to][0] == from ? 1 : 0];
-    from = to;
-    to = next;
-    path.push_back(to);
-  }
+  std::vector<Index> path = FollowArm(neighbors, from, to, MostOfArm);
   // The last one may be at the next crossing.
   if (neighbors[path.back()].size() > 2)
   {
@@ -97,6 +90,19 @@ double PartOf(const Mesh& mesh, const Crossing& crossing, int line)
   return PartAt(at(line, 0), at(line, 1), at(1 - line, 0), at(1 - line, 1));
 }
 } // namespace
+
+std::vector<Index> FollowArm(const Neighbors& neighbors, Index from, Index to, std::size_t most)
+{
+  std::vector<Index> path{ to };
+  while (path.size() < most && neighbors[to].size() == 2)
+  {
+    const Index next = neighbors[to][neighbors[to][0] == from ? 1 : 0];
+    from = to;
+    to = next;
+    path.push_back(to);
+  }
+  return path;
+}
 
 std::vector<Crossing> FindCrossings(const Mesh& mesh, const Neighbors& neighbors)
 {

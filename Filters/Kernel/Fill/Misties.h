@@ -46,6 +46,13 @@ inline double Cosine(const Point2& a, const Point2& b)
   return a.X * b.X + a.Y * b.Y;
 }
 
+/**
+ * The vertices of an arm, from the first edge on, up to a number of them, an end or a meeting.
+ * @param[in] neighbors  as of FindCrossings()
+ */
+std::vector<Index> FollowArm(
+  const std::vector<std::vector<Index>>& neighbors, Index from, Index to, std::size_t most);
+
 struct Crossing
 {
   /** Vertices of both lines, on both sides, from the crossing outwards. */
