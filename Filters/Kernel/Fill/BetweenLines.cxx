@@ -40,11 +40,10 @@ constexpr double RoomBeyondNear = 0.25;
 /** How often the spline is made to find out how rough elevations are beside misties. */
 constexpr int StepsToRoughness = 5;
 
-/** Trials count if there are so many lines and errors, */
+/** Trials count if there are so many lines, and TrialErrors::LeastErrors, */
 constexpr Index LeastTracks = 4;
 /** and if so large a part of the known points is on lines that are straight over a gap. */
 constexpr double LeastPartOnLines = 0.5;
-constexpr std::size_t LeastErrors = 100;
 
 /** Where lines are left out, gaps are at least so many times as wide; or as they are, if at most. */
 constexpr double LeastWidening = 1.4;
@@ -237,7 +236,7 @@ private:
     }
     this->NewScales =
       this->Roughness().ScalesAt(this->Spots, this->All, this->Gap, missed, this->LeftOut.Noise);
-    this->IsFound = this->LeftOut.Wide.Errors.size() >= LeastErrors;
+    this->IsFound = this->LeftOut.Wide.Errors.size() >= TrialErrors::LeastErrors;
     this->LeftOut.Carry(
       LineRoughness::MeanOf(this->Roughness().Along(this->All, this->Gap)), this->SplineShare);
   }
