@@ -19,7 +19,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import reading
-from .clouds import Cloud, faults_note, heights_of, make_points, set_crs, slices
+from .clouds import Cloud, faults_note, heights_of, make_points, set_crs, slices, triangles_of
 from .description import DESCRIBED
 from .draping import check_given_z
 from .given_lines import check_z, in_system
@@ -397,8 +397,7 @@ class Pieces:
     def look_at(self, data):
         """Takes from a piece what the report needs."""
         points, ids = data.GetPoints(), vtk_to_numpy(data.GetPointData().GetGlobalIds())
-        corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray())
-        flags = corner_flags(corners, len(ids))
+        flags = corner_flags(triangles_of(data), len(ids))
         used = vtk_to_numpy(points.GetData())[flags]
         self.reported_points.add(ids[flags])
         if self.voids:

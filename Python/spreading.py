@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints, vtkUnsignedCharA
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
-from .clouds import cells_of, joined, marked_points, some_points
+from .clouds import add_array, cells_of, coordinates_of, joined, marked_points, some_points, triangles_of
 from .messages import ElevationSurfaceError, Messages
 from .passes import corner_flags, keep_flagged
 from .ranks import agreed, all_values, before, collected, packed, shared, together, total, unpacked
@@ -71,8 +71,7 @@ def own_point_count(ranks, triangulation, points):
 
 def used_points(ranks, surface):
     """(n,) of bool: the points that are corners of triangles, on any rank."""
-    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
-    used = corner_flags(corners, surface.GetNumberOfPoints())
+    used = corner_flags(triangles_of(surface), surface.GetNumberOfPoints())
     if ranks is None:
         return used
     ids = ids_of(ranks, surface)
@@ -215,7 +214,7 @@ def slice_of(points, rank, ranks):
     """The points of a rank of so many, with their data."""
     first, last = (points.GetNumberOfPoints() * i // ranks for i in (rank, rank + 1))
     some = some_points(points, numpy.arange(first, last))
-    set_places(some, vtk_to_numpy(points.GetPoints().GetData())[first:last])
+    set_places(some, coordinates_of(points)[first:last])
     return some
 
 
@@ -276,9 +275,8 @@ def joined_by_ids(ranks, parts):
     rows = numpy.flatnonzero(own_points(every))
     rows = rows[numpy.argsort(ids[rows], kind="stable")]
     surface = some_points(every, rows)
-    set_places(surface, vtk_to_numpy(every.GetPoints().GetData())[rows])
-    corners = vtk_to_numpy(every.GetPolys().GetConnectivityArray())
-    surface.SetPolys(cells_of(numpy.searchsorted(ids[rows], ids[corners]).reshape(-1, 3)))
+    set_places(surface, coordinates_of(every)[rows])
+    surface.SetPolys(cells_of(numpy.searchsorted(ids[rows], ids[triangles_of(every)])))
     surface.GetCellData().ShallowCopy(every.GetCellData())
     surface.GetFieldData().ShallowCopy(parts[0].GetFieldData())
     unused, why = numpy.concatenate(unused, axis=1)
@@ -335,9 +333,7 @@ def marks_of(data):
 
 
 def set_marks(data, marks):
-    array = numpy_to_vtk(marks.astype("u1"), deep=True)
-    array.SetName(GHOSTS)
-    data.GetPointData().AddArray(array)
+    add_array(data, GHOSTS, marks.astype("u1"))
 
 
 def set_counts(surface, filters):
