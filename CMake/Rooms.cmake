@@ -111,8 +111,8 @@ set(es_kernel_Query
 
 # Headers without a source file.
 set(es_kernel_headers_Base
-  Base CellGrid Duplicates EdgeLimit Extent IdSet Memory Points Progress SnapRounding Threads
-  UnionFind Work)
+  Base CellGrid Duplicates EdgeLimit Extent HashSieve IdSet MarkedCells Memory Points Progress
+  SnapRounding Threads UnionFind Work)
 set(es_kernel_headers_Messages
   Messages Sentences)
 set(es_kernel_headers_Mesh

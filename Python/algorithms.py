@@ -10,7 +10,6 @@ import dataclasses
 import math
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import (
     vtkDataObject,
     vtkDataObjectTree,
@@ -37,7 +36,7 @@ from .block_reports import (
 )
 from .algorithm_base import ReportingAlgorithm, drop_elevation, set_elevation
 from .blocks import parts_of, put_parts, surfaces_of
-from .clouds import ReadOptions, add_words, cells_of, joined, keep_points, notes_on, set_crs, words_in
+from .clouds import ReadOptions, add_words, cells_of, coordinates_of, joined, keep_points, notes_on, set_crs, words_in
 from .description import DESCRIBED
 from .exaggeration import point_exaggeration, surface_exaggeration
 from .inputs import cloud_of, lines_of
@@ -198,7 +197,7 @@ def read_options(given):
 
 def finite_points(cloud):
     """Leaves out what cannot be shown, where anything is left."""
-    finite = numpy.isfinite(vtk_to_numpy(cloud.points.GetPoints().GetData())).all(axis=1)
+    finite = numpy.isfinite(coordinates_of(cloud.points)).all(axis=1)
     if finite.any() and not finite.all():
         cloud.left_out[Reason("point", "with NaN or infinity")] = int(numpy.count_nonzero(~finite))
         keep_points(cloud, numpy.flatnonzero(finite))

@@ -262,6 +262,26 @@ def coordinates_of(data):
     return vtk_to_numpy(points.GetData()) if points else numpy.zeros((0, 3))
 
 
+def triangles_of(data):
+    """(n, 3) ids of the points of the polygons of vtkPolyData, which are triangles."""
+    return vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+
+
+def id_lists(cells):
+    """[(n,) ids of the points of each of the cells]."""
+    ids, ends = (vtk_to_numpy(a) for a in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
+    return [ids[begin:end] for begin, end in zip(ends[:-1], ends[1:])]
+
+
+def moved(data, coordinates):
+    """The same data set with its points in other places."""
+    result = data.NewInstance()
+    result.ShallowCopy(data)
+    if len(coordinates):
+        result.SetPoints(make_points(coordinates).GetPoints())
+    return result
+
+
 def make_points(coordinates, copy=True):
     """(n, 3) float64 coordinates -> vtkPolyData with points only. Without copy it uses the array."""
     return points_of(numpy_to_vtk(numpy.ascontiguousarray(coordinates, dtype="f8"), deep=copy))
@@ -351,14 +371,11 @@ def line_parts(data):
     """(names, parts) of the lines and polygons of vtkPolyData, as make_lines() takes them."""
     if data.GetPoints() is None:
         return [], []
-    xyz, named = vtk_to_numpy(data.GetPoints().GetData()).astype("f8"), cell_names(data)
+    xyz, named = coordinates_of(data).astype("f8"), cell_names(data)
     first, names, parts = data.GetNumberOfVerts(), [], []
     for cells, kind in ((data.GetLines(), "line"), (data.GetPolys(), "polygon")):
-        ids, ends = (
-            vtk_to_numpy(a) for a in (cells.GetConnectivityArray(), cells.GetOffsetsArray())
-        )
-        for begin, end in zip(ends[:-1], ends[1:]):
-            part = xyz[ids[begin:end]]
+        for ids in id_lists(cells):
+            part = xyz[ids]
             if len(part):
                 cell = f"{kind} (cell {first})"
                 names.append(named.get(cell, cell))
@@ -436,7 +453,7 @@ def add_array(data, name, values, kind="Point"):
 
 def some_points(data, keep):
     """The points of a data set with the given ids, with their point data, as vtkPolyData."""
-    result = make_points(vtk_to_numpy(data.GetPoints().GetData())[keep])
+    result = make_points(coordinates_of(data)[keep])
     old, new = data.GetPointData(), result.GetPointData()
     for i in range(old.GetNumberOfArrays()):
         array = old.GetAbstractArray(i)
@@ -483,7 +500,7 @@ def merged(names, clouds):
     crs, notes = system_of(names, clouds)
     append = vtkAppendPolyData()
     for cloud in clouds:
-        data = make_points(vtk_to_numpy(cloud.points.GetPoints().GetData()))
+        data = make_points(coordinates_of(cloud.points))
         data.GetPointData().ShallowCopy(cloud.points.GetPointData())
         append.AddInputData(data)
     append.SetOutputPointsPrecision(append.DOUBLE_PRECISION)
@@ -602,11 +619,7 @@ def turn_over(cloud):
     """Turns the sign of z: depths become elevations."""
     coordinates = coordinates_of(cloud.points).astype("f8")
     coordinates[:, 2] *= -1.0
-    points = make_points(coordinates).GetPoints()
-    turned = cloud.points.NewInstance()
-    turned.ShallowCopy(cloud.points)
-    turned.SetPoints(points)
-    cloud.points = turned
+    cloud.points = moved(cloud.points, coordinates)
     cloud.notes.append(f"z is turned over, as {option('depth')} says")
 
 

@@ -9,7 +9,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
 
-from .clouds import cells_of, coordinates_of, make_points, slices
+from .clouds import cells_of, coordinates_of, make_points, slices, triangles_of
 from .passes import near_triangles
 from .ranks import all_values, collected, extremes, total
 
@@ -34,7 +34,7 @@ def distance_to(surface, used, coordinates, chosen, progress=None, ranks=None, i
     for k; "measured" is their number.
     """
     corners = coordinates_of(surface).astype("f8", copy=False)
-    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    triangles = triangles_of(surface)
     away = chosen.copy()
     first, flags = corners[: len(coordinates)], used[: len(coordinates)]
     for rows in slices(len(coordinates)):

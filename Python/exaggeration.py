@@ -5,9 +5,8 @@
 import math
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import coordinates_of, make_points
+from .clouds import coordinates_of, make_points, triangles_of
 from .messages import Messages
 from .passes import corner_flags
 from .ranks import all_values
@@ -73,8 +72,8 @@ def surface_exaggeration(surfaces, ranks=None):
     """
     corners = [numpy.zeros((0, 9))]
     for surface in surfaces:
-        triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-        corners.append(coordinates_of(surface)[few(triangles)].reshape(-1, 9).astype("f8"))
+        triangles = few(triangles_of(surface))
+        corners.append(coordinates_of(surface)[triangles].reshape(-1, 9).astype("f8"))
     corners = all_values(ranks, numpy.concatenate(corners).ravel(), "f8").reshape(-1, 3)
     triangles = numpy.arange(len(corners)).reshape(-1, 3)
     return choose_exaggeration(corners, triangles) if len(corners) else 1.0

@@ -3,9 +3,8 @@
 """Boundaries and faults as they come, made fit for the filters, with a note on every change."""
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import LINE_NAMES, WITHOUT_Z, bare_lines, coordinates_of, crs_of, line_parts, make_points, set_crs, words_in
+from .clouds import LINE_NAMES, WITHOUT_Z, bare_lines, coordinates_of, crs_of, line_parts, moved, set_crs, words_in
 from .draping import draped
 from .gdal_common import check_system, is_near, moving, name_of, same_system
 from .mending import mended
@@ -92,7 +91,7 @@ def in_system(data, name, cloud, points_name, strict, ranks=None):
     _, parts = line_parts(data)
     if not parts or strict or same_system(crs, cloud.crs) is not False or is_near(crs, cloud.crs):
         return data, check_system(name, crs, points_name, cloud.crs)
-    xyz = vtk_to_numpy(data.GetPoints().GetData()).astype("f8")
+    xyz = coordinates_of(data).astype("f8")
     try:
         places = moving(crs, cloud.crs)
         xy = places(xyz)
@@ -106,11 +105,9 @@ def in_system(data, name, cloud, points_name, strict, ranks=None):
     check_overlap(xy, cloud, systems, ranks)
     old, new = xyz[0, :2].copy(), xy[0]
     xyz[:, :2] = xy
-    moved = data.NewInstance()
-    moved.ShallowCopy(data)
-    moved.SetPoints(make_points(xyz).GetPoints())
-    set_crs(moved, cloud.crs)
-    return moved, [
+    projected = moved(data, xyz)
+    set_crs(projected, cloud.crs)
+    return projected, [
         f"{systems} by OGR, its first point ({old[0]:.10g}, {old[1]:.10g}) to ({new[0]:.10g}, "
         f"{new[1]:.10g}); edges between points stay straight, up to "
         f"{numpy.hypot(*bend.T).max(initial=0.0):.3g} away from their places"

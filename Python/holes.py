@@ -5,7 +5,7 @@
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import coordinates_of, words_in
+from .clouds import coordinates_of, triangles_of, words_in
 from .messages import counted
 from .names import option
 from .passes import are_edges
@@ -126,8 +126,7 @@ class BridgedVoids:
 
     def see(self, surface):
         """Takes the triangles of this rank, or some of them."""
-        triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
-        self.are_there += are_edges(coordinates_of(surface), triangles, self.edges)
+        self.are_there += are_edges(coordinates_of(surface), triangles_of(surface), self.edges)
 
     def find(self):
         """(n,) bool of the outlines of this rank, once all have seen all triangles."""
@@ -142,7 +141,7 @@ def hole_places(lines):
     if lines.GetNumberOfLines() == 0:
         return [[], []]
     cells = lines.GetLines()
-    xy = vtk_to_numpy(lines.GetPoints().GetData())[:, :2]
+    xy = coordinates_of(lines)[:, :2]
     xy = xy[vtk_to_numpy(cells.GetConnectivityArray())]
     starts = vtk_to_numpy(cells.GetOffsetsArray())[:-1]
     low = numpy.minimum.reduceat(xy, starts, axis=0)

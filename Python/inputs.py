@@ -177,7 +177,7 @@ def point_set_cloud(data, array, ranks):
     points.GetPointData().ShallowCopy(data.GetPointData())
     points.GetFieldData().ShallowCopy(data.GetFieldData())
     if array:
-        xyz = vtk_to_numpy(data.GetPoints().GetData()).astype("f8")
+        xyz = coordinates_of(data).astype("f8")
         xyz[:, 2] = vtk_to_numpy(data.GetPointData().GetArray(array))
         points.SetPoints(make_points(xyz).GetPoints())
     cloud = Cloud(points, crs=crs_of(data))

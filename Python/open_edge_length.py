@@ -3,9 +3,8 @@
 """Above which length triangles bridge what is missing, so that they are opened and filled."""
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import coordinates_of
+from .clouds import coordinates_of, triangles_of
 from .passes import sample
 from .ranks import all_values, together, total
 from .spreading import ids_of
@@ -42,7 +41,7 @@ def length_to_open(ranks, surface, result):
 
 def measured(ranks, surface):
     """Area, shortest and longest edge of the triangles of all ranks, or of a sample of them."""
-    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    triangles = triangles_of(surface)
     every = 1 + total(ranks, len(triangles)) // MOST_SAMPLES
     if every > 1:
         triangles = triangles[sample(triangles, every, ids_of(ranks, surface) if ranks else None)]

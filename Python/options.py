@@ -15,9 +15,10 @@ from .description import DESCRIBED
 from .gdal_common import reference_of
 from .help import help_text
 from .messages import FileError, did_you_mean
+from .names import option
 from .paths import check_suffix, check_writable
 from .pieces import MEMORY, SUFFIX as PIECES_SUFFIX, check_files, check_given, memory_size
-from .properties import COLOURS, METHODS, PROPERTIES, check_together, option_of
+from .properties import COLOURS, METHODS, PROPERTIES, check_together
 from .results import WrongOption
 from .selecting import condition
 from .writing.grids import side_files
@@ -39,7 +40,7 @@ ACTIONS = {"flag": "store_true", "switch": argparse.BooleanOptionalAction, "wher
 OPTIONS = {name: one for name, one in DESCRIBED.items() if "program" in one.places}
 # What each option with a value takes, for errors.
 TAKES = {
-    option: one.takes for one in OPTIONS.values() if one.kind.metavar for option in one.options
+    which: one.takes for one in OPTIONS.values() if one.kind.metavar for which in one.options
 }
 TAKES["--memory"] = MEMORY
 
@@ -50,14 +51,14 @@ class Parser(argparse.ArgumentParser):
     def error(self, message):
         found = re.match(r"argument ([^:]+): (.*)", message)
         if found:
-            option = found.group(1).split("/--no-")[0].split("/")[-1]
+            which = found.group(1).split("/--no-")[0].split("/")[-1]
             given = re.search(r"(?:value|choice): ('.*?')(?: \(choose.*)?$", found.group(2))
-            message = f"{option}: {found.group(2)}"
-            if option in TAKES:
+            message = f"{which}: {found.group(2)}"
+            if which in TAKES:
                 given = f", not {given.group(1)}" if given else ""
-                message = f"{option} takes {TAKES[option]}{given}"
+                message = f"{which} takes {TAKES[which]}{given}"
             elif found.group(2).startswith("ignored explicit argument"):
-                message = f"{option} takes no value"
+                message = f"{which} takes no value"
         elif message.startswith("unrecognized arguments: "):
             words = message.split(": ", 1)[1]
             known = list(self._option_string_actions)
@@ -114,7 +115,7 @@ def parse_arguments(arguments):
         name: getattr(options, name) for name in PROPERTIES if getattr(options, name) is not None
     }
     try:
-        check_together({name: getattr(options, name) for name in OPTIONS}, option_of, OPTIONS)
+        check_together({name: getattr(options, name) for name in OPTIONS}, option, OPTIONS)
     except ValueError as error:
         parser.error(str(error))
     options.in_pieces = options.pieces is not None or options.memory is not None
@@ -136,7 +137,7 @@ def parse_arguments(arguments):
     for each, of in (("each", "file"), ("each_value", "value")):
         if getattr(options, each) and (any(names) or options.picture or options.report):
             parser.error(
-                f"{option_of(each)} names the results of each {of} itself: "
+                f"{option(each)} names the results of each {of} itself: "
                 "leave out the names of results"
             )
     return options

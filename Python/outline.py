@@ -8,10 +8,9 @@ a digitized line or its caricature, The Canadian Cartographer 10(2).
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIdList
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-from .clouds import cells_of, joined, make_points, some_points
+from .clouds import cells_of, coordinates_of, id_lists, joined, make_points, moved, some_points, triangles_of
 from .messages import Messages
 from .spreading import WITHIN_ERROR
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
@@ -22,7 +21,7 @@ ON_BORDER = 1e-9  # of the size of a border along a given boundary, likewise
 
 def border_of(surface):
     """The edges of one triangle only, as lines, and their points with z and point data."""
-    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    triangles = triangles_of(surface)
     edges = numpy.vstack((triangles[:, :2], triangles[:, 1:], triangles[:, ::2]))
     edges = numpy.sort(edges, axis=1)
     edges, counts = numpy.unique(edges, axis=0, return_counts=True)
@@ -35,11 +34,7 @@ def border_of(surface):
 
 def rings_of(outline):
     """[(n,) ids] of the points of closed lines, each once."""
-    cells, ids, rings = outline.GetLines(), vtkIdList(), []
-    for ring in range(cells.GetNumberOfCells()):
-        cells.GetCellAtId(ring, ids)
-        rings.append(numpy.array([ids.GetId(i) for i in range(ids.GetNumberOfIds() - 1)]))
-    return rings
+    return [ids[:-1] for ids in id_lists(outline.GetLines())]
 
 
 def with_rings(outline, rings):
@@ -62,24 +57,22 @@ def in_use(outline, surface):
     """An outline along edges of a surface, without the points that the surface has left out of it."""
     fields = surface.GetFieldData()
     ids, why = (vtk_to_numpy(fields.GetArray("UnusedPoint" + name)) for name in ("Ids", "Reasons"))
-    xy, surface_xy = (places_of(vtk_to_numpy(p.GetPoints().GetData())) for p in (outline, surface))
+    xy, surface_xy = (places_of(coordinates_of(p)) for p in (outline, surface))
     is_used = ~numpy.isin(xy, surface_xy[ids[why == WITHIN_ERROR]])
     return with_rings(outline, [ring[is_used[ring]] for ring in rings_of(outline)])
 
 
 def along_edges(outline, surface):
     """An outline through the vertices of a surface that lie on it: where faults cross it."""
-    xyz = vtk_to_numpy(outline.GetPoints().GetData()).astype("f8")
-    used = numpy.unique(vtk_to_numpy(surface.GetPolys().GetConnectivityArray()))
-    vertices = vtk_to_numpy(surface.GetPoints().GetData())[used].astype("f8")
+    xyz = coordinates_of(outline).astype("f8")
+    used = numpy.unique(triangles_of(surface))
+    vertices = coordinates_of(surface)[used].astype("f8")
     vertices = vertices[~numpy.isin(places_of(vertices), places_of(xyz))]
     vertices = vertices[numpy.argsort(vertices[:, 1], kind="stable")]
     reach = max(ON_BORDER * outline.GetLength(), 16 * numpy.spacing(abs(xyz[:, :2]).max()))
-    added, lines, ids = [xyz], vtkCellArray(), vtkIdList()
+    added, lines = [xyz], vtkCellArray()
     count = len(xyz)
-    for line in range(outline.GetNumberOfLines()):
-        outline.GetLines().GetCellAtId(line, ids)
-        ends = [ids.GetId(i) for i in range(ids.GetNumberOfIds())]
+    for ends in (ids.tolist() for ids in id_lists(outline.GetLines())):
         through = ends[:1]
         for p, q in zip(ends[:-1], ends[1:]):
             on_it = between(xyz[p], xyz[q], vertices, reach)
@@ -95,7 +88,7 @@ def along_edges(outline, surface):
 def within(lines, outline, reach):
     """Lines without what is outside of an outline: their edges, cut at the points of the outline on them, but
     for those that are outside as a whole. One that crosses the outline between its points stays."""
-    own, corners = (vtk_to_numpy(data.GetPoints().GetData()).astype("f8") for data in (lines, outline))
+    own, corners = (coordinates_of(data).astype("f8") for data in (lines, outline))
     order = numpy.argsort(corners[:, 1], kind="stable")
     numbered = numpy.column_stack((corners[order, :2], len(own) + order))
     whole, edges = edge_ids(lines), []
@@ -115,18 +108,14 @@ def within(lines, outline, reach):
 
 def elevated(lines, surface):
     """Lines whose points without z (NaN) get that of the vertex of a surface there, if there is one."""
-    xyz = vtk_to_numpy(lines.GetPoints().GetData()).astype("f8")
+    xyz = coordinates_of(lines).astype("f8")
     soft = numpy.flatnonzero(numpy.isnan(xyz[:, 2]))
     if not len(soft):
         return lines
-    vertices = vtk_to_numpy(surface.GetPoints().GetData())
-    vertices = vertices[numpy.unique(vtk_to_numpy(surface.GetPolys().GetConnectivityArray()))]
+    vertices = coordinates_of(surface)[numpy.unique(triangles_of(surface))]
     there = dict(zip(places_of(vertices).tolist(), vertices[:, 2].tolist()))
     xyz[soft, 2] = [there.get(place, numpy.nan) for place in places_of(xyz[soft]).tolist()]
-    result = lines.NewInstance()
-    result.ShallowCopy(lines)
-    result.SetPoints(make_points(xyz).GetPoints())
-    return result
+    return moved(lines, xyz)
 
 
 def are_crossing(edges, p, q):
@@ -166,7 +155,7 @@ def simplified(outline, spacing, error):
 
     Points where rings touch stay. So does the whole outline where rings would cross.
     """
-    xyz = vtk_to_numpy(outline.GetPoints().GetData()).astype("f8")
+    xyz = coordinates_of(outline).astype("f8")
     rings = rings_of(outline)
     ids, counts = numpy.unique(numpy.concatenate(rings), return_counts=True)
     touching = ids[counts > 1]
@@ -226,11 +215,9 @@ def trial(rings, are_edges=False):
 
     Returns (errors of the filters, how often rings cross, the number of triangles).
     """
-    xyz = vtk_to_numpy(rings.GetPoints().GetData()).astype("f8")
+    xyz = coordinates_of(rings).astype("f8")
     xyz[:, 2] = 0.0  # z may be missing (NaN)
-    flat = rings.NewInstance()
-    flat.ShallowCopy(rings)
-    flat.SetPoints(make_points(xyz).GetPoints())
+    flat = moved(rings, xyz)
     mesh = vtkGridDelaunay2D()
     mesh.SetInputData(flat)
     if are_edges:
@@ -247,7 +234,7 @@ def trial(rings, are_edges=False):
 
 def edges_of(lines):
     """((n, 2), (n, 2)): x,y of both ends of the edges of lines."""
-    xy = vtk_to_numpy(lines.GetPoints().GetData())[:, :2].astype("f8")
+    xy = coordinates_of(lines)[:, :2].astype("f8")
     begins, ends = edge_ids(lines).T
     return xy[begins], xy[ends]
 

@@ -5,8 +5,7 @@ with as many temporary arrays."""
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkBitArray, vtkDataArray, vtkIntArray
-from vtkmodules.vtkCommonDataModel import vtkCellArray
+from vtkmodules.vtkCommonCore import vtkIntArray
 
 from .vtkElevationSurfacePieces import vtkSurfacePasses
 
@@ -41,31 +40,9 @@ def corner_flags(triangles, count):
     return flags
 
 
-def kept_tuples(array, flags):
-    """An array of VTK of the tuples with a flag, and of the same type."""
-    kept, count = array.NewInstance(), int(numpy.count_nonzero(flags))
-    kept.SetName(array.GetName())
-    kept.SetNumberOfComponents(array.GetNumberOfComponents())
-    kept.CopyComponentNames(array)
-    kept.SetNumberOfTuples(count)
-    is_plain = isinstance(array, vtkDataArray) and not isinstance(array, vtkBitArray)
-    if is_plain and array.HasStandardMemoryLayout():
-        check(vtkSurfacePasses.KeepTuples(array, in_vtk(flags), kept))
-    else:
-        for place, tuple_id in enumerate(numpy.flatnonzero(flags).tolist()):
-            kept.SetTuple(place, tuple_id, array)
-    return kept
-
-
-def renumbered(cells, flags):
-    """Triangles as cells, all of points with a flag, by the places of their points among these."""
-    corners, offsets = vtkIntArray(), cells.GetOffsetsArray()
-    check(vtkSurfacePasses.Renumber(cells.GetConnectivityArray(), in_vtk(flags), corners))
-    if offsets.GetDataTypeSize() != 4:
-        offsets = numpy_to_vtk(vtk_to_numpy(offsets).astype("i4"), deep=True)
-    made = vtkCellArray()
-    made.SetData(offsets, corners)
-    return made
+def keep_flagged(surface, flags):
+    """Leaves the points with a flag, which are all that the triangles have: one array after the other."""
+    check(vtkSurfacePasses.KeepFlagged(in_vtk(flags), surface))
 
 
 def outline(triangles):

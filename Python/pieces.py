@@ -19,7 +19,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import reading
-from .clouds import Cloud, faults_note, heights_of, make_points, set_crs, slices
+from .clouds import Cloud, faults_note, heights_of, make_points, set_crs, slices, triangles_of
 from .description import DESCRIBED
 from .draping import check_given_z
 from .given_lines import check_z, in_system
@@ -27,8 +27,9 @@ from .holes import BridgedVoids, hole_report
 from .lattice import lattice_of
 from .mending import mended
 from .messages import ElevationSurfaceError, FileError, Messages
+from .names import option
 from .passes import corner_flags
-from .properties import option_of, set_properties
+from .properties import set_properties
 from .ranks import agreed, by_first, collected, rank_and_count, together, total
 from .reading.formats import recognise
 from .reading.slicing import check_sliced, read_files
@@ -82,7 +83,7 @@ def check_given(options, error):
             words = one.words["pieces"]
             if words == "no":
                 words = f"needs the whole surface in memory; it cannot be used with {name}"
-            error(f"{option_of(other)} {words}")
+            error(f"{option(other)} {words}")
     if options.fill and not options.boundary and options.open_edge_length is None:
         error(
             f"{name} cannot find which triangles bridge gaps: add --open-edge-length, 0 for "
@@ -399,8 +400,7 @@ class Pieces:
     def look_at(self, data):
         """Takes from a piece what the report needs."""
         points, ids = data.GetPoints(), vtk_to_numpy(data.GetPointData().GetGlobalIds())
-        corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray())
-        flags = corner_flags(corners, len(ids))
+        flags = corner_flags(triangles_of(data), len(ids))
         used = vtk_to_numpy(points.GetData())[flags]
         self.reported_points.add(ids[flags])
         if self.voids:

@@ -5,7 +5,7 @@
 import numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
-from .clouds import bare_lines, coordinates_of, heights_of, make_points, marked_points
+from .clouds import bare_lines, coordinates_of, heights_of, marked_points, moved
 from .messages import ElevationSurfaceError
 from .names import argument
 from .ranks import all_values
@@ -34,15 +34,6 @@ class Plane:
     def back(self, data):
         """What levelled() has turned, in its old place."""
         return moved(data, coordinates_of(data) @ self.axes + self.middle)
-
-
-def moved(data, coordinates):
-    """The same data set with its points in other places."""
-    result = data.NewInstance()
-    result.ShallowCopy(data)
-    if len(coordinates):
-        result.SetPoints(make_points(coordinates).GetPoints())
-    return result
 
 
 def sample_of(points, ranks=None):

@@ -4,8 +4,8 @@
 
 import numpy
 
-from .clouds import PixelGrid, coordinates_of, make_points
-from .gdal_common import flat, name_of, one_line, quiet, reference_of
+from .clouds import PixelGrid, coordinates_of, moved
+from .gdal_common import moving, name_of, one_line, reference_of
 from .messages import FileError
 from .names import option
 
@@ -77,33 +77,20 @@ def project(path, cloud):
     middle = 0.5 * (low + high)
     zone = zone_of(*middle)
     try:
-        from osgeo import osr
-
-        with quiet():
-            change = osr.CoordinateTransformation(flat(source), reference_of(zone))
-
-            def places(points):
-                found = numpy.array(change.TransformPoints(numpy.asarray(points).tolist()))[:, :2]
-                if not numpy.isfinite(found).all():
-                    raise RuntimeError("some points have no place there")
-                return found
-
-            xyz[finite, :2] = places(xy)
-            if cloud.grid:
-                steps = numpy.reshape(cloud.grid.steps, (2, 2))
-                at = [middle, low, high, (low[0], high[1]), (high[0], low[1])]
-                moved = [places(at + step) - places(at) for step in steps]
-                cells = numpy.hypot(*(abs(moved[0]) + abs(moved[1])).T)
-                cloud.grid = PixelGrid(None, tuple(float(v) for step in moved for v in step[0]))
-                cloud.largest_cell = float(cells.max())
+        places = moving(cloud.crs or "EPSG:4326", zone)
+        xyz[finite, :2] = places(xy)
+        if cloud.grid:
+            steps = numpy.reshape(cloud.grid.steps, (2, 2))
+            at = numpy.array([middle, low, high, (low[0], high[1]), (high[0], low[1])])
+            steps = [places(at + step) - places(at) for step in steps]
+            cells = numpy.hypot(*(abs(steps[0]) + abs(steps[1])).T)
+            cloud.grid = PixelGrid(None, tuple(float(v) for step in steps for v in step[0]))
+            cloud.largest_cell = float(cells.max())
     except RuntimeError as error:
         raise FileError(f"{path}: cannot be projected to {name_of(zone)}: {one_line(error)}") from None
-    moved = cloud.points.NewInstance()
-    moved.ShallowCopy(cloud.points)
-    moved.SetPoints(make_points(xyz).GetPoints())
     before = cloud.crs or "EPSG:4326"
     known = "" if cloud.crs else ", assumed because the file names none,"
-    cloud.points, cloud.crs, cloud.frame = moved, zone, None
+    cloud.points, cloud.crs, cloud.frame = moved(cloud.points, xyz), zone, None
     cloud.notes.append(f"x,y are projected from {name_of(before)}{known} to {name_of(zone)}")
     if high[0] - low[0] > 2.0 * WIDE:
         cloud.notes.append(

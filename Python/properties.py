@@ -30,11 +30,6 @@ TURNED = {
 FEWER = ("maximum_number_of_points", "maximum_elevation_error")  # what makes a surface of few points
 
 
-def option_of(name):
-    """maximum_edge_length -> --maximum-edge-length"""
-    return "--" + name.replace("_", "-")
-
-
 def checked(properties: dict[str, Any], name_of=str) -> dict[str, Any]:
     """{name: value as the filters take it}. Raises TypeError and ValueError with one clear line.
 

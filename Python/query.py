@@ -13,7 +13,7 @@ from vtkmodules.util.vtkConstants import VTK_DOUBLE
 from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from .clouds import add_array, cells_of, coordinates_of, crs_of, make_points, slices
+from .clouds import add_array, cells_of, coordinates_of, crs_of, make_points, slices, triangles_of
 from .gdal_common import check_system, is_near, moving, name_of, one_line, same_system
 from .messages import ElevationSurfaceError, FileError
 from .passes import corner_flags
@@ -100,7 +100,7 @@ def interpolated(query, are_natural, places, values=None):
 def used_alone(surface):
     """The points of a surface, where those that no triangle uses are not finite: they keep numbers."""
     xyz = coordinates_of(surface).astype("f8")
-    xyz[~corner_flags(vtk_to_numpy(surface.GetPolys().GetConnectivityArray()), len(xyz))] = numpy.nan
+    xyz[~corner_flags(triangles_of(surface), len(xyz))] = numpy.nan
     return make_points(xyz)
 
 
@@ -205,8 +205,7 @@ def filled_alone(surface):
         return None
     filled = vtkPolyData()
     filled.SetPoints(surface.GetPoints())
-    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    filled.SetPolys(cells_of(corners[holes >= 0]))
+    filled.SetPolys(cells_of(triangles_of(surface)[holes >= 0]))
     filled.GetPointData().AddArray(errors)
     add_array(filled, "HoleId", holes[holes >= 0], "Cell")
     return filled
@@ -222,7 +221,7 @@ def holes_of(surface):
 
 def area_of(surface):
     """The area of a surface's triangles in x,y."""
-    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3).T.astype("i8")
+    corners = triangles_of(surface).T.astype("i8")
     xyz = coordinates_of(surface)
     # x and y apart: numpy takes numbers faster than rows.
     (xa, xb, xc), (ya, yb, yc) = (xyz[:, axis].astype("f8").take(corners) for axis in (0, 1))

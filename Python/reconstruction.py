@@ -10,7 +10,6 @@ import warnings
 from typing import Any, Callable, Optional, Sequence, Union
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import (
     vtkCellArray,
     vtkDataSet,
@@ -20,7 +19,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkRectilinearGrid,
 )
 
-from .clouds import Cloud, check_ids, coordinates_of, make_lines, make_points, slices
+from .clouds import Cloud, check_ids, coordinates_of, make_lines, make_points, slices, triangles_of
 from .description import KINDS, listing, view_angles
 from .given_lines import RINGS, fitted
 from .several_heights import check_heights, heights_on_ranks
@@ -242,9 +241,7 @@ class Reconstruction:
 
         Points of the input come first, in their order; surface has their numbers in the input.
         """
-        points = vtk_to_numpy(self.surface.GetPoints().GetData()).astype("f8")
-        ids = vtk_to_numpy(self.surface.GetPolys().GetConnectivityArray())
-        return points, ids.reshape(-1, 3).copy()
+        return coordinates_of(self.surface).astype("f8"), triangles_of(self.surface).copy()
 
     def write(self, path: Union[str, os.PathLike]) -> list[str]:
         """Writes the surface in the format of the suffix: .vtp .vtu .ply .stl .obj .glb .ts.

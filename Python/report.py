@@ -41,7 +41,7 @@ FOUND = "found from the points"
 def make_report(result):
     """Everything the user may want to know about a Reconstruction, as plain numbers and words. Where it is
     spread over ranks, all of them make it together."""
-    cloud, delaunay, trim, ranks = result.cloud, result.delaunay, result.trim, result.ranks
+    delaunay, trim, ranks = result.delaunay, result.trim, result.ranks
     ids = ids_of(ranks, result.points)[: len(result.reasons)]
     reasons = reasons_unused(result)
     unused = list_unused(ranks, reasons, ids)

@@ -23,10 +23,9 @@ import dataclasses
 import shlex
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
-from .clouds import marked_points, slices
+from .clouds import coordinates_of, marked_points, slices
 from .messages import ElevationSurfaceError, counted
 from .names import option
 from .passes import maybe_shared
@@ -193,7 +192,7 @@ def check_heights(cloud, policy=None):
     """
     if not cloud.points.GetNumberOfPoints():
         return None, None
-    xyz = vtk_to_numpy(cloud.points.GetPoints().GetData())
+    xyz = coordinates_of(cloud.points)
     hidden = marked_points(cloud.points, vtkDataSetAttributes.HIDDENPOINT)
     if hidden.any():
         xyz = numpy.where(hidden[:, None], numpy.nan, xyz)

@@ -14,9 +14,9 @@ from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints, vtkUnsignedCharA
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
-from .clouds import cells_of, joined, marked_points, some_points
+from .clouds import add_array, cells_of, coordinates_of, joined, marked_points, some_points, triangles_of
 from .messages import ElevationSurfaceError, Messages
-from .passes import corner_flags, kept_tuples, renumbered
+from .passes import corner_flags, keep_flagged
 from .ranks import agreed, all_values, before, collected, packed, shared, together, total, unpacked
 from .vtkElevationSurface import vtkTrimOutwardTriangles
 
@@ -71,8 +71,7 @@ def own_point_count(ranks, triangulation, points):
 
 def used_points(ranks, surface):
     """(n,) of bool: the points that are corners of triangles, on any rank."""
-    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
-    used = corner_flags(corners, surface.GetNumberOfPoints())
+    used = corner_flags(triangles_of(surface), surface.GetNumberOfPoints())
     if ranks is None:
         return used
     ids = ids_of(ranks, surface)
@@ -143,27 +142,11 @@ def without_unused(ranks, surface, used, last, frees=False):
     if frees:
         surface.Initialize()
     if not used.all():
+        whole.SetVerts(None)
+        whole.SetLines(None)
         keep_flagged(whole, used)
     whole.GetPointData().AddArray(original)
     return whole
-
-
-def keep_flagged(surface, flags):
-    """Leaves the points with a flag, which are all that the triangles have: one array after the other."""
-    places = vtkPoints()
-    places.SetData(kept_tuples(surface.GetPoints().GetData(), flags))
-    surface.SetPoints(places)
-    old, new = surface.GetPointData(), vtkPolyData().GetPointData()
-    for i in range(old.GetNumberOfArrays()):
-        kind = old.IsArrayAnAttribute(0)
-        new.AddArray(kept_tuples(old.GetAbstractArray(0), flags))
-        old.RemoveArray(0)
-        if kind >= 0:
-            new.SetActiveAttribute(i, kind)
-    old.ShallowCopy(new)
-    surface.SetPolys(renumbered(surface.GetPolys(), flags))
-    surface.SetVerts(None)
-    surface.SetLines(None)
 
 
 def places_of(ranks, wanted, ids):
@@ -231,7 +214,7 @@ def slice_of(points, rank, ranks):
     """The points of a rank of so many, with their data."""
     first, last = (points.GetNumberOfPoints() * i // ranks for i in (rank, rank + 1))
     some = some_points(points, numpy.arange(first, last))
-    set_places(some, vtk_to_numpy(points.GetPoints().GetData())[first:last])
+    set_places(some, coordinates_of(points)[first:last])
     return some
 
 
@@ -292,9 +275,8 @@ def joined_by_ids(ranks, parts):
     rows = numpy.flatnonzero(own_points(every))
     rows = rows[numpy.argsort(ids[rows], kind="stable")]
     surface = some_points(every, rows)
-    set_places(surface, vtk_to_numpy(every.GetPoints().GetData())[rows])
-    corners = vtk_to_numpy(every.GetPolys().GetConnectivityArray())
-    surface.SetPolys(cells_of(numpy.searchsorted(ids[rows], ids[corners]).reshape(-1, 3)))
+    set_places(surface, coordinates_of(every)[rows])
+    surface.SetPolys(cells_of(numpy.searchsorted(ids[rows], ids[triangles_of(every)])))
     surface.GetCellData().ShallowCopy(every.GetCellData())
     surface.GetFieldData().ShallowCopy(parts[0].GetFieldData())
     unused, why = numpy.concatenate(unused, axis=1)
@@ -351,9 +333,7 @@ def marks_of(data):
 
 
 def set_marks(data, marks):
-    array = numpy_to_vtk(marks.astype("u1"), deep=True)
-    array.SetName(GHOSTS)
-    data.GetPointData().AddArray(array)
+    add_array(data, GHOSTS, marks.astype("u1"))
 
 
 def set_counts(surface, filters):

@@ -5,7 +5,6 @@
 import time
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkRectilinearGrid, vtkTable
 
 from .clouds import bare_lines, cell_names, coordinates_of, joined, marked_points
@@ -378,7 +377,7 @@ def trim_few(run, boundary, faults):
         outline, reach = simplified(outline, spacing, error), ON_OUTLINE * spacing
     if boundary is None and result.trim.GetNumberOfOutwardTriangles() == 0:
         outline = None  # the convex hull, which stays without constraints
-    xyz = vtk_to_numpy(result.cloud.points.GetPoints().GetData())
+    xyz = coordinates_of(result.cloud.points)
     outside = numpy.zeros(len(reasons), dtype=bool)
     if outline is not None:
         is_vertex = numpy.isin(reasons, (0, SAME_PLACE))

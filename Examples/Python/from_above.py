@@ -27,6 +27,7 @@ from vtkelevationsurface import (
     vtkGridDelaunay2D,
     vtkTrimOutwardTriangles,
 )
+from vtkelevationsurface.clouds import id_lists
 from vtkelevationsurface.picture import signs
 from vtkelevationsurface.reconstruction import as_cloud
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -106,7 +107,7 @@ def above(chain, data):
 
 
 def rims_actor(chain, lines, rgb, width):
-    pairs = look.segments(look.line_cells(lines))
+    pairs = look.segments(id_lists(lines.GetLines()))
     return look.lines_actor(above(chain, lines), pairs, rgb, width) if len(pairs) else None
 
 

@@ -124,16 +124,12 @@ bool NumberNewTuples(vtkAbstractArray* input, vtkIdType numberOfNew, vtkAbstract
 }
 } // namespace
 
-// Lists of ids for VTK, a stretch at a time; a list for all would take 16 bytes a tuple.
-void CopyTuples(vtkDataSetAttributes* input, vtkIdType count,
-  const std::function<vtkIdType(vtkIdType i)>& sourceOf, const Progress& progress,
-  vtkDataSetAttributes* output)
+// A list for all would take 16 bytes a row.
+void CopyRows(vtkIdType count,
+  const std::function<std::pair<vtkIdType, vtkIdType>(vtkIdType i)>& rowAt,
+  const Progress& progress, const std::function<void(vtkIdList* to, vtkIdList* from)>& copy)
 {
-  // Also global and pedigree ids, which VTK leaves out unless it is asked.
-  output->CopyAllOn();
-  output->CopyAllocate(input, count);
-  vtkNew<vtkIdList> from;
-  vtkNew<vtkIdList> to;
+  vtkNew<vtkIdList> from, to;
   for (vtkIdType begin = 0; begin < count; begin += TuplesAtOnce)
   {
     ReportStep(progress, static_cast<std::size_t>(begin), static_cast<std::size_t>(count));
@@ -142,11 +138,66 @@ void CopyTuples(vtkDataSetAttributes* input, vtkIdType count,
     to->SetNumberOfIds(size);
     for (vtkIdType i = 0; i < size; ++i)
     {
-      to->SetId(i, begin + i);
-      from->SetId(i, sourceOf(begin + i));
+      const auto [source, target] = rowAt(begin + i);
+      from->SetId(i, source);
+      to->SetId(i, target);
     }
-    output->CopyData(input, from, to);
+    copy(to, from);
   }
+}
+
+void CopyTuples(vtkDataSetAttributes* input, vtkIdType count,
+  const std::function<vtkIdType(vtkIdType i)>& sourceOf, const Progress& progress,
+  vtkDataSetAttributes* output)
+{
+  // Also global and pedigree ids, which VTK leaves out unless it is asked.
+  output->CopyAllOn();
+  output->CopyAllocate(input, count);
+  CopyRows(
+    count, [&](vtkIdType i) { return std::make_pair(sourceOf(i), i); }, progress,
+    [&](vtkIdList* to, vtkIdList* from) { output->CopyData(input, from, to); });
+}
+
+vtkSmartPointer<vtkAbstractArray> KeptTuples(vtkAbstractArray* array,
+  const std::vector<char>& areKept, vtkIdType count, const Progress& progress)
+{
+  const vtkSmartPointer<vtkAbstractArray> kept = NewLike(array);
+  SetTuples(count, kept);
+  const auto flags = areKept.begin();
+  const vtkIdType all = static_cast<vtkIdType>(areKept.size());
+  // As bytes, where tuples are such: calls for a few tuples each take longer than the copies.
+  const auto* const numbers = vtkArrayDownCast<vtkDataArray>(array);
+  const bool areBytes =
+    numbers && numbers->HasStandardMemoryLayout() && array->GetDataType() != VTK_BIT;
+  const char* const from = areBytes ? static_cast<const char*>(array->GetVoidPointer(0)) : nullptr;
+  char* const to = areBytes ? static_cast<char*>(kept->GetVoidPointer(0)) : nullptr;
+  const vtkIdType size =
+    static_cast<vtkIdType>(array->GetDataTypeSize()) * array->GetNumberOfComponents();
+  vtkIdType next = 0;
+  for (vtkIdType begin = 0; begin < all; begin += TuplesAtOnce)
+  {
+    ReportStep(progress, static_cast<std::size_t>(begin), static_cast<std::size_t>(all));
+    const vtkIdType end = std::min(begin + TuplesAtOnce, all);
+    // Tuples that follow each other go in one copy.
+    for (vtkIdType first = begin, last = begin; last < end; first = last)
+    {
+      first = std::find(flags + first, flags + end, char(1)) - flags;
+      last = std::find(flags + first, flags + end, char(0)) - flags;
+      if (first < last)
+      {
+        if (areBytes)
+        {
+          std::copy(from + size * first, from + size * last, to + size * next);
+        }
+        else
+        {
+          kept->InsertTuples(next, last - first, first, array);
+        }
+        next += last - first;
+      }
+    }
+  }
+  return kept;
 }
 
 vtkSmartPointer<vtkPolyData> ChosenPoints(

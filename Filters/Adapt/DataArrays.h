@@ -14,6 +14,7 @@
 #include "vtkSmartPointer.h"
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace elevation
@@ -26,6 +27,18 @@ namespace elevation
 void CopyTuples(vtkDataSetAttributes* input, vtkIdType count,
   const std::function<vtkIdType(vtkIdType i)>& sourceOf, const Progress& progress,
   vtkDataSetAttributes* output);
+
+/**
+ * Calls copy(to, from) with lists of ids for VTK, of a stretch of rows at a time.
+ * @param[in] rowAt  where row i is copied from, and to
+ */
+void CopyRows(vtkIdType count,
+  const std::function<std::pair<vtkIdType, vtkIdType>(vtkIdType i)>& rowAt,
+  const Progress& progress, const std::function<void(vtkIdList* to, vtkIdList* from)>& copy);
+
+/** The tuples with a flag, of which there are @a count. */
+vtkSmartPointer<vtkAbstractArray> KeptTuples(vtkAbstractArray* array,
+  const std::vector<char>& areKept, vtkIdType count, const Progress& progress);
 
 /** Some points with their data. */
 vtkSmartPointer<vtkPolyData> ChosenPoints(

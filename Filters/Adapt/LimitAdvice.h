@@ -83,9 +83,8 @@ EdgeMeasures MeasureEdges(const Buffer<Index>& triangles, std::size_t numberOfVe
     double longest = 0.0;
     for (int k = 0; k < 3; ++k)
     {
-      const Point2 p = placeOf(triangles[i + k]);
-      const Point2 q = placeOf(triangles[i + (k + 1) % 3]);
-      lengths.Edges.push_back(std::hypot(p.X - q.X, p.Y - q.Y));
+      lengths.Edges.push_back(
+        Distance(placeOf(triangles[i + k]), placeOf(triangles[i + (k + 1) % 3])));
       longest = std::max(longest, lengths.Edges.back());
     }
     for (int k = 0; k < 3; ++k)

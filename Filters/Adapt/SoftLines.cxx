@@ -180,13 +180,10 @@ vtkIdType TakeElevations(const PointView& points, const DelaunayOptions& options
       soft[first].Cell, ToText(places[first].X, 10), ToText(places[first].Y, 10), outside);
   }
   own.Resize(3 * static_cast<std::size_t>(before.Count));
-  ForEachStretch(before.Count, stages.Next(), [&](Index begin, Index end) {
-    for (Index id = begin; id < end; ++id)
-    {
-      const Point2 p = before.At(id);
-      const double values[] = { p.X, p.Y, before.Elevation(id) };
-      std::copy(values, values + 3, own.data() + 3 * static_cast<std::size_t>(id));
-    }
+  ForEachNumber(before.Count, stages.Next(), [&](Index id) {
+    const Point2 p = before.At(id);
+    const double values[] = { p.X, p.Y, before.Elevation(id) };
+    std::copy(values, values + 3, own.data() + 3 * static_cast<std::size_t>(id));
   });
   for (std::size_t i = 0; i < soft.size(); ++i)
   {

@@ -16,6 +16,7 @@
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 
 #include <algorithm>
@@ -45,6 +46,20 @@ vtkSmartPointer<vtkCellArray> Renumbered(vtkCellArray* cells, const std::vector<
     std::for_each(ids, ids + size, [&](vtkIdType id) { renumbered->InsertCellPoint(placeOf[id]); });
   });
   return renumbered;
+}
+
+vtkSmartPointer<vtkCellArray> RenumberedTriangles(vtkPolyData* surface,
+  const std::vector<Index>& placeOf, int threads, const Progress& progress)
+{
+  const DataSetTriangles triangles = ViewTriangles(surface);
+  Buffer<Index> corners;
+  corners.Resize(3 * static_cast<std::size_t>(triangles.View.Count));
+  ForEachRange(triangles.View.Count, threads, progress, [&](Index, Index begin, Index end) {
+    std::transform(triangles.View.CornersOf(begin), triangles.View.CornersOf(end),
+      corners.data() + 3 * static_cast<std::size_t>(begin),
+      [&](Index corner) { return placeOf[corner]; });
+  });
+  return ToCellArray(std::move(corners), threads);
 }
 } // namespace
 
@@ -119,34 +134,46 @@ void NameUnusedByOriginalIds(vtkPolyData* surface)
 }
 
 void KeepFlagged(
-  const std::vector<char>& areKept, const Progress& progress, vtkPolyData* surface)
+  const std::vector<char>& areKept, int threads, const Progress& progress, vtkPolyData* surface)
 {
-  std::vector<Index> kept;
-  std::vector<Index> placeOf(areKept.size(), None);
+  std::vector<Index> placeOf(areKept.size());
+  Index count = 0;
   for (std::size_t i = 0; i < areKept.size(); ++i)
   {
-    if (areKept[i])
-    {
-      placeOf[i] = static_cast<Index>(kept.size());
-      kept.push_back(static_cast<Index>(i));
-    }
+    // Also of points that go, whose places nobody asks for: no branch to guess.
+    placeOf[i] = count;
+    count += areKept[i];
   }
-  if (kept.size() == areKept.size())
+  if (count == static_cast<Index>(areKept.size()))
   {
     return;
   }
-  const vtkSmartPointer<vtkPolyData> points = ChosenPoints(surface, kept, progress);
   // Order of cells and cell data stay, as all cells do.
-  const DataSetTriangles triangles = ViewTriangles(surface);
-  Buffer<Index> corners;
-  corners.Resize(3 * static_cast<std::size_t>(triangles.View.Count));
-  std::transform(triangles.View.Corners, triangles.View.Corners + corners.size(), corners.begin(),
-    [&](Index corner) { return placeOf[corner]; });
+  surface->SetPolys(RenumberedTriangles(surface, placeOf, threads, progress));
   surface->SetVerts(Renumbered(surface->GetVerts(), placeOf));
   surface->SetLines(Renumbered(surface->GetLines(), placeOf));
-  surface->SetPolys(ToCellArray(std::move(corners)));
-  surface->SetPoints(points->GetPoints());
-  surface->GetPointData()->ShallowCopy(points->GetPointData());
+  vtkNew<vtkPoints> points;
+  const vtkSmartPointer<vtkAbstractArray> places =
+    KeptTuples(surface->GetPoints()->GetData(), areKept, count, progress);
+  places->SetName(points->GetData()->GetName());
+  points->SetData(vtkDataArray::SafeDownCast(places));
+  surface->SetPoints(points);
+  vtkPointData* const before = surface->GetPointData();
+  vtkNew<vtkPointData> after;
+  while (before->GetNumberOfArrays() > 0)
+  {
+    vtkAbstractArray* const array = before->GetAbstractArray(0);
+    const int index = after->AddArray(KeptTuples(array, areKept, count, progress));
+    for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)
+    {
+      if (before->GetAbstractAttribute(type) == array)
+      {
+        after->SetActiveAttribute(index, type);
+      }
+    }
+    before->RemoveArray(0);
+  }
+  before->ShallowCopy(after);
 }
 
 } // namespace elevation

@@ -12,6 +12,7 @@
 #include "Kernel/Messages/Messages.h"
 #include "VTKClasses.h"
 
+#include "vtkElevationSurfaceModule.h" // For export macro
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
@@ -45,10 +46,11 @@ void NameUnusedByOriginalIds(vtkPolyData* surface);
 
 /**
  * Leaves only the points with a flag, in their order; cells have no others, which is not checked. A
- * surface that keeps all its points is not copied.
+ * surface that keeps all its points is not copied. Arrays go one after the other, so that memory for
+ * one array more is all that is needed.
  */
-void KeepFlagged(
-  const std::vector<char>& areKept, const Progress& progress, vtkPolyData* surface);
+VTKELEVATIONSURFACE_EXPORT void KeepFlagged(
+  const std::vector<char>& areKept, int threads, const Progress& progress, vtkPolyData* surface);
 
 } // namespace elevation
 

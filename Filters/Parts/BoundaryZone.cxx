@@ -23,7 +23,6 @@
 #include "Adapt/Adapt.h"
 #include "Joining.h"
 #include "Kernel/Mesh/Mesh.h"
-#include "PackedData.h"
 
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
@@ -39,46 +38,10 @@
 #include <functional>
 #include <limits>
 #include <string>
-#include <tuple>
 #include <utility>
 
 namespace elevation
 {
-
-template <>
-struct FieldsOf<TrimmedZone>
-{
-  template <typename Zone>
-  static auto In(Zone& zone)
-  {
-    return std::tie(zone.Parents[0], zone.Corners[0], zone.Parents[1], zone.Corners[1],
-      zone.IsInserted, zone.IsOwned, zone.OfOthers, zone.AreNumbered, zone.OnBoundary,
-      zone.FarOnBoundary);
-  }
-};
-
-Bytes TrimmedZone::Pack() const
-{
-  Bytes bytes;
-  AnyValue::Append(bytes, *this);
-  // Without a new point there may be no NewPoints, and there is nothing to unpack.
-  if (!this->IsInserted.empty())
-  {
-    const Bytes points = PackData(this->NewPoints);
-    AppendTo(bytes, points.data(), points.size());
-  }
-  return bytes;
-}
-
-TrimmedZone::TrimmedZone(const Bytes& bytes)
-{
-  const char* from = bytes.data();
-  AnyValue::Take(from, *this);
-  if (!this->IsInserted.empty())
-  {
-    this->NewPoints = UnpackData(from, static_cast<std::size_t>(bytes.end() - from));
-  }
-}
 
 void BoundaryZone::JoinAll(const Progress& progress)
 {
@@ -433,7 +396,7 @@ void BoundaryZone::PlaceCorners(std::size_t part, std::vector<Index>& places,
   {
     places[point] = None;
   }
-  split.NewPoints = ChosenPoints(this->Points, added);
+  split.NewPoints = added.empty() ? nullptr : ChosenPoints(this->Points, added);
 }
 
 } // namespace elevation

@@ -29,6 +29,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -56,11 +57,20 @@ struct TrimmedZone
   std::vector<Index> OnBoundary;
   /** The same of points whose triangles are all other parts': the part that owns one finds it. */
   std::vector<PointKey> FarOnBoundary;
-  vtkSmartPointer<vtkPolyData> NewPoints;
+  vtkSmartPointer<vtkPolyData> NewPoints; ///< nullptr: there is none
+};
 
-  Bytes Pack() const;
-  explicit TrimmedZone(const Bytes& bytes);
-  TrimmedZone() = default;
+/** As it goes back. */
+template <>
+struct FieldsOf<TrimmedZone>
+{
+  template <typename Zone>
+  static auto In(Zone& zone)
+  {
+    return std::tie(zone.Parents[0], zone.Corners[0], zone.Parents[1], zone.Corners[1],
+      zone.IsInserted, zone.IsOwned, zone.OfOthers, zone.AreNumbered, zone.OnBoundary,
+      zone.FarOnBoundary, zone.NewPoints);
+  }
 };
 
 /**

@@ -13,6 +13,7 @@
  *   list, text    | count | value | value | ...    count is a std::size_t
  *   struct        | field | field | ...            in the order of its FieldsOf
  *   message       | count | text of Pack() |
+ *   data set      | count | bytes of PackData() |  none where it is nullptr
  *
  * No byte says what comes next: the reader has to ask for the same types in the same order as the
  * writer gave them. Values need not be aligned, so they are copied and never viewed in place.
@@ -20,8 +21,11 @@
 #ifndef Bytes_h
 #define Bytes_h
 
+#include "Adapt/Adapt.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Messages/Messages.h"
+
+#include "vtkSmartPointer.h"
 
 #include <algorithm>
 #include <cstring>
@@ -113,8 +117,8 @@ template <typename Struct>
 struct FieldsOf;
 
 /**
- * Packs and unpacks values of any kind: plain ones, texts, messages, structs with FieldsOf, and
- * lists of these. Each value marks its own end.
+ * Packs and unpacks values of any kind: plain ones, texts, messages, data sets, structs with
+ * FieldsOf, and lists of these. Each value marks its own end.
  */
 struct AnyValue
 {
@@ -146,9 +150,10 @@ struct AnyValue
         values.begin(), values.end(), [&bytes](const Value& value) { Append(bytes, value); });
     }
   }
-  /** A text and a message; the compiler prefers these to the template above. */
+  /** A text, a message and a data set; the compiler prefers these to the template above. */
   static void Append(Bytes& bytes, const std::string& text) { AppendList(bytes, text); }
   static void Append(Bytes& bytes, const Message& message) { Append(bytes, message.Pack()); }
+  static void Append(Bytes& bytes, const vtkSmartPointer<vtkPolyData>& data);
 
   template <typename Value>
   static void Take(const char*& from, Value& value)
@@ -185,7 +190,25 @@ struct AnyValue
     Take(from, text);
     message = Message::Unpack(text);
   }
+  static void Take(const char*& from, vtkSmartPointer<vtkPolyData>& data);
 };
+
+/** A value as bytes of its own, and back. */
+template <typename Value>
+Bytes Packed(const Value& value)
+{
+  Bytes bytes;
+  AnyValue::Append(bytes, value);
+  return bytes;
+}
+template <typename Value>
+Value Unpacked(const Bytes& bytes)
+{
+  Value value;
+  const char* from = bytes.data();
+  AnyValue::Take(from, value);
+  return value;
+}
 
 } // namespace elevation
 

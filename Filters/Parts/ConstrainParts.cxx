@@ -164,23 +164,15 @@ void AddedLines::Cut(const Progress& progress)
 /** The points near lines, with their arrays. */
 void AddedLines::PassNear(vtkPolyData* output) const
 {
-  const SurfacePart& common = this->Store.Part;
   vtkNew<vtkPoints> points;
-  points->SetDataType(common.PointType);
+  points->SetDataType(this->Store.Part.PointType);
   SetTuples(static_cast<vtkIdType>(this->Near.Count()), points->GetData());
   for (std::size_t i = 0; i < this->Near.Count(); ++i)
   {
     points->SetPoint(static_cast<vtkIdType>(i), this->Near.At(i));
   }
   output->SetPoints(points);
-  for (std::size_t i = 0; i < common.Kinds.size(); ++i)
-  {
-    const int index = output->GetPointData()->AddArray(this->Near.Arrays[i]);
-    if (common.Kinds[i].Attribute >= 0)
-    {
-      output->GetPointData()->SetActiveAttribute(index, common.Kinds[i].Attribute);
-    }
-  }
+  this->Near.PassArrays(output->GetPointData());
 }
 
 /** Each point that is added follows those of its part, with an id after the largest. */

@@ -504,7 +504,7 @@ bool FillParts::FillGroup(int group, const Progress& progress, std::vector<vtkId
     this->NewTriangles += holes.Patches.NumberOfTriangles();
     holes.KeepCorners();
     // Without a message: a group is on the rank of its part (GroupHoles).
-    this->Crew.At(this->Groups[group].Part, Patches).Append(holes.Pack());
+    this->Crew.At(this->Groups[group].Part, Patches).Append(Packed(holes));
   }
   this->GroupCrew->At(group, Surrounding).Clear();
   holes = SurroundedHoles();
@@ -557,7 +557,8 @@ void FillParts::TakePatches(int part, FilledPart& one)
 {
   std::vector<SurroundedHoles> groups;
   Inbox& box = this->Crew.At(part, Patches);
-  box.ForEach([&groups](const Bytes& bytes) { groups.emplace_back(bytes); });
+  box.ForEach(
+    [&groups](const Bytes& bytes) { groups.push_back(Unpacked<SurroundedHoles>(bytes)); });
   if (!this->Crew.IsInFiles())
   {
     box.Clear();

@@ -144,7 +144,7 @@ void KeepUsed(vtkPolyData* surface, const Ranks& ranks, const Progress& progress
     forEach(false, false, [&](char& isUsed, const PointKey& key) { isUsed = isUsedBy(key); });
     if (hasPoints)
     {
-      KeepFlagged(areUsed, progress, surface);
+      KeepFlagged(areUsed, 1, progress, surface);
     }
   });
 }

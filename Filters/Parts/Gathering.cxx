@@ -82,18 +82,12 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
   std::vector<std::vector<Bytes>> packed(ranks.Count());
   ranks.Agree([&] {
     Report(sending, 0.0);
-    try
-    {
+    ranks.NameErrors([&] {
       for (vtkPointSet* part : parts)
       {
         own.push_back(Checked(part, kind));
       }
-    }
-    catch (const Error& error)
-    {
-      // The error is reported by rank 0, to whom "the input" would be its own.
-      throw Error("On rank " + std::to_string(ranks.OwnRank()) + ": " + error.what());
-    }
+    });
     // What is at home already stays as it is, without a copy.
     for (std::size_t i = 0; i < own.size() && ranks.OwnRank() != home; ++i)
     {

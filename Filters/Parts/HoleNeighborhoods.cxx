@@ -28,9 +28,8 @@ std::vector<HoleExtent> ExtentsOf(const Holes& holes, const PointView& points)
   {
     HoleExtent extent{ Box(), 0.0, holes.NumberOfEdges(hole) };
     holes.VisitEdges(hole, [&](Index a, Index b) {
-      const Point2 p = points.At(a), q = points.At(b);
-      extent.OfRim.Add(p);
-      extent.MeanEdge += std::hypot(q.X - p.X, q.Y - p.Y) / extent.NumberOfEdges;
+      extent.OfRim.Add(points.At(a));
+      extent.MeanEdge += Distance(points.At(a), points.At(b)) / extent.NumberOfEdges;
     });
     extents.push_back(extent);
   }
@@ -85,89 +84,46 @@ Box BoxAround(const HoleExtent& hole, int retries, double reach)
 namespace
 {
 /**
- * A grid of 256 by 256 cells over a mesh, in which the cells that boxes touch are marked. Whether a
- * box meets a marked cell takes four look-ups, however many boxes there are and however large it
- * is:
- *
- *     Counts(i, j) is the number of marked cells left of column i and below row j.
- *
- *          a----b          Marked cells in the rectangle:
- *          |    |          Counts(b) - Counts(a) - Counts(d) + Counts(c),
- *          c----d          as with a summed-area table [Crow 1984].
- *
- * The same way round, a box is marked by four differences, whose double sum is 1 inside it. Cells
- * are coarse, so some triangles just beside a box come along; that does no harm.
- *
- * [Crow 1984] Summed-area tables for texture mapping.
+ * A grid of 256 by 256 cells over a mesh, in which the cells that boxes touch are marked. Cells are
+ * coarse, so some triangles just beside a box come along; that does no harm.
  */
-class MarkedCells
+class CellsOfBoxes
 {
 public:
-  MarkedCells(const std::vector<Box>& boxes, const Box& all)
+  CellsOfBoxes(const std::vector<Box>& boxes, const Box& all)
     : Bounds(all)
-    , Counts(static_cast<std::size_t>(Side + 1) * (Side + 1), 0)
+    , Marked(Side, Side)
   {
-    // One row and column more than there are cells: a difference may stand just beyond the last.
-    std::vector<Index> marks(this->Counts.size(), 0); // differences
     for (const Box& box : boxes)
     {
       if (box.Intersects(all))
       {
-        const Range range = this->RangeOf(box);
-        ++marks[IndexOf(range.I0, range.J0)];
-        --marks[IndexOf(range.I1 + 1, range.J0)];
-        --marks[IndexOf(range.I0, range.J1 + 1)];
-        ++marks[IndexOf(range.I1 + 1, range.J1 + 1)];
+        const Range r = this->RangeOf(box);
+        this->Marked.Mark(r.I0, r.J0, r.I1, r.J1);
       }
     }
-    for (int j = 0; j <= Side; ++j)
-    {
-      for (int i = 0; i <= Side; ++i)
-      {
-        const auto at = [&](std::vector<Index>& from, int di, int dj) {
-          return i >= di && j >= dj ? from[IndexOf(i - di, j - dj)] : 0;
-        };
-        // Then each is the number of boxes over the cell.
-        marks[IndexOf(i, j)] += at(marks, 1, 0) + at(marks, 0, 1) - at(marks, 1, 1);
-      }
-    }
-    for (int j = 0; j < Side; ++j)
-    {
-      for (int i = 0; i < Side; ++i)
-      {
-        // Each marked cell counts once, however many boxes touch it.
-        this->Counts[IndexOf(i + 1, j + 1)] = (marks[IndexOf(i, j)] > 0 ? 1 : 0) +
-          this->Counts[IndexOf(i, j + 1)] + this->Counts[IndexOf(i + 1, j)] -
-          this->Counts[IndexOf(i, j)];
-      }
-    }
+    this->Marked.Finish();
   }
 
   bool Meet(const Box& box) const
   {
     const Range r = this->RangeOf(box);
-    return this->Counts[IndexOf(r.I1 + 1, r.J1 + 1)] - this->Counts[IndexOf(r.I0, r.J1 + 1)] -
-      this->Counts[IndexOf(r.I1 + 1, r.J0)] + this->Counts[IndexOf(r.I0, r.J0)] >
-      0;
+    return this->Marked.AreAny(r.I0, r.J0, r.I1, r.J1);
   }
 
 private:
-  static constexpr int Side = 256;
+  static constexpr Index Side = 256;
   struct Range
   {
-    int I0, I1, J0, J1;
+    Index I0, I1, J0, J1;
   };
 
-  static std::size_t IndexOf(int i, int j)
-  {
-    return static_cast<std::size_t>(j) * (Side + 1) + static_cast<std::size_t>(i);
-  }
-  static int CellOf(double x, double low, double width)
+  static Index CellOf(double x, double low, double width)
   {
     // Without an extent there is one column (row). The clamp also takes boxes that reach to
     // infinity.
     const double cell = width > 0.0 ? std::floor((x - low) / width * Side) : 0.0;
-    return static_cast<int>(std::min(std::max(cell, 0.0), Side - 1.0));
+    return static_cast<Index>(std::min(std::max(cell, 0.0), Side - 1.0));
   }
   Range RangeOf(const Box& box) const
   {
@@ -178,7 +134,7 @@ private:
   }
 
   const Box Bounds;
-  std::vector<Index> Counts;
+  MarkedCells Marked;
 };
 } // namespace
 
@@ -194,7 +150,7 @@ std::vector<Index> TrianglesIn(const std::vector<Box>& boxes, const Mesh& mesh)
   {
     all.Add(mesh.PointOf(corner));
   }
-  const MarkedCells marked(boxes, all);
+  const CellsOfBoxes cells(boxes, all);
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     Box box;
@@ -203,7 +159,7 @@ std::vector<Index> TrianglesIn(const std::vector<Box>& boxes, const Mesh& mesh)
       box.Add(mesh.PointOf(mesh.Origin(3 * t + k)));
     }
     // By the box of the triangle: a thin one across a corner may come along without meeting a box.
-    if (marked.Meet(box))
+    if (cells.Meet(box))
     {
       near.push_back(t);
     }

@@ -34,24 +34,11 @@ namespace
 {
 /** Copies some tuples; copy(to, from) does, for two lists of the same length. */
 template <typename Copy>
-void CopyRows(const JoinedRows& rows, const Progress& progress, const Copy& copy)
+void CopyJoined(const JoinedRows& rows, const Progress& progress, const Copy& copy)
 {
-  // VTK's lists of ids are copies; so many are made at a time, and progress is reported in between.
-  constexpr std::size_t atOnce = 65536;
-  vtkNew<vtkIdList> from, to;
-  for (std::size_t begin = 0; begin < rows.From.size(); begin += atOnce)
-  {
-    Report(progress, static_cast<double>(begin) / static_cast<double>(rows.From.size()));
-    const std::size_t end = std::min(begin + atOnce, rows.From.size());
-    from->Reset();
-    to->Reset();
-    for (std::size_t i = begin; i < end; ++i)
-    {
-      from->InsertNextId(rows.From[i]);
-      to->InsertNextId(rows.To[i]);
-    }
-    copy(to.Get(), from.Get());
-  }
+  CopyRows(
+    static_cast<vtkIdType>(rows.From.size()),
+    [&rows](vtkIdType i) { return std::make_pair(rows.From[i], rows.To[i]); }, progress, copy);
 }
 
 vtkSmartPointer<vtkPoints> JoinPoints(const Parts& parts, const std::vector<JoinedRows>& rows,
@@ -66,7 +53,7 @@ vtkSmartPointer<vtkPoints> JoinPoints(const Parts& parts, const std::vector<Join
   SetTuples(count, points->GetData());
   for (std::size_t i = 0; i < parts.size(); ++i)
   {
-    CopyRows(rows[i], progress, [&](vtkIdList* to, vtkIdList* from) {
+    CopyJoined(rows[i], progress, [&](vtkIdList* to, vtkIdList* from) {
       points->InsertPoints(to, from, parts[i]->GetPoints());
     });
   }
@@ -94,7 +81,7 @@ vtkSmartPointer<vtkAbstractArray> JoinArray(vtkAbstractArray* first,
   SetTuples(count, joined);
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
-    CopyRows(rows[i], progress,
+    CopyJoined(rows[i], progress,
       [&](vtkIdList* to, vtkIdList* from) { joined->InsertTuples(to, from, arrays[i]); });
   }
   return joined;

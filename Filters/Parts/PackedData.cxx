@@ -170,4 +170,17 @@ vtkSmartPointer<vtkPolyData> UnpackData(const char* from, std::size_t size)
   return data;
 }
 
+void AnyValue::Append(Bytes& bytes, const vtkSmartPointer<vtkPolyData>& data)
+{
+  AppendList(bytes, data ? PackData(data) : Bytes());
+}
+
+void AnyValue::Take(const char*& from, vtkSmartPointer<vtkPolyData>& data)
+{
+  std::size_t size = 0;
+  TakeFrom(from, &size, 1);
+  data = size > 0 ? UnpackData(from, size) : nullptr;
+  from += size;
+}
+
 } // namespace elevation

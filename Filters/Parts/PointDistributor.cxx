@@ -234,20 +234,14 @@ void PointDistributor::KeepSample()
 void PointDistributor::NumberPoints(SurfacePart& common)
 {
   this->AllRanks.Agree([&]() {
-    try
-    {
+    this->AllRanks.NameErrors([&]() {
       if (this->Input)
       {
         CheckPointArrays(this->Input);
         const bool areDouble = ViewPoints(this->Input).View.Double != nullptr;
         this->PointType = areDouble ? VTK_DOUBLE : VTK_FLOAT;
       }
-    }
-    // Rank 0 reports for all, so the message has to say whose points these are.
-    catch (const Error& error)
-    {
-      throw Error("On rank " + std::to_string(this->AllRanks.OwnRank()) + ": " + error.what());
-    }
+    });
   });
   vtkPointData* const arrays = this->Input ? this->Input->GetPointData() : this->Arrays.Get();
   common.Kinds =
@@ -296,7 +290,7 @@ void PointDistributor::Read(vtkPointSet* points, const std::string& idsName, vtk
  * A sample of points that come at once: one of each stretch of some, at an index that follows no
  * rule, as rows of a grid may be as long as a stretch.
  */
-std::vector<double> PointDistributor::SampleAtOnce(vtkIdType parts) const
+std::vector<Point2> PointDistributor::SampleAtOnce(vtkIdType parts) const
 {
   const vtkIdType count = static_cast<vtkIdType>(this->Rows.Count());
   std::vector<vtkIdType> all = { count };
@@ -305,7 +299,7 @@ std::vector<double> PointDistributor::SampleAtOnce(vtkIdType parts) const
   const vtkIdType sample =
     std::max(SamplePerPart * parts, std::min(SampleOfFewParts, all[0] / PointsPerSample));
   const vtkIdType stretch = std::max<vtkIdType>(1, all[0] / sample);
-  std::vector<double> coordinates;
+  std::vector<Point2> sampled;
   this->AllRanks.Agree([&]() {
     for (vtkIdType i = 0; i * stretch < count; ++i)
     {
@@ -313,17 +307,17 @@ std::vector<double> PointDistributor::SampleAtOnce(vtkIdType parts) const
       const double* const p = this->Rows.At(at);
       if (this->Rows.IsFinite(at) && !IsCopy(this->Rows.Marks(), at))
       {
-        coordinates.insert(coordinates.end(), p, p + 2);
+        sampled.push_back({ p[0], p[1] });
       }
     }
   });
-  return coordinates;
+  return sampled;
 }
 
 /** Cuts the plane by the samples of all ranks, on each of them alike. */
 Cuts PointDistributor::CutPlane(int parts)
 {
-  std::vector<double> coordinates;
+  std::vector<Point2> sampled;
   if (this->IsInFile())
   {
     // All ranks choose by the same mask, that of the one with most points: each point of all ranks
@@ -334,25 +328,18 @@ Cuts PointDistributor::CutPlane(int parts)
     this->KeepSample();
     for (const SampledPoint& point : this->Sample)
     {
-      coordinates.insert(coordinates.end(), { point.At.X, point.At.Y });
+      sampled.push_back(point.At);
     }
     this->Sample = std::vector<SampledPoint>();
   }
   else
   {
-    coordinates = this->SampleAtOnce(parts);
+    sampled = this->SampleAtOnce(parts);
   }
   // Rank after rank: the same list on all of them, from which each cuts in the same way.
-  coordinates = this->AllRanks.Collect(coordinates);
+  sampled = this->AllRanks.Collect(sampled);
   std::unique_ptr<Cuts> plane;
-  this->AllRanks.Agree([&]() {
-    std::vector<Point2> sample(coordinates.size() / 2);
-    for (std::size_t i = 0; i < sample.size(); ++i)
-    {
-      sample[i] = { coordinates[2 * i], coordinates[2 * i + 1] };
-    }
-    plane = std::make_unique<Cuts>(std::move(sample), parts);
-  });
+  this->AllRanks.Agree([&]() { plane = std::make_unique<Cuts>(std::move(sampled), parts); });
   return std::move(*plane);
 }
 

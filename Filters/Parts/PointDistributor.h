@@ -95,7 +95,7 @@ private:
   void NumberPoints(SurfacePart& common);
   void Read(vtkPointSet* points, const std::string& idsName, vtkIdType first);
   /** Pass 3. */
-  std::vector<double> SampleAtOnce(vtkIdType parts) const;
+  std::vector<Point2> SampleAtOnce(vtkIdType parts) const;
   Cuts CutPlane(int parts);
   /** Pass 4. */
   void SendSlice(const Cuts& plane, Engine& engine, int box, const Progress& progress,

@@ -432,6 +432,18 @@ std::size_t PointTable::Copy(
   return first + indices.size();
 }
 
+void PointTable::PassArrays(vtkPointData* output) const
+{
+  for (std::size_t i = 0; i < this->Kinds.size(); ++i)
+  {
+    const int index = output->AddArray(this->Arrays[i]);
+    if (this->Kinds[i].Attribute >= 0)
+    {
+      output->SetActiveAttribute(index, this->Kinds[i].Attribute);
+    }
+  }
+}
+
 void PointTable::Choose(const std::vector<vtkIdType>& indices)
 {
   // A new table: an array that is the input's own must not change.

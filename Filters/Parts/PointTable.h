@@ -112,6 +112,8 @@ public:
     const PointTable& from, const std::vector<vtkIdType>& indices, std::size_t first);
   /** The same to what Pack() has packed; nothing where there are no bytes. */
   std::size_t Unpack(const Bytes& packed, std::size_t first);
+  /** Adds the arrays to those of a data set, as the attributes that they are. */
+  void PassArrays(vtkPointData* output) const;
   /** How many points those are. */
   static std::size_t CountIn(const Bytes& packed);
 

@@ -248,6 +248,22 @@ void Ranks::Agree(const std::function<void()>& step) const
   }
 }
 
+void Ranks::NameErrors(const std::function<void()>& work) const
+{
+  try
+  {
+    work();
+  }
+  catch (const Error& error)
+  {
+    if (!this->Controller)
+    {
+      throw;
+    }
+    throw Error("On rank " + std::to_string(this->OwnRank()) + ": " + error.what());
+  }
+}
+
 Progress Ranks::Watched(const Progress& progress) const
 {
   if (!this->Controller)

@@ -103,6 +103,12 @@ public:
    */
   void Agree(const std::function<void()>& step) const;
 
+  /**
+   * For a step: does work, whose errors then begin with the number of this rank, if it is not alone.
+   * Rank 0 reports them, to which "the input" would be its own.
+   */
+  void NameErrors(const std::function<void()>& work) const;
+
   /** For a step: a progress that also stops it when it has failed on another rank. */
   Progress Watched(const Progress& progress) const;
 

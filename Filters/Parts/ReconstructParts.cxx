@@ -257,8 +257,7 @@ void ReconstructParts::Begin(int count)
 /** What this rank has for all of them. One without points needs a folder, too. */
 void ReconstructParts::Prepare()
 {
-  try
-  {
+  this->AllRanks->NameErrors([&]() {
     this->CheckIsComplete();
     if (this->Set.Folder.empty())
     {
@@ -268,15 +267,7 @@ void ReconstructParts::Prepare()
     {
       this->Work = std::make_unique<TriangulateParts>(*this->AllRanks, this->Set.Folder);
     }
-  }
-  catch (const Error& error)
-  {
-    if (this->IsAlone())
-    {
-      throw;
-    }
-    throw Error("On rank " + std::to_string(this->AllRanks->OwnRank()) + ": " + error.what());
-  }
+  });
 }
 
 /** @throws Error where properties are wrong */

@@ -294,9 +294,7 @@ bool Settling::JoinSeams(const SharedLattice* lattice)
       // The first part of the upper half, which has its seam.
       if (isJoined(node) && part == node.Middle())
       {
-        Bytes bytes;
-        AnyValue::Append(bytes, this->Seams[part]);
-        this->Crew.Send(node.Begin, FromSeams, std::move(bytes));
+        this->Crew.Send(node.Begin, FromSeams, Packed(this->Seams[part]));
         // A seam is in memory at one place only.
         this->Seams.erase(part);
       }
@@ -314,10 +312,7 @@ bool Settling::JoinSeams(const SharedLattice* lattice)
         if (isJoined(node) && part == node.Begin)
         {
           // Taken before triangles are sent to the same box in pass 4.
-          const Bytes bytes = std::move(this->Crew.At(part, FromSeams).Take().at(0));
-          const char* from = bytes.data();
-          Piece other;
-          AnyValue::Take(from, other);
+          const Piece other = Unpacked<Piece>(this->Crew.At(part, FromSeams).Take().at(0));
           this->WatchLattice([&]() { this->SettleNode(node, other, lattice, progress); });
         }
       });

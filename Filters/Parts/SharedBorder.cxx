@@ -56,7 +56,7 @@ struct MetPoint
 };
 
 template <typename Value>
-std::vector<Value> Unpacked(const std::vector<Bytes>& packed)
+std::vector<Value> AllIn(const std::vector<Bytes>& packed)
 {
   std::vector<Value> all;
   std::for_each(packed.begin(), packed.end(), [&all](const Bytes& bytes) { TakeAll(bytes, all); });
@@ -124,7 +124,7 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
   packed = ranks.Exchange(std::move(packed));
   ranks.Agree([&]() {
     // This rank answers for the keys that the hash gives to it.
-    std::vector<MetPoint> met = Unpacked<MetPoint>(packed);
+    std::vector<MetPoint> met = AllIn<MetPoint>(packed);
     packed = std::vector<Bytes>(ranks.Count());
     const auto keyOf = [](const MetPoint& p) {
       return std::make_tuple(p.Key, p.IsMarked, p.Rank, p.Point);
@@ -156,7 +156,7 @@ void FindCopies(const Ranks& ranks, bool byIds, SharedPoints& points)
   ranks.Agree([&]() {
     // Only copies are answered, so what has no answer counts.
     points.AreCopies.assign(points.Indices.size(), 0);
-    for (const vtkIdType index : Unpacked<vtkIdType>(packed))
+    for (const vtkIdType index : AllIn<vtkIdType>(packed))
     {
       points.AreCopies[index] = 1;
     }
@@ -373,7 +373,7 @@ SharedBorder CollectBorder(const Ranks& ranks, PartEdges&& edges)
   {
     packed = ranks.Exchange(std::move(packed));
     ranks.Agree([&]() {
-      edges.OnBorder = Unpacked<PartEdge>(packed);
+      edges.OnBorder = AllIn<PartEdge>(packed);
       KeepSingleEdges(edges);
     });
     // Each rank sends all of what it has to all: what is left is short, as a border is.
@@ -387,7 +387,7 @@ SharedBorder CollectBorder(const Ranks& ranks, PartEdges&& edges)
         }
       });
       packed = ranks.Exchange(std::move(packed));
-      ranks.Agree([&]() { some = Unpacked<Some>(packed); });
+      ranks.Agree([&]() { some = AllIn<Some>(packed); });
     };
     toAll(edges.OnBorder);
     toAll(edges.OfRegions);

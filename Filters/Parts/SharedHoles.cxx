@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /*
  * Find() makes of the border what FindHoles() makes of a surface, with points numbered by keys. A
- * group of holes then goes through Surround(), Needs(), Fill(), KeepCorners() and Pack(). The
+ * group of holes then goes through Surround(), Needs(), Fill() and KeepCorners(), and is packed. The
  * kernel fills them as holes of a small surface; what it has to know beyond that stands in
  * WholeSurface: how far the triangles are complete, the lattice, and what other holes leave of the
  * limit of new points.
@@ -11,7 +11,6 @@
 
 #include "Adapt/Adapt.h"
 #include "Joining.h"
-#include "PackedData.h"
 
 #include "vtkPolyData.h"
 
@@ -23,20 +22,6 @@
 
 namespace elevation
 {
-
-/** As packed, without the points around the holes; of patches, without holes and reports. */
-template <>
-struct FieldsOf<SurroundedHoles>
-{
-  template <typename Some>
-  static auto In(Some& holes)
-  {
-    auto& patches = holes.Patches;
-    return std::tie(holes.Numbers, holes.Keys, patches.Points, patches.Triangles,
-      patches.PointOffsets, patches.TriangleOffsets, patches.NearestBoundaryPoints,
-      patches.StandardErrors, patches.HalfIntervals, patches.Attributes);
-  }
-};
 
 bool SharedHoles::Find(const Progress& progress)
 {
@@ -330,22 +315,6 @@ void AppendLists(const FillResult& from, FillResult& to)
   }
 }
 } // namespace
-
-Bytes SurroundedHoles::Pack() const
-{
-  Bytes bytes;
-  AnyValue::Append(bytes, *this);
-  const Bytes data = PackData(this->Surrounding);
-  AppendTo(bytes, data.data(), data.size());
-  return bytes;
-}
-
-SurroundedHoles::SurroundedHoles(const Bytes& bytes)
-{
-  const char* from = bytes.data();
-  AnyValue::Take(from, *this);
-  this->Surrounding = UnpackData(from, static_cast<std::size_t>(bytes.end() - from));
-}
 
 /*
  * Points of the groups' surroundings come first, group after group; then the new points of all:

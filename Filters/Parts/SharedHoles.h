@@ -113,9 +113,7 @@ struct SurroundedHoles
   /** Keeps only those points of the surrounding that patches have. */
   void KeepCorners();
 
-  Bytes Pack() const;
   SurroundedHoles() = default;
-  explicit SurroundedHoles(const Bytes& bytes);
   /** Several groups in one, by the order of their first holes; without triangles around them. */
   explicit SurroundedHoles(std::vector<SurroundedHoles>&& groups);
 
@@ -127,6 +125,20 @@ private:
 
   Mesh Near;     // the triangles, without long ones
   Holes Regions; // of these
+};
+
+/** As it goes to a part: of patches, without holes and reports. */
+template <>
+struct FieldsOf<SurroundedHoles>
+{
+  template <typename Some>
+  static auto In(Some& holes)
+  {
+    auto& patches = holes.Patches;
+    return std::tie(holes.Numbers, holes.Keys, patches.Points, patches.Triangles,
+      patches.PointOffsets, patches.TriangleOffsets, patches.NearestBoundaryPoints,
+      patches.StandardErrors, patches.HalfIntervals, patches.Attributes, holes.Surrounding);
+  }
 };
 
 } // namespace elevation

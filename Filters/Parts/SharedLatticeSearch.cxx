@@ -18,57 +18,30 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 namespace elevation
 {
 
+/** As it goes to other ranks. */
+template <>
+struct FieldsOf<LatticeSample>
+{
+  template <typename Sample>
+  static auto In(Sample& sample)
+  {
+    return std::tie(sample.Low, sample.High, sample.Count, sample.Points);
+  }
+};
+
 namespace
 {
-/** As reals: the box, two counts and the points. */
-std::vector<double> ToReals(const LatticeSample& sample)
-{
-  std::vector<double> reals = { sample.Low.X, sample.Low.Y, sample.High.X, sample.High.Y,
-    sample.Count, static_cast<double>(sample.Points.size()) };
-  for (const Point2 p : sample.Points)
-  {
-    reals.insert(reals.end(), { p.X, p.Y });
-  }
-  return reals;
-}
-
-/** The next sample of some. */
-LatticeSample FromReals(const double*& reals)
-{
-  LatticeSample sample;
-  sample.Low = { reals[0], reals[1] };
-  sample.High = { reals[2], reals[3] };
-  sample.Count = reals[4];
-  sample.Points.resize(static_cast<std::size_t>(reals[5]));
-  reals += 6;
-  for (Point2& p : sample.Points)
-  {
-    p = { reals[0], reals[1] };
-    reals += 2;
-  }
-  return sample;
-}
-
 /** The points of all ranks, each once. */
 std::vector<Point2> CollectPoints(const Ranks& ranks, const std::vector<Point2>& own)
 {
-  std::vector<double> reals;
-  for (const Point2 p : own)
-  {
-    reals.insert(reals.end(), { p.X, p.Y });
-  }
-  reals = ranks.Collect(reals);
-  std::vector<Point2> all;
-  for (std::size_t i = 0; i < reals.size(); i += 2)
-  {
-    all.push_back({ reals[i], reals[i + 1] });
-  }
+  std::vector<Point2> all = ranks.Collect(own);
   // Sorted, so the order of ranks is lost; a point that two ranks have counts once.
   std::sort(all.begin(), all.end(), IsLower);
   all.erase(std::unique(all.begin(), all.end()), all.end());
@@ -129,12 +102,6 @@ NodeBox AllNodes(const Ranks& ranks, const PointSlices& points, const Box& all,
 }
 } // namespace
 
-// For points in memory.
-PointSlices InOneSlice(const PointView& points)
-{
-  return { static_cast<double>(points.Count), [points](const auto& visit) { visit(points); } };
-}
-
 bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tolerance, int threads,
   const Progress& progress, LatticeSample& all, Lattice& steps)
 {
@@ -143,22 +110,19 @@ bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tol
   ranks.Sum(count);
   all.CloudSize = static_cast<double>(count[0]);
   std::vector<std::vector<Index>> notFinite; // of each slice
-  std::vector<double> reals;
+  std::vector<LatticeSample> samples(1);     // of this rank, then of all
   ranks.Agree([&]() {
-    LatticeSample own;
     const Progress sampling = ranks.Watched(stages.Next());
     ForEachSlice(points, sampling, [&](const PointView& slice, const Progress& ofSlice) {
       notFinite.emplace_back();
       // The hash chooses by the size of the whole cloud, so parts of a sample add up to that of
       // all.
-      own.Add(SampleForLattice(slice, all.CloudSize, threads, ofSlice, notFinite.back()));
+      samples[0].Add(SampleForLattice(slice, all.CloudSize, threads, ofSlice, notFinite.back()));
     });
-    reals = ToReals(own);
   });
-  reals = ranks.Collect(reals);
-  for (const double* at = reals.data(); at != reals.data() + reals.size();)
+  for (LatticeSample& sample : samples = ranks.Collect(samples))
   {
-    all.Add(FromReals(at));
+    all.Add(std::move(sample));
   }
   if (!all.MayFitLattice())
   {

@@ -28,8 +28,6 @@ struct PointSlices
   std::function<void(const std::function<void(const PointView&)>&)> ForEach;
 };
 
-PointSlices InOneSlice(const PointView& points);
-
 /**
  * The first part of it: the lattice that fits a sample of the points of all ranks.
  * @param[out] all  the sample

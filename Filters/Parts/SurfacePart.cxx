@@ -341,19 +341,13 @@ void PassPart(SurfacePart& part, int threads, vtkPolyData* output)
   }
   output->SetPoints(points);
   vtkPointData* const data = output->GetPointData();
-  vtkUnsignedCharArray* ghosts = nullptr;
   for (std::size_t i = 0; i < part.Kinds.size(); ++i)
   {
-    vtkAbstractArray* const array = part.OwnPoints.Arrays[i];
     // Both tables have the same kinds of arrays in the same order.
-    array->InsertTuples(ownCount, otherCount, 0, part.Others.Arrays[i]);
-    const int index = data->AddArray(array);
-    if (part.Kinds[i].Attribute >= 0)
-    {
-      data->SetActiveAttribute(index, part.Kinds[i].Attribute);
-    }
-    ghosts = IsGhostArray(array) ? vtkUnsignedCharArray::SafeDownCast(array) : ghosts;
+    part.OwnPoints.Arrays[i]->InsertTuples(ownCount, otherCount, 0, part.Others.Arrays[i]);
   }
+  part.OwnPoints.PassArrays(data);
+  vtkUnsignedCharArray* ghosts = GhostsOf(data);
   data->SetGlobalIds(ids);
   // All ranks mark points, also one that has none of others: arrays have to be the same on all
   // ranks.

@@ -20,28 +20,6 @@
 namespace elevation
 {
 
-namespace
-{
-/** The corners of the triangles without an edge longer than a limit, in their order. */
-Buffer<Index> WithinLimit(double length, const SurfacePart& part, const Progress& progress)
-{
-  const EdgeLimit limit(length);
-  const auto pointOf = [&part](Index index) { return part.PointAt(index); };
-  const Buffer<Index>& corners = part.Result.Triangles;
-  Buffer<Index> kept;
-  for (std::size_t i = 0; i < corners.size(); i += 3)
-  {
-    ReportStep(progress, i / 3, corners.size() / 3, 1 << 16);
-    if (limit.Admits(pointOf, corners[i], corners[i + 1], corners[i + 2]))
-    {
-      std::for_each(
-        corners.data() + i, corners.data() + i + 3, [&kept](Index corner) { kept.Append(corner); });
-    }
-  }
-  return kept;
-}
-} // namespace
-
 TriangulateParts::TriangulateParts(const Ranks& ranks, const std::string& folder)
   : AllRanks(ranks)
   , Folder(folder)
@@ -207,7 +185,11 @@ void TriangulateParts::LimitEdges(const Progress& progress)
   this->Crew->ForEach(progress, [&](int part, const Progress& ofPart) {
     Stages stages(ofPart, { 50, 50 });
     this->Store->WithWhole(part, stages.Next(), [&](const SurfacePart& whole) {
-      const Buffer<Index> kept = WithinLimit(this->Options.MaximumEdgeLength, whole, stages.Next());
+      Buffer<Index> kept;
+      kept.Resize(whole.Result.Triangles.size());
+      std::copy(whole.Result.Triangles.begin(), whole.Result.Triangles.end(), kept.begin());
+      LeaveOutLong([&whole](Index index) { return whole.PointAt(index); },
+        this->Options.MaximumEdgeLength, kept, stages.Next());
       const std::size_t ownCount = whole.OwnPoints.Count();
       // Unused points are no vertices, and so are not missing.
       std::vector<char> areMissing(ownCount + whole.Others.Count(), 1);
@@ -284,7 +266,8 @@ SurfacePart TriangulateParts::Take(int part, const Progress& progress)
   SurfacePart taken = this->Store->TakeWhole(part, stages.Next());
   if (this->Options.MaximumEdgeLength > 0.0)
   {
-    taken.Result.Triangles = WithinLimit(this->Options.MaximumEdgeLength, taken, stages.Next());
+    LeaveOutLong([&taken](Index index) { return taken.PointAt(index); },
+      this->Options.MaximumEdgeLength, taken.Result.Triangles, stages.Next());
     taken.OwnCorners = 0;
   }
   KeepCorners(taken);

@@ -263,7 +263,7 @@ void TrimParts::SendBack(const BoundaryZone& zone, const Progress& progress)
     if (this->NearCounts[part] >= 0)
     {
       const TrimmedZone taken = std::move(*back++);
-      this->Crew.Send(part, Back, taken.Pack());
+      this->Crew.Send(part, Back, Packed(taken));
     }
   }
   this->RankCounts.RecoveredEdges = result.NumberOfRecoveredEdges;
@@ -285,7 +285,7 @@ void TrimParts::AddUp(const Progress& progress)
     Report(ofPart, 0.0);
     this->Crew.At(part, Back).ForEach([&](const Bytes& bytes) {
       // Unpacked for its counts alone; Write() takes it.
-      const TrimmedZone back(bytes);
+      const TrimmedZone back = Unpacked<TrimmedZone>(bytes);
       const vtkIdType owned = std::count(back.IsOwned.begin(), back.IsOwned.end(), char(1));
       kept += static_cast<vtkIdType>(back.Parents[0].size());
       // Points of others among those it had, and new ones that it does not own.
@@ -322,7 +322,7 @@ void TrimParts::Write(int part, const Progress& progress, vtkPolyData* kept, vtk
       own.ListNearPoints();
     }
     this->Crew.At(part, Back).ForEach([&](const Bytes& bytes) {
-      own.Take(TrimmedZone(bytes), taking);
+      own.Take(Unpacked<TrimmedZone>(bytes), taking);
     });
     own.Write(this->TotalCounts.InsertedPoints > 0, this->AreMarked,
       this->BoundaryData ? &this->Lines : nullptr, this->Options, stages.Next(), kept, outward);

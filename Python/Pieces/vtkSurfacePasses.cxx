@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfacePasses.h"
 
+#include "Adapt/Adapt.h"
 #include "Kernel/Base/Base.h"
 
 #include "vtkDataArray.h"
@@ -20,12 +21,14 @@
 
 namespace
 {
+using elevation::HashSieve;
 using elevation::Index;
+using elevation::MarkedCells;
 using elevation::Point2;
 
 constexpr vtkIdType AtOnce = 1 << 20; // triangles
 constexpr int Rings = 6;              // of a cell, around its middle
-constexpr int Bins = 1024;            // side by side, where triangles near places are looked for
+constexpr Index Bins = 1024;          // side by side, where triangles near places are looked for
 constexpr std::size_t Ahead = 32;     // points for which memory is asked for at once
 
 /** Calls work(); false where memory does not suffice. */
@@ -243,10 +246,10 @@ public:
     }
   }
 
-  std::size_t Bin(double value, int axis) const
+  Index Bin(double value, int axis) const
   {
     const double bin = (value - this->Lowest[axis]) * this->Scale[axis];
-    return bin > 0.0 ? static_cast<std::size_t>(std::min(bin, Bins - 1.0)) : 0; // NaN: 0
+    return bin > 0.0 ? static_cast<Index>(std::min(bin, Bins - 1.0)) : 0; // NaN: 0
   }
 
   /** A point of the smallest bin around a place that has some. */
@@ -274,54 +277,6 @@ private:
   std::vector<std::vector<Index>> Levels;
 };
 
-/** Sums over rectangles of bins of how many squares lie over each. */
-class SquaresOverBins
-{
-public:
-  SquaresOverBins()
-    : Sums(static_cast<std::size_t>(Width) * Width, 0)
-  {
-  }
-  void Add(std::size_t x0, std::size_t y0, std::size_t x1, std::size_t y1)
-  {
-    this->Sums[(y0 + 1) * Width + x0 + 1] += 1;
-    this->Sums[(y1 + 2) * Width + x1 + 2] += 1;
-    this->Sums[(y0 + 1) * Width + x1 + 2] -= 1;
-    this->Sums[(y1 + 2) * Width + x0 + 1] -= 1;
-  }
-  /** Once all are added: the number of bins under a square, of all before each bin. */
-  void Finish()
-  {
-    this->AddUp();
-    std::transform(this->Sums.begin(), this->Sums.end(), this->Sums.begin(),
-      [](int over) { return over > 0 ? 1 : 0; });
-    this->AddUp();
-  }
-  bool IsUnder(std::size_t x0, std::size_t y0, std::size_t x1, std::size_t y1) const
-  {
-    const int* const sums = this->Sums.data();
-    return sums[(y1 + 1) * Width + x1 + 1] - sums[y0 * Width + x1 + 1] -
-      sums[(y1 + 1) * Width + x0] + sums[y0 * Width + x0] >
-      0;
-  }
-
-private:
-  void AddUp()
-  {
-    for (std::size_t i = 0; i < this->Sums.size(); ++i)
-    {
-      this->Sums[i] += i % Width ? this->Sums[i - 1] : 0;
-    }
-    for (std::size_t i = Width; i < this->Sums.size(); ++i)
-    {
-      this->Sums[i] += this->Sums[i - Width];
-    }
-  }
-
-  static constexpr std::size_t Width = Bins + 2;
-  std::vector<int> Sums;
-};
-
 template <typename Value, typename Id>
 std::vector<Index> NearTriangles(
   const Value* xyz, vtkIdType points, const Id* corners, vtkIdType triangles, vtkDataArray* places)
@@ -344,7 +299,7 @@ std::vector<Index> NearTriangles(
   }
   const NearBins bins(xyz, used, low, high);
   used = std::vector<Index>();
-  SquaresOverBins squares;
+  MarkedCells squares(Bins, Bins);
   for (vtkIdType i = 0; i < places->GetNumberOfTuples(); ++i)
   {
     double p[3];
@@ -354,30 +309,30 @@ std::vector<Index> NearTriangles(
       xyz[3 * known + 2] - p[2] };
     const double reach =
       1.000001 * std::sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
-    squares.Add(bins.Bin(p[0] - reach, 0), bins.Bin(p[1] - reach, 1), bins.Bin(p[0] + reach, 0),
+    squares.Mark(bins.Bin(p[0] - reach, 0), bins.Bin(p[1] - reach, 1), bins.Bin(p[0] + reach, 0),
       bins.Bin(p[1] + reach, 1));
   }
   squares.Finish();
   // The bins of all points: of points in any order they are found faster than the points.
-  std::vector<std::uint32_t> binOf(static_cast<std::size_t>(points));
+  std::vector<Index> binOf(static_cast<std::size_t>(points));
   vtkSMPTools::For(0, points, AtOnce, [&](vtkIdType first, vtkIdType last) {
     for (vtkIdType i = first; i < last; ++i)
     {
       const Point2 p = PlaceOf(xyz, i);
-      binOf[i] = static_cast<std::uint32_t>(bins.Bin(p.Y, 1) << 16 | bins.Bin(p.X, 0));
+      binOf[i] = bins.Bin(p.Y, 1) << 16 | bins.Bin(p.X, 0);
     }
   });
   return Selected(triangles, [&](vtkIdType begin, vtkIdType end, std::vector<Index>& list) {
     for (vtkIdType t = begin; t < end; ++t)
     {
-      std::uint32_t x[3], y[3];
+      Index x[3], y[3];
       for (int k = 0; k < 3; ++k)
       {
-        const std::uint32_t bin = binOf[corners[3 * t + k]];
-        x[k] = bin & 0xFFFFu;
+        const Index bin = binOf[corners[3 * t + k]];
+        x[k] = bin & 0xFFFF;
         y[k] = bin >> 16;
       }
-      if (squares.IsUnder(std::min({ x[0], x[1], x[2] }), std::min({ y[0], y[1], y[2] }),
+      if (squares.AreAny(std::min({ x[0], x[1], x[2] }), std::min({ y[0], y[1], y[2] }),
             std::max({ x[0], x[1], x[2] }), std::max({ y[0], y[1], y[2] })))
       {
         list.push_back(static_cast<Index>(t));
@@ -386,41 +341,9 @@ std::vector<Index> NearTriangles(
   });
 }
 
-/** Bits, of which one belongs to each hash. */
-class Bits
-{
-public:
-  explicit Bits(std::size_t least)
-  {
-    std::size_t words = 1;
-    while (64 * words < least)
-    {
-      words *= 2;
-    }
-    this->Words.resize(words, 0);
-    this->Mask = words - 1;
-  }
-  void Prefetch(std::size_t hash) const
-  {
-    elevation::Prefetch(&this->Words[hash >> 6 & this->Mask]);
-  }
-  bool Has(std::size_t hash) const
-  {
-    return this->Words[hash >> 6 & this->Mask] >> (hash & 63) & 1;
-  }
-  void Set(std::size_t hash)
-  {
-    this->Words[hash >> 6 & this->Mask] |= std::uint64_t(1) << (hash & 63);
-  }
-
-private:
-  std::vector<std::uint64_t> Words;
-  std::size_t Mask = 0;
-};
-
 /** Calls work(i, hash) for the points that are finite, in order. */
 template <typename Value, typename Work>
-void ForEachHash(const Value* xyz, vtkIdType points, const Bits& bits, const Work& work)
+void ForEachHash(const Value* xyz, vtkIdType points, const HashSieve& sieve, const Work& work)
 {
   std::size_t hashes[Ahead];
   bool areFinite[Ahead];
@@ -432,7 +355,7 @@ void ForEachHash(const Value* xyz, vtkIdType points, const Bits& bits, const Wor
       const Value* const p = xyz + 3 * (begin + i);
       areFinite[i] = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
       hashes[i] = elevation::PointHash()(PlaceOf(xyz, begin + i));
-      bits.Prefetch(hashes[i]);
+      sieve.Prefetch(hashes[i]);
     }
     for (std::size_t i = 0; i < count; ++i)
     {
@@ -447,17 +370,18 @@ void ForEachHash(const Value* xyz, vtkIdType points, const Bits& bits, const Wor
 template <typename Value>
 std::vector<Index> MaybeShared(const Value* xyz, vtkIdType points)
 {
-  Bits once(16 * static_cast<std::size_t>(points)), again(16 * static_cast<std::size_t>(points));
+  const std::size_t bits = 16 * static_cast<std::size_t>(points);
+  HashSieve once(bits), again(bits);
   ForEachHash(xyz, points, once, [&](std::size_t, std::size_t hash) {
-    if (once.Has(hash))
+    if (once.MayHave(hash))
     {
-      again.Set(hash);
+      again.Add(hash);
     }
-    once.Set(hash);
+    once.Add(hash);
   });
   std::vector<Index> ids;
   ForEachHash(xyz, points, again, [&](std::size_t i, std::size_t hash) {
-    if (again.Has(hash))
+    if (again.MayHave(hash))
     {
       ids.push_back(static_cast<Index>(i));
     }
@@ -481,45 +405,13 @@ bool vtkSurfacePasses::FlagCorners(vtkDataArray* corners, vtkUnsignedCharArray* 
   return true;
 }
 
-bool vtkSurfacePasses::KeepTuples(
-  vtkDataArray* array, vtkUnsignedCharArray* flags, vtkDataArray* kept)
-{
-  const std::size_t size =
-    static_cast<std::size_t>(array->GetDataTypeSize()) * array->GetNumberOfComponents();
-  const char* const from = static_cast<const char*>(array->GetVoidPointer(0));
-  char* to = static_cast<char*>(kept->GetVoidPointer(0));
-  const unsigned char* const flag = flags->GetPointer(0);
-  const unsigned char* const end = flag + flags->GetNumberOfValues();
-  for (const unsigned char *first = flag, *last; first < end; first = last)
-  {
-    first = std::find(first, end, 1);
-    last = std::find(first, end, 0);
-    to = std::copy(from + size * (first - flag), from + size * (last - flag), to);
-  }
-  return true;
-}
-
-bool vtkSurfacePasses::Renumber(
-  vtkDataArray* corners, vtkUnsignedCharArray* flags, vtkIntArray* renumbered)
+bool vtkSurfacePasses::KeepFlagged(vtkUnsignedCharArray* flags, vtkPolyData* surface)
 {
   return Try([&]() {
-    std::vector<Index> places(static_cast<std::size_t>(flags->GetNumberOfValues()));
-    Index next = 0;
-    for (std::size_t i = 0; i < places.size(); ++i)
-    {
-      places[i] = next;
-      next += flags->GetValue(static_cast<vtkIdType>(i));
-    }
-    renumbered->SetNumberOfValues(corners->GetNumberOfValues());
-    Index* const result = renumbered->GetPointer(0);
-    WithIds(corners, [&](const auto* ids) {
-      vtkSMPTools::For(0, corners->GetNumberOfValues(), AtOnce, [&](vtkIdType i, vtkIdType end) {
-        for (; i < end; ++i)
-        {
-          result[i] = places[ids[i]];
-        }
-      });
-    });
+    const unsigned char* const flag = flags->GetPointer(0);
+    const std::vector<char> areKept(flag, flag + flags->GetNumberOfValues());
+    const int threads = std::max(1, vtkSMPTools::GetEstimatedNumberOfThreads());
+    elevation::KeepFlagged(areKept, threads, elevation::Progress(), surface);
   });
 }
 
@@ -651,12 +543,12 @@ bool vtkSurfacePasses::FlagEdges(
     const elevation::PointHash hash;
     const double* const ends = edges->GetPointer(0);
     const vtkIdType count = edges->GetNumberOfValues() / 4;
-    Bits starts(1 << 15);
+    HashSieve starts(1 << 15);
     std::unordered_multimap<std::size_t, vtkIdType> edgesFrom;
     for (vtkIdType i = 0; i < count; ++i)
     {
       const std::size_t from = hash({ ends[4 * i], ends[4 * i + 1] });
-      starts.Set(from);
+      starts.Add(from);
       edgesFrom.emplace(from, i);
     }
     WithReals(points, [&](const auto* xyz) {
@@ -665,7 +557,7 @@ bool vtkSurfacePasses::FlagEdges(
         for (std::size_t i = 0; i < isStart.size(); ++i)
         {
           const std::size_t at = hash(PlaceOf(xyz, i));
-          isStart[i] = starts.Has(at) && edgesFrom.count(at) > 0;
+          isStart[i] = starts.MayHave(at) && edgesFrom.count(at) > 0;
         }
         for (vtkIdType i = 0; i < corners->GetNumberOfValues(); ++i)
         {

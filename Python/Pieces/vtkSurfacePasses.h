@@ -22,6 +22,7 @@ VTK_ABI_NAMESPACE_BEGIN
 class vtkDataArray;
 class vtkDoubleArray;
 class vtkIntArray;
+class vtkPolyData;
 class vtkUnsignedCharArray;
 
 class VTKELEVATIONSURFACEPIECES_EXPORT vtkSurfacePasses : public vtkObject
@@ -36,11 +37,8 @@ public:
   /** Sets the flags of points that are corners of triangles. */
   static bool FlagCorners(vtkDataArray* corners, vtkUnsignedCharArray* flags);
 
-  /** The tuples of an array with a flag, in another one of its type, whose tuples are as many. */
-  static bool KeepTuples(vtkDataArray* array, vtkUnsignedCharArray* flags, vtkDataArray* kept);
-
-  /** Corners, all of points with a flag, by their places among these. */
-  static bool Renumber(vtkDataArray* corners, vtkUnsignedCharArray* flags, vtkIntArray* renumbered);
+  /** Leaves the points with a flag, which are all that the triangles have, in a surface of these. */
+  static bool KeepFlagged(vtkUnsignedCharArray* flags, vtkPolyData* surface);
 
   /**
    * The edges that belong to one triangle only, as pairs of the lower and the higher id, in order.

@@ -29,7 +29,7 @@ from vtkmodules.vtkRenderingCore import (
     vtkWindowToImageFilter,
 )
 
-from ..clouds import cells_of
+from ..clouds import cells_of, coordinates_of, id_lists, triangles_of
 from .display import screen, why_no_server
 from ..exaggeration import choose_exaggeration, nice_number
 from ..first_view import BEARING, ERROR, FILLED, HEIGHT, LAND, OPEN, SEA
@@ -189,14 +189,6 @@ def error_colours(errors):
     return colour_map(0.0, float(numpy.percentile(known, 98)) if len(known) else 1.0, ERROR)
 
 
-def line_cells(data):
-    """Index arrays of the lines of vtkPolyData."""
-    cells = data.GetLines()
-    offsets = vtk_to_numpy(cells.GetOffsetsArray())
-    connectivity = vtk_to_numpy(cells.GetConnectivityArray())
-    return [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
-
-
 def segments(paths):
     """Paths as index arrays -> (n, 2) index pairs."""
     pairs = [numpy.column_stack((p[:-1], p[1:])) for p in paths if len(p) > 1]
@@ -221,7 +213,7 @@ class Frame:
         return points
 
     def points_in(self, data):
-        return self(vtk_to_numpy(data.GetPoints().GetData()).astype("f8"))
+        return self(coordinates_of(data).astype("f8"))
 
 
 def actor_of(data, rgb=None, width=0.0):
@@ -310,8 +302,8 @@ def render(
 ):
     """draw() on a screen that is there."""
     progress = progress or (lambda fraction: None)
-    real = vtk_to_numpy(surface.GetPoints().GetData())
-    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    real = coordinates_of(surface)
+    triangles = triangles_of(surface)
     used = corner_flags(triangles, len(real))
     (x, y), z = columns(real, used)
     reason = why_not_drawn(x, y, z)
@@ -382,7 +374,7 @@ def render(
         # 0: filled; 4: triangles that bridged it were replaced
         status = vtk_to_numpy(holes.GetCellData().GetArray("Status"))
         still_open = (status != 0) & (status != 4)
-        pairs = segments([p for p, o in zip(line_cells(holes), still_open) if o])
+        pairs = segments([p for p, o in zip(id_lists(holes.GetLines()), still_open) if o])
         if len(pairs):
             renderer.AddActor(lines_actor(frame.points_in(holes), pairs, colour(OPEN), 3.5, 2))
             legend.append(("hole left open", colour(OPEN)))

@@ -4,10 +4,9 @@
 
 import os
 
-from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from ..clouds import cells_of, make_points, rounding_note, set_crs
+from ..clouds import cells_of, coordinates_of, make_points, rounding_note, set_crs
 from .mesh_formats import Triangles, write_glb, write_ply, write_ts
 from ..messages import FileError, Messages
 from ..paths import suffix_of
@@ -55,7 +54,7 @@ def write_stl(data, path, _crs, progress):
     """STL by VTK; as text, which holds every digit, where the 24 bits of binary STL are too few."""
     from vtkmodules.vtkIOGeometry import vtkSTLWriter
 
-    coarse = rounding_note(vtk_to_numpy(data.GetPoints().GetData()))
+    coarse = rounding_note(coordinates_of(data))
     writer = vtkSTLWriter()
     (writer.SetFileTypeToASCII if coarse else writer.SetFileTypeToBinary)()
     run_writer(writer, data, path, progress)

@@ -7,9 +7,9 @@ import math
 import os
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from ..clouds import EVEN, Frame, cells_of, check_system, make_points, slices
+from ..clouds import EVEN, Frame, add_array, cells_of, check_system, coordinates_of, make_points, slices, triangles_of
 from ..gdal_common import gdal_module, reference_of, write_through_memory
 from ..messages import ElevationSurfaceError, FileError
 from ..passes import corner_flags
@@ -78,7 +78,7 @@ class Grid:
 
 def step_frame(surface, step):
     """(Frame of square pixels over a surface, 0); their edges are multiples of step."""
-    (x0, x1), (y0, y1) = extent_of(vtk_to_numpy(surface.GetPoints().GetData()), surface)
+    (x0, x1), (y0, y1) = extent_of(coordinates_of(surface), surface)
     first, last = [math.floor(v / step) for v in (x0, y0)], [math.ceil(v / step) for v in (x1, y1)]
     columns, rows = (max(1, b - a) for a, b in zip(first, last))
     return Frame((first[0] * step, step, 0.0, last[1] * step, 0.0, -step), columns, rows), 0.0
@@ -86,8 +86,7 @@ def step_frame(surface, step):
 
 def extent_of(points, surface):
     """(lowest, highest) of each of the first two columns of the points that triangles use."""
-    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
-    used = points[corner_flags(triangles, len(points)), :2].astype("f8")
+    used = points[corner_flags(triangles_of(surface), len(points)), :2].astype("f8")
     return list(zip(used.min(axis=0), used.max(axis=0)))
 
 
@@ -99,7 +98,7 @@ def lattice_frame(lattice, surface):
     down = down if across[0] * down[1] < across[1] * down[0] else -down
     x, y = lattice["origin"] - 0.5 * (across + down)
     nodes = Frame((x, across[0], down[0], y, across[1], down[1]), 1, 1)
-    places = nodes.places(vtk_to_numpy(surface.GetPoints().GetData())[:, :2].astype("f8"))
+    places = nodes.places(coordinates_of(surface)[:, :2].astype("f8"))
     (left, right), (top, bottom) = extent_of(places, surface)
     low = math.ceil(left - ON_NODE), math.ceil(top - ON_NODE)
     return nodes.part(low, (math.floor(right + ON_NODE) + 1, math.floor(bottom + ON_NODE) + 1))
@@ -185,9 +184,9 @@ def interpolated(surface, frame, near=0.0, progress=None, method="linear"):
 
 def on_pixels(surface, frame, near):
     """The surface over columns and rows, without triangles that have no area there."""
-    points = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8")
+    points = coordinates_of(surface).astype("f8")
     points[:, :2] = on_centres(frame, points[:, :2], near)
-    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    triangles = triangles_of(surface)
     a, b, c = (points[triangles[:, i], :2] for i in range(3))
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
     errors, ids = surface.GetPointData().GetArray("FilledError"), surface.GetCellData().GetArray("HoleId")
@@ -195,11 +194,9 @@ def on_pixels(surface, frame, near):
     left, right = ux * vy, uy * vx
     has_area = abs(left - right) > FLAT * (abs(left) + abs(right))
     placed.SetPolys(cells_of(triangles[has_area]))
-    for data, array, rows in ((placed.GetPointData(), errors, slice(None)), (placed.GetCellData(), ids, has_area)):
+    for kind, array, rows in (("Point", errors, slice(None)), ("Cell", ids, has_area)):
         if array is not None:
-            chosen = numpy_to_vtk(vtk_to_numpy(array)[rows], deep=True)
-            chosen.SetName(array.GetName())
-            data.AddArray(chosen)
+            add_array(placed, array.GetName(), vtk_to_numpy(array)[rows], kind)
     return placed
 
 

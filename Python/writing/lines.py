@@ -5,10 +5,10 @@
 import math
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkStripper
 
-from ..clouds import make_points
+from ..clouds import coordinates_of, id_lists, make_points, triangles_of
 from ..gdal_common import reference_of, write_through_memory
 from ..messages import ElevationSurfaceError
 from ..passes import corner_flags
@@ -30,9 +30,9 @@ def contours(surface, step, progress=None):
     points are (n, 3); closed lines end where they begin. Raises ElevationSurfaceError where there
     would be more than MOST_LEVELS levels, or none.
     """
-    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
-    points = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8", copy=False)
-    used = corner_flags(corners, len(points))
+    triangles = triangles_of(surface)
+    points = coordinates_of(surface).astype("f8", copy=False)
+    used = corner_flags(triangles, len(points))
     low, high = points[used, 2].min(), points[used, 2].max()
     first, last = math.ceil(low / step), math.floor(high / step)
     if last < first:
@@ -45,9 +45,9 @@ def contours(surface, step, progress=None):
             f"contours every {step:g} would be {last - first + 1:,} levels; "
             f"at most {MOST_LEVELS:,} are drawn: use a larger contour step"
         )
-    plain = make_points(numpy.where(used[:, None], points, points[corners[0]]))
+    plain = make_points(numpy.where(used[:, None], points, points[triangles[0, 0]]))
     plain.SetPolys(surface.GetPolys())
-    z = vtk_to_numpy(plain.GetPoints().GetData())[:, 2]
+    z = coordinates_of(plain)[:, 2]
     plain.GetPointData().SetScalars(numpy_to_vtk(z, deep=True))
     cut = vtkContourFilter()
     cut.SetInputData(plain)
@@ -65,20 +65,14 @@ def contours(surface, step, progress=None):
     result = join.GetOutput()
     if not result.GetNumberOfLines():
         return []
-    xyz = vtk_to_numpy(result.GetPoints().GetData())
+    xyz = coordinates_of(result)
     lines = []
-    for ids in index_arrays(result.GetLines()):
+    for ids in id_lists(result.GetLines()):
         line = xyz[ids]
         level = step * round(line[0, 2] / step)
         line[:, 2] = level
         lines.append((line, {"elevation": level}))
     return lines
-
-
-def index_arrays(cells):
-    """The ids of each of the cells."""
-    ids = vtk_to_numpy(cells.GetConnectivityArray())
-    return numpy.split(ids, vtk_to_numpy(cells.GetOffsetsArray())[1:-1])
 
 
 def outlines(result):
@@ -88,13 +82,12 @@ def outlines(result):
     """
     lines = []
     if result.boundary is not None and result.boundary.GetNumberOfLines():
-        xyz = vtk_to_numpy(result.boundary.GetPoints().GetData())
-        rings = index_arrays(result.boundary.GetLines())
-        lines += [(xyz[ids], {"kind": "boundary"}) for ids in rings]
+        xyz = coordinates_of(result.boundary)
+        lines += [(xyz[ids], {"kind": "boundary"}) for ids in id_lists(result.boundary.GetLines())]
     if result.holes is not None and result.holes.GetNumberOfLines():
-        xyz = vtk_to_numpy(result.holes.GetPoints().GetData())
+        xyz = coordinates_of(result.holes)
         rows = result.report["holes"]["list"]
-        for ids, hole in zip(index_arrays(result.holes.GetLines()), rows):
+        for ids, hole in zip(id_lists(result.holes.GetLines()), rows):
             plain = {name: value for name, value in hole.items() if name not in ("box", "centre")}
             lines.append((xyz[ids], {"kind": "hole", **plain}))
     return lines

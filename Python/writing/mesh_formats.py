@@ -9,7 +9,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
-from ..clouds import cells_of, make_points, slices
+from ..clouds import cells_of, coordinates_of, make_points, slices, triangles_of
 from ..passes import corner_flags
 from ..paths import plain_stem
 from .xml_writer import named_arrays
@@ -27,8 +27,8 @@ class Triangles:
     """
 
     def __init__(self, data):
-        corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-        points = vtk_to_numpy(data.GetPoints().GetData())
+        corners = triangles_of(data)
+        points = coordinates_of(data)
         used = corner_flags(corners, len(points))
         arrays = {name: array for name, array, _ in named_arrays(data.GetPointData())}
         if not used.all():

@@ -54,7 +54,7 @@ class Options(Program):
         switches = [n for n, one in options.PROPERTIES.items() if one.words["takes"] == "switch"]
         self.assertIn("recover_boundary", switches)
         for name in switches:
-            on = options.option_of(name)
+            on = options.option(name)
             off = on.replace("--", "--no-", 1)
             for given, value in ((), None), ((on,), True), ((off,), False), ((off, on), True):
                 with self.subTest(given=given):

@@ -40,39 +40,42 @@ class Passes(unittest.TestCase):
     def test_the_outline_of_no_triangle_is_empty(self):
         self.assertEqual(passes.outline(self.triangles[:0]).shape, (0, 2))
 
-    def test_kept_tuples_are_those_with_a_flag_of_any_array(self):
-        flags = numpy.random.default_rng(2).uniform(size=40) < 0.5
-        for values in (numpy.arange(40.0), numpy.arange(120, dtype="i2").reshape(-1, 3)):
-            array = numpy_to_vtk(values)
-            array.SetName("One")
-            kept = passes.kept_tuples(array, flags)
-            self.assertEqual((kept.GetName(), kept.GetDataType()), ("One", array.GetDataType()))
-            numpy.testing.assert_array_equal(vtk_to_numpy(kept), values[flags])
-        array = vtkSOADataArrayTemplate["float64"]()
-        array.SetNumberOfComponents(2)
-        array.SetNumberOfTuples(40)
-        for i in range(80):
-            array.SetTypedComponent(i // 2, i % 2, i)
-        kept = passes.kept_tuples(array, flags)
-        found = [kept.GetTuple2(i) for i in range(kept.GetNumberOfTuples())]
-        self.assertEqual(found, [(2.0 * i, 2.0 * i + 1) for i in numpy.flatnonzero(flags)])
-        words = vtkStringArray()
-        for i in range(40):
-            words.InsertNextValue(str(i))
-        kept = passes.kept_tuples(words, flags)
-        found = [kept.GetValue(i) for i in range(kept.GetNumberOfValues())]
-        self.assertEqual(found, [str(i) for i in numpy.flatnonzero(flags)])
-
-    def test_renumbered_triangles_have_the_same_points(self):
+    def test_points_with_a_flag_keep_their_arrays_of_any_kind(self):
         triangles = self.triangles[::5]
         flags = passes.corner_flags(triangles, len(self.points))
+        count, kept = len(flags), numpy.flatnonzero(flags)
+        ids = numpy.arange(3 * count, dtype="i2").reshape(-1, 3)
+        by_component, words = vtkSOADataArrayTemplate["float64"](), vtkStringArray()
+        by_component.SetNumberOfComponents(2)
+        by_component.SetNumberOfTuples(count)
+        for i in range(2 * count):
+            by_component.SetTypedComponent(i // 2, i % 2, i)
+        for i in range(count):
+            words.InsertNextValue(str(i))
         for kind in ("i4", "i8"):
-            cells = cells_of(triangles)
+            surface = make_points(self.points)
+            surface.SetPolys(cells_of(triangles))
             if kind == "i8":
-                cells.ConvertTo64BitStorage()
-            found = vtk_to_numpy(passes.renumbered(cells, flags).GetConnectivityArray())
-            numpy.testing.assert_array_equal(
-                self.points[flags][found.reshape(-1, 3)], self.points[triangles])
+                surface.GetPolys().ConvertTo64BitStorage()
+            data = surface.GetPointData()
+            for name, array in (("Ids", numpy_to_vtk(ids)), ("Pairs", by_component), ("Words", words)):
+                array.SetName(name)
+                data.AddArray(array)
+            data.SetActiveVectors("Ids")
+            passes.keep_flagged(surface, flags)
+            found = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+            places = vtk_to_numpy(surface.GetPoints().GetData())
+            numpy.testing.assert_array_equal(places, self.points[flags])
+            numpy.testing.assert_array_equal(places[found], self.points[triangles])
+            self.assertEqual([data.GetArrayName(i) for i in range(3)], ["Ids", "Pairs", "Words"])
+            vectors, pairs, texts = (data.GetAbstractArray(i) for i in range(3))
+            self.assertIs(data.GetVectors(), vectors)
+            self.assertEqual(vectors.GetDataType(), numpy_to_vtk(ids).GetDataType())
+            numpy.testing.assert_array_equal(vtk_to_numpy(vectors), ids[flags])
+            found = [pairs.GetTuple2(i) for i in range(pairs.GetNumberOfTuples())]
+            self.assertEqual(found, [(2.0 * i, 2.0 * i + 1) for i in kept])
+            found = [texts.GetValue(i) for i in range(texts.GetNumberOfValues())]
+            self.assertEqual(found, [str(i) for i in kept])
 
     def test_near_triangles_contain_the_nearest(self):
         random = numpy.random.default_rng(3)

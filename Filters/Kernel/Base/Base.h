@@ -8,7 +8,8 @@
  *   Duplicates, EdgeLimit              two rules that the user sets, on points and on edges
  *   Work, Progress, Threads            how much is done, who hears of it, who does it
  *   Extent, CellGrid                   the box of a cloud; which items touch a place
- *   IdSet, UnionFind, Memory           sets of ids, disjoint sets, large arrays
+ *   IdSet, HashSieve, UnionFind        sets of ids, of hashes, disjoint sets
+ *   MarkedCells, Memory                rectangles of marked cells, large arrays
  *
  * All but Predicates.cxx are headers: most of these functions run once for each point.
  */
@@ -19,7 +20,9 @@
 #include "Duplicates.h"
 #include "EdgeLimit.h"
 #include "Extent.h"
+#include "HashSieve.h"
 #include "IdSet.h"
+#include "MarkedCells.h"
 #include "Memory.h"
 #include "Points.h"
 #include "Predicates.h"

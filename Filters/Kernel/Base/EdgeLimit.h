@@ -53,9 +53,13 @@ private:
   const bool IsPlain; ///< squares neither over- nor underflow
 };
 
-/** Leaves out the triangles of a list, by ids of points, that have an edge over a length. */
-inline void LeaveOutLong(
-  const PointView& points, double length, Buffer<Index>& triangles, const Progress& progress)
+/**
+ * Leaves out the triangles of a list that have an edge over a length.
+ * @param[in] pointOf  of what is in the list
+ */
+template <typename PointOf>
+void LeaveOutLong(
+  const PointOf& pointOf, double length, Buffer<Index>& triangles, const Progress& progress)
 {
   const EdgeLimit limit(length);
   std::size_t kept = 0;
@@ -63,13 +67,20 @@ inline void LeaveOutLong(
   {
     ReportStep(progress, t, triangles.size() / 3);
     const Index* const corners = triangles.data() + 3 * t;
-    if (limit.Admits([&](Index id) { return points.At(id); }, corners[0], corners[1], corners[2]))
+    if (limit.Admits(pointOf, corners[0], corners[1], corners[2]))
     {
       std::copy(corners, corners + 3, triangles.data() + kept);
       kept += 3;
     }
   }
   triangles.Resize(limit.IsSet() ? kept : triangles.size());
+}
+
+/** The same of a list of ids of points. */
+inline void LeaveOutLong(
+  const PointView& points, double length, Buffer<Index>& triangles, const Progress& progress)
+{
+  LeaveOutLong([&points](Index id) { return points.At(id); }, length, triangles, progress);
 }
 
 } // namespace elevation

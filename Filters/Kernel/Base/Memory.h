@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
+ * Large arrays of plain values.
  *
  * A std::vector fills new values with zeros, copies all when it grows, and cannot hand its memory
  * to VTK; for arrays as long as the cloud each of these costs a pass over memory.
- * Large arrays of plain values.
  */
 #ifndef elevation_Base_Memory_h
 #define elevation_Base_Memory_h

@@ -62,6 +62,12 @@ inline double SquaredLength(Point2 p, Point2 q)
   return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
 }
 
+/** Their distance, over the whole range of double, but slow. */
+inline double Distance(const Point2& p, const Point2& q)
+{
+  return std::hypot(p.X - q.X, p.Y - q.Y);
+}
+
 /**
  * ab - cd, with an error of few units in the last place also where most digits cancel (Kahan). The
  * second fused multiplication gives the rounding error of cd, which is part of the first one.

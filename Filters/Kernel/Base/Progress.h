@@ -246,6 +246,18 @@ void ForEachStretch(Index count, const Progress& progress, Work&& work)
   }
 }
 
+/** Calls visit(i) for the numbers from 0 to count - 1, and reports in between. */
+template <typename Visit>
+void ForEachNumber(Index count, const Progress& progress, const Visit& visit)
+{
+  ForEachStretch(count, progress, [&visit](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+    {
+      visit(i);
+    }
+  });
+}
+
 } // namespace elevation
 
 #endif

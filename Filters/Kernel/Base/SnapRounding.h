@@ -4,6 +4,7 @@
  * @file
  * Whether a point is so near a segment that rounding alone may separate them, and the order of such
  * points along the segment. As in snap rounding, a point in reach may become a vertex of the
+ * segment, so that vertices do not cluster. Topology is decided in Predicates.h, not here.
  *
  *                p                  p is in reach of the segment from a to b if it is at most that
  *   a -----------:------------> b   many units off (:), across the axis along which the segment is
@@ -12,7 +13,6 @@
  * Lines, and edges that follow a ring, are cut at rounded crossings. Without a reach, such a cut
  * could put two vertices where one is meant, with a triangle between them too thin for the next
  * cut.
- * segment, so that vertices do not cluster. Topology is decided in Predicates.h, not here.
  */
 #ifndef elevation_Base_SnapRounding_h
 #define elevation_Base_SnapRounding_h

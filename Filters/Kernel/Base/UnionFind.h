@@ -4,8 +4,8 @@
  * @file
  * Disjoint sets of ids, as trees of parents. Each id begins as its own parent: std::iota. Two sets
  * are joined by making the root of one the parent of the other; with the lower root as parent, the
- * With that rule the roots do not depend on the order in which sets are joined.
- * root of a set is its lowest id.
+ * root of a set is its lowest id. With that rule the roots do not depend on the order in which sets
+ * are joined.
  */
 #ifndef elevation_Base_UnionFind_h
 #define elevation_Base_UnionFind_h

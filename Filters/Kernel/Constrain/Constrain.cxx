@@ -36,12 +36,8 @@ Buffer<double> JoinPoints(
       *out++ = value;
     }
   };
-  ForEachStretch(points.Count, progress, [&](Index begin, Index end) {
-    for (Index id = begin; id < end; ++id)
-    {
-      append(points.At(id), points.Elevation(id));
-    }
-  });
+  ForEachNumber(
+    points.Count, progress, [&](Index id) { append(points.At(id), points.Elevation(id)); });
   for (const AddedPoint& point : added)
   {
     append(point.Position, point.Elevation);
@@ -73,24 +69,20 @@ void SortInChanged(const Mesh& mesh, Buffer<Index>& triangles, const Progress& p
   Corners* kept = all; // the end of those that have not changed
   std::vector<Corners> changed;
   const Index count = mesh.NumberOfTriangles();
-  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
+  ForEachNumber(count, stages.Next(), [&](Index t) {
+    Corners corners{ mesh.Triangles[3 * t], mesh.Triangles[3 * t + 1], mesh.Triangles[3 * t + 2] };
+    // Recovery writes into the slots of triangles that it has taken out, so others are at their
+    // places.
+    if (corners == all[t])
     {
-      Corners corners{ mesh.Triangles[3 * t], mesh.Triangles[3 * t + 1],
-        mesh.Triangles[3 * t + 2] };
-      // Recovery writes into the slots of triangles that it has taken out, so others are at their
-      // places.
-      if (corners == all[t])
-      {
-        *kept++ = corners;
-        continue;
-      }
-      std::rotate(corners.begin(),
-        std::min_element(corners.begin(), corners.end(),
-          [&](Index v, Index w) { return IsLower(mesh.PointOf(v), mesh.PointOf(w)); }),
-        corners.end());
-      changed.push_back(corners);
+      *kept++ = corners;
+      return;
     }
+    std::rotate(corners.begin(),
+      std::min_element(corners.begin(), corners.end(),
+        [&](Index v, Index w) { return IsLower(mesh.PointOf(v), mesh.PointOf(w)); }),
+      corners.end());
+    changed.push_back(corners);
   });
   const auto comesBefore = [&](const Corners& p, const Corners& q) {
     return ComesBefore(mesh.Points, p, q);
@@ -150,12 +142,7 @@ ConstrainedTriangulation TriangulateConstrained(
   }
   Mesh mesh;
   mesh.Points.resize(all.Count);
-  ForEachStretch(all.Count, later.Next(), [&](Index begin, Index end) {
-    for (Index id = begin; id < end; ++id)
-    {
-      mesh.Points[id] = all.At(id);
-    }
-  });
+  ForEachNumber(all.Count, later.Next(), [&](Index id) { mesh.Points[id] = all.At(id); });
   mesh.Triangles.assign(result.Triangles.begin(), result.Triangles.end());
   mesh.ConnectTwins(0, later.Next());
   std::vector<char> flags;

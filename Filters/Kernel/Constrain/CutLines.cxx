@@ -215,37 +215,33 @@ private:
   {
     Stages stages(progress, { 80, 20 });
     std::vector<PieceCut> found; // with input points for vertices
-    ForEachStretch(
-      this->Points.Count, stages.Next(), [&](Index begin, Index end) {
-        for (Index id = begin; id < end; ++id)
+    ForEachNumber(this->Points.Count, stages.Next(), [&](Index id) {
+      const Point2 p = this->Points.At(id);
+      std::size_t cell;
+      // Most points are in no cell with a piece.
+      if (!this->Grid.FindCell(p, cell) || !std::isfinite(this->Points.Elevation(id)))
+      {
+        return;
+      }
+      const std::size_t before = found.size();
+      for (const Index* i = this->Grid.Begin(cell); i < this->Grid.End(cell); ++i)
+      {
+        const Ends& ends = this->PieceEnds[*i];
+        const Index vertex = ends[0] == p ? this->Pieces[*i].A
+          : ends[1] == p                  ? this->Pieces[*i].B
+                                          : None;
+        if (vertex != None)
         {
-          const Point2 p = this->Points.At(id);
-          std::size_t cell;
-          // Most points are in no cell with a piece.
-          if (!this->Grid.FindCell(p, cell) || !std::isfinite(this->Points.Elevation(id)))
-          {
-            continue;
-          }
-          const std::size_t before = found.size();
-          for (const Index* i = this->Grid.Begin(cell); i < this->Grid.End(cell); ++i)
-          {
-            const Ends& ends = this->PieceEnds[*i];
-            const Index vertex = ends[0] == p ? this->Pieces[*i].A
-              : ends[1] == p                  ? this->Pieces[*i].B
-                                              : None;
-            if (vertex != None)
-            {
-              this->SetInput(vertex, id);
-              found.resize(before); // there is a vertex already
-              break;
-            }
-            if (IsInside(ends, p))
-            {
-              found.push_back({ *i, id });
-            }
-          }
+          this->SetInput(vertex, id);
+          found.resize(before); // there is a vertex already
+          break;
         }
-      });
+        if (IsInside(ends, p))
+        {
+          found.push_back({ *i, id });
+        }
+      }
+    });
     // By position, so that input points with the same x,y become one vertex.
     Sort(
       found.begin(), found.end(),
@@ -411,19 +407,15 @@ private:
       crossings.size(),
       [&](std::size_t i) { return std::array<Point2, 1>{ { this->At(crossings[i]) } }; },
       stages.Next());
-    ForEachStretch(
-      this->Points.Count, stages.Next(), [&](Index begin, Index end) {
-        for (Index id = begin; id < end; ++id)
+    ForEachNumber(this->Points.Count, stages.Next(), [&](Index id) {
+      const Point2 p = this->Points.At(id);
+      grid.Visit(p, [&](Index i) {
+        if (this->At(crossings[i]) == p && std::isfinite(this->Points.Elevation(id)))
         {
-          const Point2 p = this->Points.At(id);
-          grid.Visit(p, [&](Index i) {
-            if (this->At(crossings[i]) == p && std::isfinite(this->Points.Elevation(id)))
-            {
-              this->SetInput(crossings[i], id);
-            }
-          });
+          this->SetInput(crossings[i], id);
         }
       });
+    });
   }
 
   /** The fraction of the distance from From to To, by the longer of x and y. */

@@ -23,7 +23,7 @@ bool IsWithin(const Ends& segment, const Point2& p, double distance)
   {
     return false;
   }
-  const double length = std::hypot(b.X - a.X, b.Y - a.Y);
+  const double length = Distance(a, b);
   const double across = (b.X - a.X) * (p.Y - a.Y) - (b.Y - a.Y) * (p.X - a.X);
   return !(std::fabs(across) > far * length); // also where products over- or underflow
 }

@@ -40,11 +40,10 @@ constexpr double RoomBeyondNear = 0.25;
 /** How often the spline is made to find out how rough elevations are beside misties. */
 constexpr int StepsToRoughness = 5;
 
-/** Trials count if there are so many lines and errors, */
+/** Trials count if there are so many lines, and TrialErrors::LeastErrors, */
 constexpr Index LeastTracks = 4;
 /** and if so large a part of the known points is on lines that are straight over a gap. */
 constexpr double LeastPartOnLines = 0.5;
-constexpr std::size_t LeastErrors = 100;
 
 /** Where lines are left out, gaps are at least so many times as wide; or as they are, if at most. */
 constexpr double LeastWidening = 1.4;
@@ -237,7 +236,7 @@ private:
     }
     this->NewScales =
       this->Roughness().ScalesAt(this->Spots, this->All, this->Gap, missed, this->LeftOut.Noise);
-    this->IsFound = this->LeftOut.Wide.Errors.size() >= LeastErrors;
+    this->IsFound = this->LeftOut.Wide.Errors.size() >= TrialErrors::LeastErrors;
     this->LeftOut.Carry(
       LineRoughness::MeanOf(this->Roughness().Along(this->All, this->Gap)), this->SplineShare);
   }
@@ -355,24 +354,14 @@ private:
       known.Centers = known.Numbers;
       return;
     }
-    const std::vector<Point2>& points = known.Triangles.Points;
+    // All of them, if it has to be, also two at one place.
+    constexpr double any = -1.0;
     std::vector<double> squares(count, std::numeric_limits<double>::infinity());
-    std::size_t next = 0;
-    for (std::size_t k = 0; k < most; ++k)
+    std::vector<Index> taken;
+    TakeFarthest(known.Triangles.Points, count, most, any, progress, squares, taken);
+    for (const Index place : taken)
     {
-      CountWork(count);
-      ReportStep(progress, k, most, 16);
-      known.Centers.push_back(known.Numbers[next]);
-      const Point2 p = points[next];
-      double largest = -1.0;
-      for (std::size_t i = 0; i < count; ++i)
-      {
-        const double x = points[i].X - p.X;
-        const double y = points[i].Y - p.Y;
-        squares[i] = std::min(squares[i], x * x + y * y);
-        next = squares[i] > largest ? i : next;
-        largest = std::max(largest, squares[i]);
-      }
+      known.Centers.push_back(known.Numbers[place]);
     }
     std::sort(known.Centers.begin(), known.Centers.end());
   }
@@ -395,10 +384,9 @@ private:
       for (int k = 0; k < 3; ++k)
       {
         const Index corner = walk.CornerOf(k);
-        const Point2& p = known.Triangles.PointOf(corner);
         spot.Corners[k] = known.Numbers[corner];
         spot.Shares[k] = walk.ShareOf(k);
-        least = std::min(least, std::hypot(p.X - places[i].X, p.Y - places[i].Y));
+        least = std::min(least, Distance(known.Triangles.PointOf(corner), places[i]));
       }
       spot.Distance = least;
       spot.Gap = LargestHeight(known.Triangles, walk.CurrentTriangle());

@@ -491,14 +491,12 @@ HoleReport MeasureHole(const Mesh& mesh, const Holes& holes, Index hole, const F
   };
   // Relative to a point of the rim, as differences of large coordinates' products would be rounded.
   const Point2 origin = mesh.PointOf(*holes.Walks.Begin(holes.Rim(hole)));
-  Point2 low = origin;
-  Point2 high = origin;
+  Box box;
   visitEdges([&](const Point2& a, const Point2& b) {
-    report.Perimeter += std::hypot(b.X - a.X, b.Y - a.Y);
-    low = { std::min(low.X, a.X), std::min(low.Y, a.Y) };
-    high = { std::max(high.X, a.X), std::max(high.Y, a.Y) };
+    report.Perimeter += Distance(a, b);
+    box.Add(a);
   });
-  report.Size = std::hypot(high.X - low.X, high.Y - low.Y);
+  report.Size = Distance(box.Low, box.High);
   if (options.MaximumHoleSize > 0.0 && report.Size > options.MaximumHoleSize)
   {
     report.Status = FillStatus::TooLarge;

@@ -13,14 +13,14 @@
  *      are drawn back (Overshoot.h), so that none leaves it by more than 5 %.
  * Where a hole is a region of long triangles, the patch replaces them; of a region that is not
  * filled, the caller keeps them. They are no evidence: elevations are found from the other ones,
+ * and from the points inside the region. A region whose patch would have no new point has no room:
+ * it stays as it is and is not a hole.
  *
  *   o---o---o---o       The rim o and the island i are known. The patch has new points (.) and
  *   | . . . . . |       triangles between all of these; no edge of rim or island is split.
  *   o . i-i . . o
  *   | . i-i . . |
  *   o---o---o---o
- * and the points inside the region. A region whose patch would have no new point has no room: it
- * stays as it is and is not a hole.
  *
  * Guarantees: a patch is constrained Delaunay, lies inside its hole and covers it exactly; its
  * boundary edges are those of the hole, none is split. The rest of the surface stays as it is.

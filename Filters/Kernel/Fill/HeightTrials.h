@@ -221,10 +221,7 @@ public:
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t k = 0; k < probes; ++k)
     {
-      const PatchMesh& patch = this->Hole.Patch;
-      const Point2& p = this->Points[this->FirstProbe + k];
-      const Point2 q = patch.At(patch.Nearest[this->Probes[k]]);
-      order.emplace_back(std::hypot(p.X - q.X, p.Y - q.Y), k);
+      order.emplace_back(this->Hole.Patch.DistanceFromBoundary(this->Probes[k]), k);
     }
     std::sort(order.begin(), order.end());
     // Fewer classes for few probes, or a class would have too few errors for quantiles.
@@ -272,13 +269,11 @@ public:
     const std::size_t probes = this->Probes.size();
     const std::vector<double> misses = this->MissesOf(shares);
     const double growth = this->GrowthOf(misses);
-    const PatchMesh& patch = this->Hole.Patch;
     for (std::size_t i = 0; i < misses.size(); ++i)
     {
       const Place& place = this->Places[i / probes];
-      const Point2& p = this->Points[this->FirstProbe + i % probes];
-      const Point2 q = patch.At(patch.Nearest[this->Probes[i % probes]]);
-      const double error = this->Hole.ErrorAt(std::hypot(p.X - q.X, p.Y - q.Y));
+      const double error =
+        this->Hole.ErrorAt(this->Hole.Patch.DistanceFromBoundary(this->Probes[i % probes]));
       if (place.IsCounted && error > 0.0)
       {
         result.push_back(std::pow(growth, place.Halvings) * std::fabs(misses[i]) / error);

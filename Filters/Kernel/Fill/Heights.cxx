@@ -268,8 +268,8 @@ std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& va
       {
         return true;
       }
-      const Point2& q = this->Surface.PointOf(other);
-      const double slope = std::fabs(values(other) - values(id)) / std::hypot(q.X - p.X, q.Y - p.Y);
+      const double slope =
+        std::fabs(values(other) - values(id)) / Distance(p, this->Surface.PointOf(other));
       if (!std::isnan(slope))
       {
         // The median is that over the edges of all triangles.
@@ -299,13 +299,10 @@ void Heights::ChooseCenters(
 {
   const std::size_t boundary = this->Patch.BoundaryIds.size();
   const std::size_t count = this->KnownVertices.size();
-  std::vector<double> x(count);
-  std::vector<double> y(count);
-  for (std::size_t i = 0; i < count; ++i)
+  std::vector<Point2> points;
+  for (const Index id : this->KnownVertices)
   {
-    const Point2 p = this->Normalized(this->Surface.PointOf(this->KnownVertices[i]));
-    x[i] = p.X;
-    y[i] = p.Y;
+    points.push_back(this->Normalized(this->Surface.PointOf(id)));
   }
   const double least = LeastDistance * this->Patch.Spacing * this->Scale;
   // Each point's squared distance to the nearest centre so far; infinite before there is one, so
@@ -316,33 +313,11 @@ void Heights::ChooseCenters(
   {
     squares[i] = isStray[i] ? -1.0 : squares[i];
   }
-  // The point farthest from all centres is the next one, until it would be too near to one.
-  const auto choose = [&](std::size_t end, std::size_t most) {
-    while (this->Centers.size() < most)
-    {
-      const std::size_t best = static_cast<std::size_t>(
-        std::max_element(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(end)) -
-        squares.begin());
-      if (!(squares[best] > least * least))
-      {
-        return;
-      }
-      CountWork(count);
-      ReportStep(progress, this->Centers.size(), most, 16);
-      this->Centers.push_back(static_cast<Index>(best));
-      for (std::size_t i = 0; i < count; ++i)
-      {
-        const double square =
-          (x[i] - x[best]) * (x[i] - x[best]) + (y[i] - y[best]) * (y[i] - y[best]);
-        squares[i] = square < squares[i] ? square : squares[i];
-      }
-    }
-  };
   const std::size_t most =
     std::min(MostCentersWithPointsInside, MostCenters + this->Patch.NumberOfPointsInside);
   // Half of them on the boundary, where patch and surface meet; then wherever points are farthest.
-  choose(boundary, most / 2);
-  choose(count, most);
+  TakeFarthest(points, boundary, most / 2, least * least, progress, squares, this->Centers);
+  TakeFarthest(points, count, most, least * least, progress, squares, this->Centers);
   // By place: the boundary's come first, in the order of its vertices, as HeightTrials.h expects.
   std::sort(this->Centers.begin(), this->Centers.end());
   this->AllBoundaryIsCenter = this->Centers.size() >= boundary &&
@@ -473,14 +448,11 @@ double Heights::ErrorAt(double distance) const
 
 std::vector<double> Heights::StandardErrors() const
 {
-  const Index boundary = this->Patch.NumberOfBoundaryVertices();
   std::vector<double> result(
     this->Patch.NumberOfNewVertices(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < result.size() && !this->ErrorCurve.empty(); ++i)
   {
-    const Point2 p = this->Patch.At(boundary + static_cast<Index>(i));
-    const Point2 q = this->Patch.At(this->Patch.Nearest[i]);
-    result[i] = this->ErrorAt(std::hypot(p.X - q.X, p.Y - q.Y));
+    result[i] = this->ErrorAt(this->Patch.DistanceFromBoundary(static_cast<Index>(i)));
   }
   return result;
 }
@@ -582,9 +554,8 @@ Heights::RimSlopes Heights::MeasureSlopes(const Values& values, double unit) con
   std::vector<double> lengths;
   for (const Pair& pair : this->Slopes)
   {
-    const Point2& a = this->Surface.PointOf(pair.Boundary);
-    const Point2& b = this->Surface.PointOf(pair.Away);
-    lengths.push_back(std::hypot(b.X - a.X, b.Y - a.Y));
+    lengths.push_back(
+      Distance(this->Surface.PointOf(pair.Boundary), this->Surface.PointOf(pair.Away)));
     // Of scaled values and lengths, in the range of double; then for the caller's unit of length.
     const double slope =
       (values(pair.Boundary) - values(pair.Away)) / unit / (lengths.back() * this->Scale);
@@ -626,9 +597,8 @@ void Heights::Bound(const std::vector<double>& scaled, const Values& values, dou
   }
   for (std::size_t i = 0; i < result.size(); ++i)
   {
-    const Point2 p = this->Patch.At(boundary + static_cast<Index>(i));
-    const Point2 q = this->Patch.At(this->Patch.Nearest[i]);
-    const double distance = std::min(std::hypot(p.X - q.X, p.Y - q.Y), slopes.Reach);
+    const double distance =
+      std::min(this->Patch.DistanceFromBoundary(static_cast<Index>(i)), slopes.Reach);
     const double rise = slopes.Inward * distance;
     if (!flat.empty())
     {

@@ -42,10 +42,9 @@ public:
   {
     double perimeter = 0.0;
     holes.VisitEdges(hole, [&](Index a, Index b) {
-      const Point2 p = this->Points.PointOf(a), q = this->Points.PointOf(b);
       this->Boundary.push_back(a);
-      this->Near.Add(p);
-      perimeter += std::hypot(q.X - p.X, q.Y - p.Y);
+      this->Near.Add(this->Points.PointOf(a));
+      perimeter += Distance(this->Points.PointOf(a), this->Points.PointOf(b));
     });
     const double edges = static_cast<double>(this->Boundary.size());
     const double by = ReachInSizes * std::hypot(this->Near.Width(), this->Near.Height()) +
@@ -216,8 +215,7 @@ double LengthsOfSurface::At(Index vertex)
     std::vector<double> lengths;
     for (const Index end : this->Ends)
     {
-      const Point2& q = this->Surface.PointOf(end);
-      lengths.push_back(std::hypot(q.X - p.X, q.Y - p.Y));
+      lengths.push_back(Distance(p, this->Surface.PointOf(end)));
     }
     known->second = Median(std::move(lengths));
   }

@@ -66,10 +66,7 @@ LineRoughness::Stretch LineRoughness::StretchAt(
   const Index* const vertices = this->Lines.Begin(track);
   const Index size = this->Lines.Size(track);
   const Point2 p = this->Patch.At(vertices[place]);
-  const auto distanceTo = [&](Index i) {
-    const Point2 q = this->Patch.At(vertices[i]);
-    return std::hypot(q.X - p.X, q.Y - p.Y);
-  };
+  const auto distanceTo = [&](Index i) { return Distance(p, this->Patch.At(vertices[i])); };
   const auto find = [&](Index step, double least) {
     Index i = place + step;
     std::size_t work = 1;
@@ -91,9 +88,8 @@ LineRoughness::Stretch LineRoughness::StretchAt(
   stretch.Before = distanceTo(a);
   stretch.Behind = distanceTo(b);
   const double length = stretch.Before + stretch.Behind;
-  const Point2 from = this->Patch.At(vertices[a]);
-  const Point2 to = this->Patch.At(vertices[b]);
-  if (std::hypot(to.X - from.X, to.Y - from.Y) < LeastStraightness * length ||
+  if (Distance(this->Patch.At(vertices[a]), this->Patch.At(vertices[b])) <
+      LeastStraightness * length ||
     length > 2.0 * (before + behind))
   {
     return stretch;
@@ -157,9 +153,9 @@ LineRoughness::Means LineRoughness::MeansOf(
     std::vector<double> along(size, 0.0), sums(size + 1, 0.0), counts(size + 1, 0.0);
     for (std::size_t i = 0; i < size; ++i)
     {
-      const Point2 p = this->Patch.At(vertices[i]);
-      const Point2 q = this->Patch.At(vertices[i > 0 ? i - 1 : 0]);
-      along[i] = (i > 0 ? along[i - 1] : 0.0) + std::hypot(p.X - q.X, p.Y - q.Y);
+      along[i] = i == 0
+        ? 0.0
+        : along[i - 1] + Distance(this->Patch.At(vertices[i]), this->Patch.At(vertices[i - 1]));
       const double value = values[vertices[i]];
       sums[i + 1] = sums[i] + (std::isnan(value) ? 0.0 : std::sqrt(value));
       counts[i + 1] = counts[i] + (std::isnan(value) ? 0.0 : 1.0);
@@ -248,9 +244,7 @@ double LineRoughness::NoiseAlong(const KnownPoints& known) const
     const Index* const vertices = this->Lines.Begin(t);
     for (Index i = 1; this->IsThere(known, t) && i < this->Lines.Size(t); ++i)
     {
-      const Point2 p = this->Patch.At(vertices[i]);
-      const Point2 q = this->Patch.At(vertices[i - 1]);
-      steps.push_back(std::hypot(p.X - q.X, p.Y - q.Y));
+      steps.push_back(Distance(this->Patch.At(vertices[i]), this->Patch.At(vertices[i - 1])));
     }
   }
   if (steps.empty())

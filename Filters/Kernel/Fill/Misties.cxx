@@ -27,14 +27,7 @@ using Neighbors = std::vector<std::vector<Index>>;
 /** An arm's way out: the vertices from the first one outside on. */
 std::vector<Index> FollowOut(const Neighbors& neighbors, Index from, Index to)
 {
-  std::vector<Index> path{ to };
-  while (path.size() < MostOfArm && neighbors[to].size() == 2)
-  {
-    const Index next = neighbors[to][neighbors[to][0] == from ? 1 : 0];
-    from = to;
-    to = next;
-    path.push_back(to);
-  }
+  std::vector<Index> path = FollowArm(neighbors, from, to, MostOfArm);
   // The last one may be at the next crossing.
   if (neighbors[path.back()].size() > 2)
   {
@@ -97,6 +90,19 @@ double PartOf(const Mesh& mesh, const Crossing& crossing, int line)
   return PartAt(at(line, 0), at(line, 1), at(1 - line, 0), at(1 - line, 1));
 }
 } // namespace
+
+std::vector<Index> FollowArm(const Neighbors& neighbors, Index from, Index to, std::size_t most)
+{
+  std::vector<Index> path{ to };
+  while (path.size() < most && neighbors[to].size() == 2)
+  {
+    const Index next = neighbors[to][neighbors[to][0] == from ? 1 : 0];
+    from = to;
+    to = next;
+    path.push_back(to);
+  }
+  return path;
+}
 
 std::vector<Crossing> FindCrossings(const Mesh& mesh, const Neighbors& neighbors)
 {
@@ -172,9 +178,7 @@ Mistie MistieAt(const Mesh& mesh, const Crossing& crossing, const std::vector<do
     const double part = PartOf(mesh, crossing, line);
     const std::vector<Index>* const arms = crossing.Arms[line];
     const auto lengthOf = [&](Index a, Index b) {
-      const Point2& p = mesh.PointOf(a);
-      const Point2& q = mesh.PointOf(b);
-      return std::hypot(q.X - p.X, q.Y - p.Y);
+      return Distance(mesh.PointOf(a), mesh.PointOf(b));
     };
     const double length = lengthOf(arms[0].front(), arms[1].front());
     const double ends[2] = { heights[arms[0].front()], heights[arms[1].front()] };

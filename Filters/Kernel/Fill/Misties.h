@@ -36,7 +36,7 @@ namespace elevation
 /** The direction from one point to another; 0 where both are the same. */
 inline Point2 UnitVector(const Point2& p, const Point2& q)
 {
-  const double length = std::hypot(q.X - p.X, q.Y - p.Y);
+  const double length = Distance(p, q);
   return { length > 0.0 ? (q.X - p.X) / length : 0.0, length > 0.0 ? (q.Y - p.Y) / length : 0.0 };
 }
 
@@ -45,6 +45,13 @@ inline double Cosine(const Point2& a, const Point2& b)
 {
   return a.X * b.X + a.Y * b.Y;
 }
+
+/**
+ * The vertices of an arm, from the first edge on, up to a number of them, an end or a meeting.
+ * @param[in] neighbors  as of FindCrossings()
+ */
+std::vector<Index> FollowArm(
+  const std::vector<std::vector<Index>>& neighbors, Index from, Index to, std::size_t most);
 
 struct Crossing
 {

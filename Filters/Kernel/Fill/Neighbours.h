@@ -6,13 +6,13 @@
  * boundary inwards, the nearest vertex of the boundary.
  *
  * In and out: a patch with its triangles. Cost: linear; the nearest boundary vertex, by a k-d tree,
+ * log b each for b boundary vertices.
  *
  *     b---b---b---b        b     boundary, known: layer 0
  *    b  1   1   1  b       1, 2  new vertices, and the layer that a breadth-first search gives them
  *   b 1   2   2   1 b
  *    b  1   1   1  b       Outward leads from each new vertex to one of the layer before, so from
  *     b---b---b---b        neighbour to neighbour to the boundary.
- * log b each for b boundary vertices.
  */
 #ifndef elevation_Fill_Neighbours_h
 #define elevation_Fill_Neighbours_h

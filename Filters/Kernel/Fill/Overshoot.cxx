@@ -48,13 +48,10 @@ ElevationRange RangeOf(
     std::for_each(mesh.Triangles.begin() + 3 * std::ptrdiff_t(begin),
       mesh.Triangles.begin() + 3 * std::ptrdiff_t(end), [&](Index id) { corners.Add(id); });
   });
-  ForEachStretch(mesh.NumberOfPoints(), progress.Between(1.0, 1.0), [&](Index begin, Index end) {
-    for (Index id = begin; id < end; ++id)
+  ForEachNumber(mesh.NumberOfPoints(), progress.Between(1.0, 1.0), [&](Index id) {
+    if (corners.Has(id))
     {
-      if (corners.Has(id))
-      {
-        range.Add(points.Elevation(id));
-      }
+      range.Add(points.Elevation(id));
     }
   });
   return range;

@@ -63,6 +63,12 @@ struct PatchMesh
   {
     return { this->Points[3 * std::size_t(vertex)], this->Points[3 * std::size_t(vertex) + 1] };
   }
+  /** Of a new vertex from Nearest. */
+  double DistanceFromBoundary(Index newVertex) const
+  {
+    return Distance(
+      this->At(this->NumberOfBoundaryVertices() + newVertex), this->At(this->Nearest[newVertex]));
+  }
   /** Adds a vertex, whose z is not used here; a NaN would keep it from being triangulated. */
   void AddPoint(const Point2& p) { this->Points.insert(this->Points.end(), { p.X, p.Y, 0.0 }); }
   Box BoundaryBox() const

@@ -160,11 +160,8 @@ double MeanWithin(double limit, const EdgeLengths& lengths, const EdgeLengths& s
 EdgeLengths MeasureEdges(const Mesh& mesh, const Holes& holes, Index hole)
 {
   EdgeLengths lengths;
-  const auto lengthOf = [&](Index a, Index b) {
-    const Point2& p = mesh.PointOf(a);
-    const Point2& q = mesh.PointOf(b);
-    return std::hypot(q.X - p.X, q.Y - p.Y);
-  };
+  const auto lengthOf = [&](
+                          Index a, Index b) { return Distance(mesh.PointOf(a), mesh.PointOf(b)); };
   lengths.Boundary.reserve(holes.NumberOfEdges(hole));
   holes.VisitEdges(hole, [&](Index a, Index b) { lengths.Boundary.push_back(lengthOf(a, b)); });
   holes.VisitInnerEdges(hole, [&](Index a, Index b) { lengths.Inner.push_back(lengthOf(a, b)); });

@@ -47,7 +47,7 @@ struct Rows
 Blocked BlockRow(const Rows& rows, Index row, const Point2& a, const Point2& b)
 {
   const double clearance = rows.Clearance;
-  const double length = std::hypot(b.X - a.X, b.Y - a.Y);
+  const double length = Distance(a, b);
   const double ux = (b.X - a.X) / length;
   const double uy = (b.Y - a.Y) / length; // >= 0
   const double y = row * rows.RowHeight;

@@ -296,5 +296,30 @@ void Spline::Add(
   }
 }
 
+void TakeFarthest(const std::vector<Point2>& points, std::size_t candidates, std::size_t most,
+  double leastSquare, const Progress& progress, std::vector<double>& squares,
+  std::vector<Index>& taken)
+{
+  const std::size_t count = points.size();
+  while (taken.size() < most)
+  {
+    const std::size_t best = static_cast<std::size_t>(
+      std::max_element(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(candidates)) -
+      squares.begin());
+    if (!(squares[best] > leastSquare))
+    {
+      return;
+    }
+    CountWork(count);
+    ReportStep(progress, taken.size(), most, 16);
+    taken.push_back(static_cast<Index>(best));
+    const Point2 p = points[best];
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      squares[i] = std::min(squares[i], SquaredLength(points[i], p));
+    }
+  }
+}
+
 } // namespace elevation
 #endif

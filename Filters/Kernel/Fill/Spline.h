@@ -97,6 +97,18 @@ private:
   Matrix Factor;
 };
 
+/**
+ * Takes centres: again and again the point that is farthest from all that are taken.
+ * @param[in] candidates   so many first points
+ * @param[in] most         so many are taken in all
+ * @param[in] leastSquare  ends where no distance has a larger square
+ * @param[in,out] squares  of distances from what is taken, one a point; at first infinite, or below
+ *                         any limit where a point is not to be taken
+ */
+void TakeFarthest(const std::vector<Point2>& points, std::size_t candidates, std::size_t most,
+  double leastSquare, const Progress& progress, std::vector<double>& squares,
+  std::vector<Index>& taken);
+
 } // namespace elevation
 
 #endif

@@ -137,20 +137,6 @@ private:
     return isNear;
   }
 
-  /** Vertices from the end of an arm on, up to a number, an end or a meeting of arms. */
-  std::vector<Index> Follow(Index from, Index to, std::size_t most) const
-  {
-    std::vector<Index> path{ to };
-    while (path.size() < most && this->Arms[to].size() == 2)
-    {
-      const Index next = this->Arms[to][this->Arms[to][0] == from ? 1 : 0];
-      from = to;
-      to = next;
-      path.push_back(to);
-    }
-    return path;
-  }
-
   void Cut(Index a, Index b)
   {
     for (const auto& [from, to] : { std::make_pair(a, b), std::make_pair(b, a) })
@@ -168,7 +154,7 @@ private:
       {
         continue;
       }
-      const std::vector<Index> path = this->Follow(v, this->Arms[v][0], LeastArm);
+      const std::vector<Index> path = FollowArm(this->Arms, v, this->Arms[v][0], LeastArm);
       if (this->Arms[path.back()].size() > 2)
       {
         Index from = v;
@@ -185,7 +171,7 @@ private:
   Point2 DirectionOf(Index v, Index to) const
   {
     return UnitVector(this->Surface.PointOf(v),
-      this->Surface.PointOf(this->Follow(v, to, StepsOfDirection).back()));
+      this->Surface.PointOf(FollowArm(this->Arms, v, to, StepsOfDirection).back()));
   }
 
   /** An arm by its vertex and its number there. */
@@ -222,7 +208,7 @@ private:
         for (int i = 0; i < static_cast<int>(this->Arms[meetings[m]].size()); ++i)
         {
           const Index end =
-            this->Follow(meetings[m], this->Arms[meetings[m]][i], MostShared).back();
+            FollowArm(this->Arms, meetings[m], this->Arms[meetings[m]][i], MostShared).back();
           if (!this->IsMeeting(v) || !this->IsMeeting(end))
           {
             leaving.push_back({ meetings[m], i });
@@ -542,11 +528,8 @@ std::vector<double> OffsetsOf(
     for (const Index* v = tracks.Begin(t) + 1; v + 1 < tracks.End(t); ++v)
     {
       const Point2& p = mesh.PointOf(*v);
-      const auto distanceTo = [&](Index other) {
-        const Point2& q = mesh.PointOf(other);
-        return std::hypot(q.X - p.X, q.Y - p.Y);
-      };
-      const double before = distanceTo(v[-1]), behind = distanceTo(v[1]);
+      const double before = Distance(p, mesh.PointOf(v[-1]));
+      const double behind = Distance(p, mesh.PointOf(v[1]));
       const double even = (behind * heights[v[-1]] + before * heights[v[1]]) / (before + behind);
       offsets[*v] = std::max(offsets[*v], std::fabs(heights[*v] - even));
     }

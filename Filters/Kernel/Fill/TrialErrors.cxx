@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <utility>
 
 namespace elevation
@@ -14,8 +13,7 @@ namespace elevation
 
 namespace
 {
-/** Errors of crossing lines count if there are so many; those in gaps four times as wide, if more. */
-constexpr std::size_t LeastErrors = 100;
+/** Those in gaps four times as wide count if there are more. */
 constexpr std::size_t LeastWiderErrors = 1000;
 
 /** The weight of errors in gaps as they are, where lines cross; in the mean of logarithms. */

@@ -12,6 +12,7 @@
 #ifndef elevation_Fill_TrialErrors_h
 #define elevation_Fill_TrialErrors_h
 
+#include <cstddef>
 #include <vector>
 
 namespace elevation
@@ -36,6 +37,9 @@ struct ScaledErrors
 
 struct TrialErrors
 {
+  /** Fewer errors of trials do not count, whether in wide gaps or where lines cross. */
+  static constexpr std::size_t LeastErrors = 100;
+
   ScaledErrors Wide;   ///< where lines were left out
   ScaledErrors Wider;  ///< where more were left out
   ScaledErrors Direct; ///< of lines that cross the gaps as they are

@@ -283,38 +283,31 @@ Components FindComponents(const Mesh& mesh, const Progress& progress, Relation&&
   Components components;
   components.Labels.Resize(count);
   LabelSets joined;
-  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
+  ForEachNumber(count, stages.Next(), [&](Index t) {
+    Index label = None;
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
-      Index label = None;
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      // Border, which is below 0, is large as an unsigned number.
+      const Index twin = mesh.Twins[h];
+      const bool isBefore = static_cast<std::uint32_t>(twin) < static_cast<std::uint32_t>(3 * t);
+      const int step = isBefore ? relation(h) : -1;
+      if (step >= 0)
       {
-        // Border, which is below 0, is large as an unsigned number.
-        const Index twin = mesh.Twins[h];
-        const bool isBefore = static_cast<std::uint32_t>(twin) < static_cast<std::uint32_t>(3 * t);
-        const int step = isBefore ? relation(h) : -1;
-        if (step >= 0)
-        {
-          const Index other = components.Labels[Mesh::Triangle(twin)] ^ step;
-          // All earlier neighbours of a triangle are of one component from now on.
-          label = label == None || label == other ? other : joined.Join(label, other);
-        }
+        const Index other = components.Labels[Mesh::Triangle(twin)] ^ step;
+        // All earlier neighbours of a triangle are of one component from now on.
+        label = label == None || label == other ? other : joined.Join(label, other);
       }
-      if (label == None)
-      {
-        label = joined.Add();
-        components.Lowest.push_back(t);
-      }
-      components.Labels[t] = label;
     }
+    if (label == None)
+    {
+      label = joined.Add();
+      components.Lowest.push_back(t);
+    }
+    components.Labels[t] = label;
   });
   joined.Renumber(components.Lowest);
-  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      components.Labels[t] = joined(components.Labels[t]);
-    }
-  });
+  ForEachNumber(
+    count, stages.Next(), [&](Index t) { components.Labels[t] = joined(components.Labels[t]); });
   return components;
 }
 

@@ -315,8 +315,7 @@ private:
       queue.pop();
       // To the neighbours, what is left of the gap after the way there.
       const auto spread = [&, from = gap, p = mesh.PointOf(v)](Index w) {
-        const Point2& q = mesh.PointOf(w);
-        const double left = from - GapDecay * std::hypot(q.X - p.X, q.Y - p.Y);
+        const double left = from - GapDecay * Distance(p, mesh.PointOf(w));
         if (left > gaps[w])
         {
           gaps[w] = left;
@@ -354,12 +353,9 @@ std::vector<Index> NumberRegions(const Mesh& mesh, double longest, const Progres
   const EdgeLimit limit(longest);
   const Index count = mesh.NumberOfTriangles();
   std::vector<char> isLong(count);
-  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      isLong[t] = !limit.Admits([&](Index v) -> const Point2& { return mesh.PointOf(v); },
-        mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2));
-    }
+  ForEachNumber(count, stages.Next(), [&](Index t) {
+    isLong[t] = !limit.Admits([&](Index v) -> const Point2& { return mesh.PointOf(v); },
+      mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2));
   });
   std::vector<Index> regionOf;
   if (std::find(isLong.begin(), isLong.end(), 1) == isLong.end())
@@ -391,7 +387,7 @@ double LargestHeight(const Mesh& mesh, Index triangle)
     const Point2& a = mesh.PointOf(mesh.Origin(h));
     const Point2& b = mesh.PointOf(mesh.Destination(h));
     const Point2& c = mesh.PointOf(mesh.Apex(h));
-    const double length = std::hypot(b.X - a.X, b.Y - a.Y);
+    const double length = Distance(a, b);
     // Divided by the length first, so that large coordinates do not overflow.
     height =
       std::max(height, (b.X - a.X) / length * (c.Y - a.Y) - (b.Y - a.Y) / length * (c.X - a.X));

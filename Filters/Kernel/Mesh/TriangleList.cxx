@@ -130,12 +130,9 @@ Mesh SubMesh(
   // A set of bits, and ranks by counting them: points keep their order, and vertices are numbered
   // without sorting.
   IdSet corners(list.Points.Count);
-  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i)
-    {
-      Prefetch(list.CornersOf(triangles[std::min(i + 16, count - 1)]));
-      corners.AddAll(list.CornersOf(triangles[i]));
-    }
+  ForEachNumber(count, stages.Next(), [&](Index i) {
+    Prefetch(list.CornersOf(triangles[std::min(i + 16, count - 1)]));
+    corners.AddAll(list.CornersOf(triangles[i]));
   });
   mesh.Ids = corners.ListAndRank();
   mesh.FirstNewId = list.Points.Count;

@@ -69,12 +69,8 @@ struct BorderEdge
 /** Replaces each vertex by its id. */
 inline void ToIds(std::vector<Index>& vertices, const Index* ids, const Progress& progress)
 {
-  ForEachStretch(static_cast<Index>(vertices.size()), progress, [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i)
-    {
-      vertices[i] = ids[vertices[i]];
-    }
-  });
+  ForEachNumber(static_cast<Index>(vertices.size()), progress,
+    [&](Index i) { vertices[i] = ids[vertices[i]]; });
 }
 
 /** The message that a cell has a point that does not exist. */

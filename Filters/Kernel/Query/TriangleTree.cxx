@@ -18,13 +18,10 @@ TriangleTree::TriangleTree(const Mesh& mesh, int threads, const Progress& progre
   Stages stages(progress, { 10, 25, 65 });
   const Index count = mesh.NumberOfTriangles();
   std::vector<Item> items(count);
-  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      const Box box = BoxOf(TriangleCorners(mesh, t));
-      // Halves first, as a sum may overflow.
-      items[t] = { { 0.5 * box.Low.X + 0.5 * box.High.X, 0.5 * box.Low.Y + 0.5 * box.High.Y }, t };
-    }
+  ForEachNumber(count, stages.Next(), [&](Index t) {
+    const Box box = BoxOf(TriangleCorners(mesh, t));
+    // Halves first, as a sum may overflow.
+    items[t] = { { 0.5 * box.Low.X + 0.5 * box.High.X, 0.5 * box.Low.Y + 0.5 * box.High.Y }, t };
   });
   std::size_t nodes = 1;
   for (std::size_t most = items.size(); most > MostInLeaf; most = (most + 1) / 2)

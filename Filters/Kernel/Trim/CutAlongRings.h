@@ -4,12 +4,12 @@
  * @file
  * Splits edges of rings where they cross edges of a mesh, so that the rings follow the surface.
  *
- *
  *     o-------o-------o         The segment from A to B crosses edges of the mesh. Each gets a
  *      \     / \     /          vertex (x), and the triangles beside the edge are cut there. The
  *   A---x---x---x---x---B       segment is then the chain A x x x x B, on the surface as it was:
  *        \ /     \ /            no edge that bends the surface is flipped.
  *         o-------o
+ *
  * In: a mesh with Twins, and segments between its vertices. Out: the mesh with more vertices, and
  * each segment as a chain of its edges. Each segment is walked from its lower end:
  *   - An edge between two original triangles, or of another chain, is cut where it is crossed, at

@@ -82,30 +82,16 @@ private:
     {
       this->VertexAt.emplace(this->Points[point], None);
     }
-    // Most corners of the mesh are not points of rings, and look-ups in a map are slow. The sieve
-    // has 128 bits or more for each point, so of the corners that are no ring's less than one in a
-    // hundred is looked up in vain.
-    int bits = 6;
-    while (bits < 30 && std::size_t(1) << bits < 128 * this->VertexAt.size())
-    {
-      ++bits;
-    }
-    const auto bitOf = [=](const Point2& p) {
-      // The high bits of the hash; the map uses the low ones.
-      return static_cast<Index>(PointHash()(p) >> (64 - bits));
-    };
-    IdSet sieve(Index(1) << bits);
+    // Most corners of the mesh are not points of rings, and look-ups in a map are slow.
+    HashSieve sieve(128 * this->VertexAt.size());
     for (const auto& entry : this->VertexAt)
     {
-      sieve.Add(bitOf(entry.first));
+      sieve.Add(PointHash()(entry.first));
     }
     std::vector<char> isToMatch(mesh.Points.size());
-    ForEachStretch(mesh.NumberOfPoints(), stages.Next(), [&](Index begin, Index end) {
-      for (Index v = begin; v < end; ++v)
-      {
-        const Point2& p = mesh.PointOf(v);
-        isToMatch[v] = sieve.Has(bitOf(p)) && this->VertexAt.count(p) > 0;
-      }
+    ForEachNumber(mesh.NumberOfPoints(), stages.Next(), [&](Index v) {
+      const Point2& p = mesh.PointOf(v);
+      isToMatch[v] = sieve.MayHave(PointHash()(p)) && this->VertexAt.count(p) > 0;
     });
     const Progress matching = stages.Next();
     // Over half-edges, not points: a point that no triangle uses is not a corner, and two at the
@@ -163,26 +149,23 @@ private:
     const CellGrid grid(open.size(),
       [&](std::size_t i) { return std::array<Point2, 1>{ { this->Points[open[i]] } }; });
     std::vector<Index> triangles(open.size(), None);
-    ForEachStretch(mesh.NumberOfTriangles(), stages.Next(), [&](Index begin, Index end) {
-      for (Index t = begin; t < end; ++t)
+    ForEachNumber(mesh.NumberOfTriangles(), stages.Next(), [&](Index t) {
+      // The points of successive triangles may be far apart in memory.
+      const std::size_t ahead = 3 * static_cast<std::size_t>(t) + HalfEdgesAhead;
+      if (ahead + 2 < mesh.Triangles.size())
       {
-        // The points of successive triangles may be far apart in memory.
-        const std::size_t ahead = 3 * static_cast<std::size_t>(t) + HalfEdgesAhead;
-        if (ahead + 2 < mesh.Triangles.size())
-        {
-          Prefetch(&mesh.Points[mesh.Triangles[ahead]]);
-          Prefetch(&mesh.Points[mesh.Triangles[ahead + 1]]);
-          Prefetch(&mesh.Points[mesh.Triangles[ahead + 2]]);
-        }
-        const std::array<Point2, 3> corners = this->Cutter.CornersOf(t);
-        grid.Visit(corners, [&](Index i) {
-          if (triangles[i] == None && this->Cutter.Holds(t, pointOf(i)))
-          {
-            // A point on an edge is in two triangles; either will do, as the edge is cut in both.
-            triangles[i] = t;
-          }
-        });
+        Prefetch(&mesh.Points[mesh.Triangles[ahead]]);
+        Prefetch(&mesh.Points[mesh.Triangles[ahead + 1]]);
+        Prefetch(&mesh.Points[mesh.Triangles[ahead + 2]]);
       }
+      const std::array<Point2, 3> corners = this->Cutter.CornersOf(t);
+      grid.Visit(corners, [&](Index i) {
+        if (triangles[i] == None && this->Cutter.Holds(t, pointOf(i)))
+        {
+          // A point on an edge is in two triangles; either will do, as the edge is cut in both.
+          triangles[i] = t;
+        }
+      });
     });
     for (Index i = 0; i < count; ++i)
     {
@@ -428,14 +411,11 @@ BorderEdges FindBorder(const Mesh& mesh, const Progress& progress)
 {
   std::vector<Index> halfEdges;
   std::vector<Ends> segments;
-  ForEachStretch(mesh.NumberOfHalfEdges(), progress, [&](Index begin, Index end) {
-    for (Index h = begin; h < end; ++h)
+  ForEachNumber(mesh.NumberOfHalfEdges(), progress, [&](Index h) {
+    if (mesh.IsBorder(h))
     {
-      if (mesh.IsBorder(h))
-      {
-        halfEdges.push_back(h);
-        segments.push_back({ mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)) });
-      }
+      halfEdges.push_back(h);
+      segments.push_back({ mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)) });
     }
   });
   CellGrid grid = GridOf(segments);

@@ -379,36 +379,30 @@ private:
     const CellGrid grid = GridOf(segments);
     std::unordered_map<Index, std::vector<Index>> segmentsThrough;
     std::vector<char> isOn(mesh.Points.size(), 0);
-    ForEachStretch(mesh.NumberOfPoints(), stages.Next(), [&](Index begin, Index end) {
-      for (Index v = begin; v < end; ++v)
-      {
-        const Point2& p = mesh.PointOf(v);
-        grid.Visit(p, [&](Index i) {
-          if (IsInside(segments[i], p))
-          {
-            isOn[v] = 1;
-            segmentsThrough[v].push_back(i);
-          }
-        });
-      }
+    ForEachNumber(mesh.NumberOfPoints(), stages.Next(), [&](Index v) {
+      const Point2& p = mesh.PointOf(v);
+      grid.Visit(p, [&](Index i) {
+        if (IsInside(segments[i], p))
+        {
+          isOn[v] = 1;
+          segmentsThrough[v].push_back(i);
+        }
+      });
     });
     if (segmentsThrough.empty())
     {
       return;
     }
     // Only vertices that a triangle uses become stops.
-    ForEachStretch(mesh.NumberOfHalfEdges(), stages.Next(), [&](Index begin, Index end) {
-      for (Index h = begin; h < end; ++h)
+    ForEachNumber(mesh.NumberOfHalfEdges(), stages.Next(), [&](Index h) {
+      const Index v = mesh.Origin(h);
+      if (isOn[v])
       {
-        const Index v = mesh.Origin(h);
-        if (isOn[v])
+        // Once, whatever the number of its triangles.
+        isOn[v] = 0;
+        for (const Index i : segmentsThrough.at(v))
         {
-          // Once, whatever the number of its triangles.
-          isOn[v] = 0;
-          for (const Index i : segmentsThrough.at(v))
-          {
-            this->AddStop(this->IsCut[i], segments[i], h, v);
-          }
+          this->AddStop(this->IsCut[i], segments[i], h, v);
         }
       }
     });

@@ -220,7 +220,7 @@ Index MeshCutter::AddVertex(const Point2& p, const InsertedVertex& inserted)
 Index MeshCutter::AddPart(Index t)
 {
   Mesh& mesh = this->Surface;
-  this->Parents.push_back(t < this->TrianglesBefore ? t : this->Parents[t - this->TrianglesBefore]);
+  this->Parents.push_back(this->Parent(t));
   mesh.Triangles.resize(mesh.Triangles.size() + 3, None);
   mesh.Twins.resize(mesh.Twins.size() + 3, Mesh::Border);
   return mesh.NumberOfHalfEdges() - 3;

@@ -25,16 +25,13 @@ std::vector<Index> FindBridges(
   const TriangleList& list, const GridSteps& grid, const Progress& progress)
 {
   std::vector<Index> bridges;
-  ForEachStretch(grid.Steps.IsSet() ? list.Count : 0, progress, [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
+  ForEachNumber(grid.Steps.IsSet() ? list.Count : 0, progress, [&](Index t) {
+    const Index* const corners = list.CornersOf(t);
+    const Point2 p = list.Points.At(corners[0]), q = list.Points.At(corners[1]),
+                 r = list.Points.At(corners[2]);
+    if (grid.IsBridge(p, q) || grid.IsBridge(q, r) || grid.IsBridge(r, p))
     {
-      const Index* const corners = list.CornersOf(t);
-      const Point2 p = list.Points.At(corners[0]), q = list.Points.At(corners[1]),
-                   r = list.Points.At(corners[2]);
-      if (grid.IsBridge(p, q) || grid.IsBridge(q, r) || grid.IsBridge(r, p))
-      {
-        bridges.push_back(t);
-      }
+      bridges.push_back(t);
     }
   });
   return bridges;

@@ -23,7 +23,7 @@ namespace
  *   o # # i i # # o o       that one, else by a location
  *   o # i i i i # o o
  *   o # # # # # # o o     A triangle of few cells is settled by one look at KindsAround, a larger
- *   o o o o o o o o o     one by the number of touched cells in its box, from sums over rectangles.
+ *   o o o o o o o o o     one by whether a touched cell is in its box.
  */
 class RingRaster
 {
@@ -65,7 +65,7 @@ public:
     this->Kinds.assign(static_cast<std::size_t>(this->Columns) * this->Rows, Outward);
     this->Draw(points, rings);
     this->FindInside(points, rings);
-    this->SumUp();
+    this->FindTouched();
   }
 
   bool IsUsable() const { return this->Usable; }
@@ -84,11 +84,10 @@ public:
   {
     const Index left = this->ColumnOf(low.X), right = this->ColumnOf(high.X);
     const Index bottom = this->RowOf(low.Y), top = this->RowOf(high.Y);
-    const bool isTouched = this->SumOf(right + 1, top + 1) - this->SumOf(left, top + 1) -
-        this->SumOf(right + 1, bottom) + this->SumOf(left, bottom) >
-      0;
     // No ring passes between the cells of the box, so all are of one kind.
-    return isTouched ? Near : static_cast<Kind>(this->Kinds[this->CellAt(left, bottom)]);
+    return this->Touched.AreAny(left, bottom, right, top)
+      ? Near
+      : static_cast<Kind>(this->Kinds[this->CellAt(left, bottom)]);
   }
 
 private:
@@ -111,11 +110,6 @@ private:
   {
     return static_cast<std::size_t>(row) * this->Columns + column;
   }
-  Index SumOf(Index column, Index row) const
-  {
-    return this->Sums[static_cast<std::size_t>(row) * (this->Columns + 1) + column];
-  }
-
   /** Marks the cells that an edge touches, or passes within a fraction of a cell. */
   void Draw(const std::vector<Point2>& points, const Rings& rings)
   {
@@ -181,33 +175,30 @@ private:
     }
   }
 
-  // Sums over rectangles from the corner: four look-ups count the touched cells of any rectangle.
-  void SumUp()
+  /** Finds in which rectangles, and around which cells, there is a touched one. */
+  void FindTouched()
   {
-    this->Sums.assign(static_cast<std::size_t>(this->Columns + 1) * (this->Rows + 1), 0);
+    this->Touched = MarkedCells(this->Columns, this->Rows);
     for (Index row = 0; row < this->Rows; ++row)
     {
-      Index sum = 0;
       for (Index column = 0; column < this->Columns; ++column)
       {
-        sum += this->Kinds[this->CellAt(column, row)] == Near;
-        this->Sums[static_cast<std::size_t>(row + 1) * (this->Columns + 1) + column + 1] =
-          this->SumOf(column + 1, row) + sum;
+        if (this->Kinds[this->CellAt(column, row)] == Near)
+        {
+          this->Touched.Mark(column, row, column, row);
+        }
       }
     }
+    this->Touched.Finish();
     this->KindsAround = this->Kinds;
     for (Index row = 0; row < this->Rows; ++row)
     {
       const Index bottom = std::max(row - Around, 0);
-      const Index top = std::min(row + Around + 1, this->Rows);
+      const Index top = std::min(row + Around, this->Rows - 1);
       for (Index column = 0; column < this->Columns; ++column)
       {
-        const Index left = std::max(column - Around, 0);
-        const Index right = std::min(column + Around + 1, this->Columns);
-        const bool isTouched = this->SumOf(right, top) - this->SumOf(left, top) -
-            this->SumOf(right, bottom) + this->SumOf(left, bottom) >
-          0;
-        if (isTouched)
+        if (this->Touched.AreAny(std::max(column - Around, 0), bottom,
+              std::min(column + Around, this->Columns - 1), top))
         {
           this->KindsAround[this->CellAt(column, row)] = Near;
         }
@@ -223,7 +214,7 @@ private:
   Index Rows = 0;
   std::vector<char> Kinds;
   std::vector<char> KindsAround;
-  std::vector<Index> Sums; ///< how many touched cells lie to the left and below
+  MarkedCells Touched{ 0, 0 };
 };
 
 /**

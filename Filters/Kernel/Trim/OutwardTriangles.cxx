@@ -119,12 +119,8 @@ OutwardTriangles FindOutward(
   }
   const Index count = mesh.NumberOfTriangles();
   result.IsOutward.resize(count);
-  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      result.IsOutward[t] = isOutward[components.Labels[t]];
-    }
-  });
+  ForEachNumber(
+    count, stages.Next(), [&](Index t) { result.IsOutward[t] = isOutward[components.Labels[t]]; });
   Report(progress, 1.0);
   return result;
 }
@@ -152,13 +148,10 @@ void ApplyInwardNormalTest(const Mesh& mesh, const std::vector<char>& isOnBounda
       taken.push_back(t);
     }
   };
-  ForEachStretch(mesh.NumberOfHalfEdges(), stages.Next(), [&](Index begin, Index end) {
-    for (Index h = begin; h < end; ++h)
+  ForEachNumber(mesh.NumberOfHalfEdges(), stages.Next(), [&](Index h) {
+    if (isOnBoundary[h])
     {
-      if (isOnBoundary[h])
-      {
-        walkAlong(h);
-      }
+      walkAlong(h);
     }
   });
   const Progress walking = stages.Next();

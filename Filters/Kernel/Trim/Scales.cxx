@@ -100,37 +100,26 @@ IdSet OutsideCores(
   Stages stages(progress, { 60, 20, 20 });
   std::vector<Index> parents(count);
   std::iota(parents.begin(), parents.end(), 0);
-  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
-    for (Index v = begin; v < end; ++v)
+  ForEachNumber(count, stages.Next(), [&](Index v) {
+    // Inner vertices join all their neighbours, near ones among them: a near vertex belongs to
+    // the cores that it is beside.
+    for (std::uint32_t k = neighbors.Offsets[v]; !near.Has(v) && k < neighbors.Offsets[v + 1]; ++k)
     {
-      // Inner vertices join all their neighbours, near ones among them: a near vertex belongs to
-      // the cores that it is beside.
-      for (std::uint32_t k = neighbors.Offsets[v]; !near.Has(v) && k < neighbors.Offsets[v + 1];
-           ++k)
-      {
-        const Index a = RootOf(parents, v);
-        const Index b = RootOf(parents, neighbors.Ids[k]);
-        parents[std::max(a, b)] = std::min(a, b);
-      }
+      const Index a = RootOf(parents, v);
+      const Index b = RootOf(parents, neighbors.Ids[k]);
+      parents[std::max(a, b)] = std::min(a, b);
     }
   });
   std::vector<Index> inner(count, 0), others(count, 0);
-  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
-    for (Index v = begin; v < end; ++v)
-    {
-      ++(near.Has(v) ? others : inner)[RootOf(parents, v)];
-    }
-  });
+  ForEachNumber(
+    count, stages.Next(), [&](Index v) { ++(near.Has(v) ? others : inner)[RootOf(parents, v)]; });
   IdSet outside(count);
-  ForEachStretch(count, stages.Next(), [&](Index begin, Index end) {
-    for (Index v = begin; v < end; ++v)
+  ForEachNumber(count, stages.Next(), [&](Index v) {
+    const Index root = RootOf(parents, v);
+    // In whole numbers, without overflow: at least twice as many inner ones as others.
+    if (inner[root] < LeastInner || inner[root] / InnerPerOther < others[root])
     {
-      const Index root = RootOf(parents, v);
-      // In whole numbers, without overflow: at least twice as many inner ones as others.
-      if (inner[root] < LeastInner || inner[root] / InnerPerOther < others[root])
-      {
-        outside.Add(v);
-      }
+      outside.Add(v);
     }
   });
   return outside;
@@ -358,29 +347,26 @@ private:
     this->Units.resize(count);
     this->Lengths.resize(count);
     this->LongestAt.assign(this->Surface.Points.size(), 0.0);
-    ForEachStretch(count, progress, [&](Index begin, Index end) {
-      for (Index t = begin; t < end; ++t)
+    ForEachNumber(count, progress, [&](Index t) {
+      double spacing = 0.0;
+      double longest = 0.0;
+      bool isInside = true;
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
-        double spacing = 0.0;
-        double longest = 0.0;
-        bool isInside = true;
-        for (Index h = 3 * t; h < 3 * t + 3; ++h)
-        {
-          spacing = std::max(spacing, this->SpacingOf(this->Surface.Origin(h)));
-          longest = std::max(longest, this->LengthOf(h));
-          isInside = isInside && this->IsThin(this->Surface.Origin(h));
-        }
-        // The largest of the corners, so that a triangle between a line and a dense core is short.
-        this->Units[t] = UnitSpacings * spacing;
-        this->Lengths[t] = longest / this->Units[t];
-        for (Index h = 3 * t; h < 3 * t + 3; ++h)
-        {
-          const Index v = this->Surface.Origin(h);
-          // With an infinite length, this vertex never opens the triangles around it.
-          const bool isClosed = isInside && !this->AtBorder.Has(this->Surface.IdOf(v));
-          this->LongestAt[v] = std::max(this->LongestAt[v],
-            isClosed ? this->Lengths[t] : std::numeric_limits<double>::infinity());
-        }
+        spacing = std::max(spacing, this->SpacingOf(this->Surface.Origin(h)));
+        longest = std::max(longest, this->LengthOf(h));
+        isInside = isInside && this->IsThin(this->Surface.Origin(h));
+      }
+      // The largest of the corners, so that a triangle between a line and a dense core is short.
+      this->Units[t] = UnitSpacings * spacing;
+      this->Lengths[t] = longest / this->Units[t];
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        const Index v = this->Surface.Origin(h);
+        // With an infinite length, this vertex never opens the triangles around it.
+        const bool isClosed = isInside && !this->AtBorder.Has(this->Surface.IdOf(v));
+        this->LongestAt[v] = std::max(this->LongestAt[v],
+          isClosed ? this->Lengths[t] : std::numeric_limits<double>::infinity());
       }
     });
   }
@@ -392,30 +378,27 @@ private:
     std::vector<Index> parents(count);
     std::iota(parents.begin(), parents.end(), 0);
     std::vector<char> isAttached(count, 0);
-    ForEachStretch(this->Surface.NumberOfHalfEdges(), progress, [&](Index begin, Index end) {
-      for (Index h = begin; h < end; ++h)
+    ForEachNumber(this->Surface.NumberOfHalfEdges(), progress, [&](Index h) {
+      const Index a = this->Surface.Origin(h);
+      const Index b = this->Surface.Destination(h);
+      // 0 stands for a vertex of a core; an edge between two of these joins nothing.
+      const double ofA = this->IsThin(a) ? this->SpacingOf(a) : 0.0;
+      const double ofB = this->IsThin(b) ? this->SpacingOf(b) : 0.0;
+      if (this->LengthOf(h) >= LongestShortEdge * std::max(ofA, ofB))
       {
-        const Index a = this->Surface.Origin(h);
-        const Index b = this->Surface.Destination(h);
-        // 0 stands for a vertex of a core; an edge between two of these joins nothing.
-        const double ofA = this->IsThin(a) ? this->SpacingOf(a) : 0.0;
-        const double ofB = this->IsThin(b) ? this->SpacingOf(b) : 0.0;
-        if (this->LengthOf(h) >= LongestShortEdge * std::max(ofA, ofB))
-        {
-          continue;
-        }
-        if (ofA > 0.0 && ofB > 0.0)
-        {
-          const Index p = RootOf(parents, a);
-          const Index q = RootOf(parents, b);
-          // Lower roots, so that below a root comes before its members.
-          parents[std::max(p, q)] = std::min(p, q);
-        }
-        else
-        {
-          // A short edge from a thin vertex to a core.
-          isAttached[ofA > 0.0 ? a : b] = 1;
-        }
+        return;
+      }
+      if (ofA > 0.0 && ofB > 0.0)
+      {
+        const Index p = RootOf(parents, a);
+        const Index q = RootOf(parents, b);
+        // Lower roots, so that below a root comes before its members.
+        parents[std::max(p, q)] = std::min(p, q);
+      }
+      else
+      {
+        // A short edge from a thin vertex to a core.
+        isAttached[ofA > 0.0 ? a : b] = 1;
       }
     });
     std::vector<Index> sizes(count, 0);
@@ -445,35 +428,31 @@ private:
   void FindEvents(const Progress& progress)
   {
     Stages stages(progress, { 30, 70 });
-    ForEachStretch(
-      this->Surface.NumberOfTriangles(), stages.Next(), [&](Index begin, Index end) {
-        for (Index t = begin; t < end; ++t)
-        {
-          int thinCorners = 0;
-          Index group = None;
-          bool joins = false;
-          double open = std::numeric_limits<double>::infinity();
-          this->VisitThinCorners(t, [&](Index v) {
-            ++thinCorners;
-            joins = joins || (group != None && this->GroupOf[v] != group);
-            group = this->GroupOf[v];
-            open = std::min(open, this->LongestAt[v]);
-          });
-          if (joins)
-          {
-            this->Events.push_back({ this->Lengths[t], Kind::Join, t });
-          }
-          // Longer triangles that touch a core have no effect.
-          if (thinCorners < 3 && this->Lengths[t] <= LongestJoin)
-          {
-            this->Events.push_back({ this->Lengths[t], Kind::Touch, t });
-          }
-          if (open < std::numeric_limits<double>::infinity())
-          {
-            this->Events.push_back({ open, Kind::Open, t });
-          }
-        }
+    ForEachNumber(this->Surface.NumberOfTriangles(), stages.Next(), [&](Index t) {
+      int thinCorners = 0;
+      Index group = None;
+      bool joins = false;
+      double open = std::numeric_limits<double>::infinity();
+      this->VisitThinCorners(t, [&](Index v) {
+        ++thinCorners;
+        joins = joins || (group != None && this->GroupOf[v] != group);
+        group = this->GroupOf[v];
+        open = std::min(open, this->LongestAt[v]);
       });
+      if (joins)
+      {
+        this->Events.push_back({ this->Lengths[t], Kind::Join, t });
+      }
+      // Longer triangles that touch a core have no effect.
+      if (thinCorners < 3 && this->Lengths[t] <= LongestJoin)
+      {
+        this->Events.push_back({ this->Lengths[t], Kind::Touch, t });
+      }
+      if (open < std::numeric_limits<double>::infinity())
+      {
+        this->Events.push_back({ open, Kind::Open, t });
+      }
+    });
     // Equal ones by position, as sums depend on their order.
     const auto cornersOf = [&](Index t) {
       std::array<Point2, 3> corners;

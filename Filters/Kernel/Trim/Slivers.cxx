@@ -75,24 +75,21 @@ void DropSlivers(const MeasuredTriangles& measured, const PartialMesh& partial, 
       dropped.push_back(t);
     }
   };
-  ForEachStretch(mesh.NumberOfHalfEdges(), progress, [&](Index begin, Index end) {
-    for (Index h = begin; h < end; ++h)
+  ForEachNumber(mesh.NumberOfHalfEdges(), progress, [&](Index h) {
+    if (mesh.IsBorder(h) || flags[Mesh::Triangle(mesh.Twin(h))] != Surface)
     {
-      if (mesh.IsBorder(h) || flags[Mesh::Triangle(mesh.Twin(h))] != Surface)
+      look(h);
+    }
+    // What has come to the border is looked at right away; a triangle is dropped once only.
+    while (!dropped.empty())
+    {
+      const Index first = 3 * dropped.back();
+      dropped.pop_back();
+      for (Index side = first; side < first + 3; ++side)
       {
-        look(h);
-      }
-      // What has come to the border is looked at right away; a triangle is dropped once only.
-      while (!dropped.empty())
-      {
-        const Index first = 3 * dropped.back();
-        dropped.pop_back();
-        for (Index side = first; side < first + 3; ++side)
+        if (!mesh.IsBorder(side))
         {
-          if (!mesh.IsBorder(side))
-          {
-            look(mesh.Twin(side));
-          }
+          look(mesh.Twin(side));
         }
       }
     }

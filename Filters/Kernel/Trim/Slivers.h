@@ -3,11 +3,11 @@
 /**
  * @file
  * Slivers: flat triangles at the border of the surface, as along a line of points that leads away
+ * from the others, even if it wavers.
  *
  * The outermost points of a cloud are seldom exactly on one line, so a triangulation covers the
  * shallow bays between them with slivers. As surface they would give each whisker of points a
  * width.
- * from the others, even if it wavers.
  */
 #ifndef elevation_Trim_Slivers_h
 #define elevation_Trim_Slivers_h

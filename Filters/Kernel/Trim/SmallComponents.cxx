@@ -23,16 +23,13 @@ struct ComponentSizes
     : Triangles(components.Count(), 0)
     , Continues(components.Count(), 0)
   {
-    ForEachStretch(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
-      for (Index t = begin; t < end; ++t)
+    ForEachNumber(mesh.NumberOfTriangles(), progress, [&](Index t) {
+      const Index component = components.ComponentOf(t);
+      this->Triangles[component] += keep[t];
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
-        const Index component = components.ComponentOf(t);
-        this->Triangles[component] += keep[t];
-        for (Index h = 3 * t; h < 3 * t + 3; ++h)
-        {
-          // See PartialMesh: the neighbour has not been taken.
-          this->Continues[component] |= mesh.Twin(h) == h;
-        }
+        // See PartialMesh: the neighbour has not been taken.
+        this->Continues[component] |= mesh.Twin(h) == h;
       }
     });
   }

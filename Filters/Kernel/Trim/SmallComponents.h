@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- *
  * Components of a surface with too few vertices for spacings of their own, such as lone points far
  * away from the others.
  *

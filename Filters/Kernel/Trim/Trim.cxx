@@ -74,23 +74,20 @@ void PutBack(const TriangleList& list, const NearTriangles& near, const Mesh& me
   // A cut leaves one part of a triangle at its number and appends the others. So triangles beyond
   // the list's are new, and one of the list has changed if its corners have.
   const Index count = near ? static_cast<Index>(near->size()) : list.Count;
-  ForEachStretch(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i)
+  ForEachNumber(mesh.NumberOfTriangles(), progress, [&](Index i) {
+    const Index corners[3] = { mesh.IdOf(mesh.Origin(3 * i)), mesh.IdOf(mesh.Origin(3 * i + 1)),
+      mesh.IdOf(mesh.Origin(3 * i + 2)) };
+    const Index t = i >= count ? None : near ? (*near)[i] : i;
+    if (t != None && std::equal(corners, corners + 3, list.CornersOf(t)))
     {
-      const Index corners[3] = { mesh.IdOf(mesh.Origin(3 * i)), mesh.IdOf(mesh.Origin(3 * i + 1)),
-        mesh.IdOf(mesh.Origin(3 * i + 2)) };
-      const Index t = i >= count ? None : near ? (*near)[i] : i;
-      if (t != None && std::equal(corners, corners + 3, list.CornersOf(t)))
-      {
-        continue;
-      }
-      if (t != None)
-      {
-        changes.Changed.push_back(t);
-      }
-      // Those that changed come before those that are new, as Changes::Corners has them.
-      changes.Corners.insert(changes.Corners.end(), corners, corners + 3);
+      return;
     }
+    if (t != None)
+    {
+      changes.Changed.push_back(t);
+    }
+    // Those that changed come before those that are new, as Changes::Corners has them.
+    changes.Corners.insert(changes.Corners.end(), corners, corners + 3);
   });
 }
 
@@ -144,14 +141,11 @@ std::vector<Index> VerticesOf(
   const Mesh& mesh, const std::vector<char>& isMarked, const Progress& progress)
 {
   std::vector<Index> ids;
-  ForEachStretch(mesh.NumberOfHalfEdges(), progress, [&](Index begin, Index end) {
-    for (Index h = begin; h < end; ++h)
+  ForEachNumber(mesh.NumberOfHalfEdges(), progress, [&](Index h) {
+    if (isMarked[h])
     {
-      if (isMarked[h])
-      {
-        ids.push_back(mesh.IdOf(mesh.Origin(h)));
-        ids.push_back(mesh.IdOf(mesh.Destination(h)));
-      }
+      ids.push_back(mesh.IdOf(mesh.Origin(h)));
+      ids.push_back(mesh.IdOf(mesh.Destination(h)));
     }
   });
   std::sort(ids.begin(), ids.end());
@@ -236,13 +230,10 @@ void MarkBordersAround(const Mesh& mesh, const Rings& rings, Index firstOutside,
 std::vector<BorderEdge> BorderOf(const Mesh& mesh, const Progress& progress)
 {
   std::vector<BorderEdge> border;
-  ForEachStretch(mesh.NumberOfHalfEdges(), progress, [&](Index begin, Index end) {
-    for (Index h = begin; h < end; ++h)
+  ForEachNumber(mesh.NumberOfHalfEdges(), progress, [&](Index h) {
+    if (mesh.IsBorder(h))
     {
-      if (mesh.IsBorder(h))
-      {
-        border.push_back({ mesh.IdOf(mesh.Origin(h)), mesh.IdOf(mesh.Destination(h)) });
-      }
+      border.push_back({ mesh.IdOf(mesh.Origin(h)), mesh.IdOf(mesh.Destination(h)) });
     }
   });
   return border;
