@@ -122,6 +122,11 @@ public:
   double ShapeOf(Index a, Index b, Index c) const;
   /** Enters a place in the list of a face. */
   void AddTo(Face& face, Index place, float error);
+  /** Without lists: rows or columns, whichever are fewer. */
+  Index ShorterSide() const
+  {
+    return static_cast<Index>(std::min(this->Columns, this->Rows.size() - 1));
+  }
   /** Without lists: finds the worst node of the sample in a face. */
   void FindWorst(Face& face) const;
   /** Visits the points of the sample in a face; without lists those on its edges for both faces. */
