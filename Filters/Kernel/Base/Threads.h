@@ -99,8 +99,9 @@ public:
     , LastWork(CountThreadWork() + (isAlone ? 1 << 20 : 1 << 23))
   {
   }
-  /** For the thread that made it. */
-  bool IsOver() const { return CountThreadWork() >= this->LastWork || Clock::now() >= this->End; }
+  /** Both for the thread that made it. To ask for work alone takes no time. */
+  bool IsOver() const { return this->IsWorkDone() || Clock::now() >= this->End; }
+  bool IsWorkDone() const { return CountThreadWork() >= this->LastWork; }
 
 private:
   const Clock::time_point End;

@@ -104,8 +104,14 @@ void GreedyInsertion::AddSample(std::uint32_t every, int threads, const Progress
   constexpr Index pointsAtOnce = 1 << 14, facesAtOnce = 64;
   if (!this->Inserted.HasLists())
   {
-    // One of 16 points is one of 4 rows and columns.
-    this->Inserted.Step = static_cast<Index>(std::lround(std::sqrt(every)));
+    // One of 16 points is one of 4 rows and columns; more of them where there would be few.
+    constexpr Index fewest = 8;
+    Index& step = this->Inserted.Step;
+    step = static_cast<Index>(std::lround(std::sqrt(every)));
+    while (step > 1 && fewest * step > this->Inserted.ShorterSide())
+    {
+      step /= 2;
+    }
     ForEachRange(
       static_cast<Index>(this->Ordered.size()), threads, progress,
       [this](Index, Index begin, Index end) {

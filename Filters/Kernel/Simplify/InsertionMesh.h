@@ -122,9 +122,14 @@ public:
   double ShapeOf(Index a, Index b, Index c) const;
   /** Enters a place in the list of a face. */
   void AddTo(Face& face, Index place, float error);
+  /** Without lists: rows or columns, whichever are fewer. */
+  Index ShorterSide() const
+  {
+    return static_cast<Index>(std::min(this->Columns, this->Rows.size() - 1));
+  }
   /** Without lists: finds the worst node of the sample in a face. */
   void FindWorst(Face& face) const;
-  /** Visits the points of a face, by lists that of the sample, else all but the face's corners. */
+  /** Visits the points of the sample in a face; without lists those on its edges for both faces. */
   template <typename Visit>
   void ForEachPoint(const Face& face, const Visit& visit) const;
   template <typename MayEnter>
@@ -134,7 +139,7 @@ public:
 
   const Buffer<ElevatedPlace>& Places;
   Buffer<Index> Links; ///< of each place: the next one in the list, or None
-  Index Step = 1;      ///< without lists: the sample has every so many-th row and column
+  Index Step = 1; ///< without lists: the sample has every so many-th row and column; a power of two
   Buffer<Face> Faces;
   // Room for all faces there can be is taken at the start, so threads never wait for memory to
   // grow.
@@ -239,17 +244,22 @@ void InsertionMesh::ForEachPoint(const Face& face, const Visit& visit) const
   if (!this->HasLists())
   {
     const Index* const c = face.Corners;
-    this->ForEachRow(face, 1, [&](Index row, Index first, Index last) {
-      const Index end = this->Rows[row + 1];
-      for (Index place = this->FirstFrom(row, first); place < end && this->Places[place].X <= last;
-           ++place)
+    const Index besideSample = this->Step - 1; // the bits of columns that a power of two divides
+    std::size_t work = 0;
+    this->ForEachRow(face, this->Step, [&](Index row, Index first, Index last) {
+      const Index begin = this->FirstFrom(row, first), end = this->Rows[row + 1];
+      Index place = begin;
+      for (; place < end && this->Places[place].X <= last; ++place)
       {
-        if (place != c[0] && place != c[1] && place != c[2])
+        if ((static_cast<Index>(this->Places[place].X) & besideSample) == 0 && place != c[0] &&
+          place != c[1] && place != c[2])
         {
           visit(place);
         }
       }
+      work += 4 + static_cast<std::size_t>(place - begin);
     });
+    CountWork(work);
     return;
   }
   for (Index place = face.First; place != None; place = this->Links[place])

@@ -510,7 +510,8 @@ bool InsertionStrip::Work(const Round& round)
   constexpr int stepsPerLook = 1024;
   for (int step = 1;; ++step)
   {
-    if (step % stepsPerLook == 0 && round.IsOver())
+    // A step in a large triangle may look at all points.
+    if (round.IsWorkDone() || (step % stepsPerLook == 0 && round.IsOver()))
     {
       return true;
     }

@@ -95,12 +95,9 @@ void CheckTriangle(const Nodes& nodes, std::array<Index, 3> c)
       EXPECT_TRUE(std::binary_search(inside.begin(), inside.end(), face.Worst));
       EXPECT_NEAR(ErrorOf(nodes.Places[face.Worst], nodes.Places[c[0]], slopes), worst, 1e-6);
     }
-    if (step == 1)
-    {
-      std::vector<Index> visited;
-      mesh.ForEachPoint(face, [&](Index place) { visited.push_back(place); });
-      EXPECT_EQ(visited, inside);
-    }
+    std::vector<Index> visited;
+    mesh.ForEachPoint(face, [&](Index place) { visited.push_back(place); });
+    EXPECT_EQ(visited, inside);
   }
 }
 } // namespace

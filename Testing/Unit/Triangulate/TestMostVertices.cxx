@@ -248,3 +248,19 @@ TEST(MostVertices, OfLinesAreTheirCornersAndWhatIsWorthIt)
     EXPECT_GE(onLine, 2);
   }
 }
+
+TEST(MostVertices, OfALatticeWithFewRowsServeAsWellAsOfPoints)
+{
+  Cloud cloud;
+  for (int i = 0; i < 300000; ++i)
+  {
+    const int column = i / 3, row = i % 3;
+    cloud.Add(column, row, Terrain(column / 1e5, row / 3.0));
+  }
+  DelaunayOptions options = WithNumber(3000);
+  const Triangulation byRows = Triangulate(cloud.View(), options);
+  EXPECT_TRUE(byRows.LatticeFound);
+  options.UseLattice = LatticeMode::Off;
+  EXPECT_LT(
+    byRows.LargestElevationError, 1.5 * Triangulate(cloud.View(), options).LargestElevationError);
+}

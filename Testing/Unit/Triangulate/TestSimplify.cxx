@@ -5,6 +5,7 @@
 #include "Kernel/Mesh/Mesh.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "PointSets.h"
+#include "WorkOf.h"
 
 #include <gtest/gtest.h>
 
@@ -319,4 +320,27 @@ TEST(Simplify, ReportsProgressThatRises)
   };
   EXPECT_GT(Triangulate(cloud.View(), options).Triangles.size(), 600000u);
   EXPECT_LT(step, 0.2);
+}
+
+TEST(Simplify, ReportsWhereEachPointChangesTrianglesOfManyNodes)
+{
+  // Spikes beside the nodes of all samples: until all nodes are looked at, there are few triangles.
+  std::mt19937_64 random(9);
+  Cloud cloud;
+  for (int i = 0; i < 640000; ++i)
+  {
+    const int column = i % 800, row = i / 800;
+    const bool isSpike = column % 4 != 0 && row % 4 != 0 && random() % 100 == 0;
+    cloud.Add(column, row, isSpike ? 100.0 * Uniform(random) : 0.0);
+  }
+  for (const EdgeCriterion edges : { EdgeCriterion::Delaunay, EdgeCriterion::DataDependent })
+  {
+    DelaunayOptions options = WithError(30.0);
+    options.Edges = edges;
+    const std::size_t silence = testing_work::LongestSilence([&](const Progress& progress) {
+      options.Monitor = progress;
+      EXPECT_TRUE(Triangulate(cloud.View(), options).LatticeFound);
+    });
+    EXPECT_LT(silence, 5000000u);
+  }
 }
