@@ -38,7 +38,7 @@
  * inserted, that is put right. Circles are exact.
  *
  * Cost: of the order of n log k for k chosen points of n. Memory: 36 bytes a point, and 80 a chosen
- * one; 8 for each node of a lattice that is looked at by rows, so up to 32 more a point.
+ * one; 8 for each node of a lattice that is looked at by rows, so up to 16 more a point.
  *
  * [Garland & Heckbert 1995] Fast Polygonal Approximation of Terrains and Height Fields, Carnegie
  * Mellon University, CMU-CS-95-181.

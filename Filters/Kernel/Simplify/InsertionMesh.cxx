@@ -56,7 +56,7 @@ InsertionMesh::InsertionMesh(const Buffer<ElevatedPlace>& places, const Buffer<I
       columns = std::max(columns, place.X + 1.0);
     }
     // Where few nodes have points, rows would cost more than lists.
-    constexpr double mostNodesPerPoint = 4.0;
+    constexpr double mostNodesPerPoint = 2.0;
     const double nodes = columns * static_cast<double>(rows.size() - 1);
     if (nodes <= mostNodesPerPoint * static_cast<double>(places.size()))
     {
