@@ -19,6 +19,7 @@ class vtkDataObject;
 class vtkDataSetAttributes;
 class vtkDoubleArray;
 class vtkFieldData;
+class vtkIdList;
 class vtkIdTypeArray;
 class vtkInformation;
 class vtkInformationVector;
