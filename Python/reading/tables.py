@@ -18,12 +18,13 @@ ASKED_FOR = {  # by name, so that they must be there
     "finnish": "p, i",
     "signs": "comments, missing, encodings",
     "refusals": "thousands, sexagesimals, letters, shortened, commas twice",
-    "patterns": "touching, date, grouped, pairs, sexagesimal, with decimals, numbered name, summary",
+    "patterns": "touching, date, shortened, grouped, pairs, sexagesimal, with decimals, numbered name, summary",
     "nulls": "values, rows",
     "weights": "one pair, as many decimals, as wide as high, z spans less, z is higher than any place, stands first, "
     "x rises, x is a line, a column is left out, x and y are of UTM, x and y count, z is flat or rises along lines, "
     "z behind lines",
-    "figures": "good, clear, clear of poor, most step of lines, highest, most feet",
+    "figures": "good, clear, clear of poor, most step of lines, highest, most feet, least "
+    "feet east, most feet north, middle of eov",
     "earth": "figures",
     "parts of time": "year, month, day, day of year, hour, minute, second",
     "times": "orders",
