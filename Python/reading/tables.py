@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What is known of tables of text: tables.ini as Python has it. The head of that file explains it."""
 
+import codecs
 import configparser
 import functools
 import os
@@ -47,12 +48,33 @@ def known():
         for section, names in ASKED_FOR.items():
             for name in set(names.split(", ")) - set(parser[section]):
                 raise ValueError(f"[{section}] has no {name}")
-        return converted(parser)
+            for name in names.split(", "):
+                if not parser[section][name].strip():
+                    raise ValueError(f"[{section}] {name} is empty")
+        tables = converted(parser)
+        check_counts(tables)
+        return tables
     except KeyError as error:
         why = f"it has no {error}"
-    except (OSError, configparser.Error, ValueError, re.error) as error:
+    except (OSError, configparser.Error, ValueError, re.error, LookupError) as error:
         why = " ".join(str(getattr(error, "strerror", error)).split())
     raise FileError(f"{TABLES}: what is known of tables cannot be read: {why}; install the package again")
+
+
+def check_counts(tables):
+    """Raises an error for an entry with fewer parts than are used, or with the name of something else that lacks."""
+    figures = {"[earth] figures": (tables.earth, 4)}
+    figures.update((f"[parts of time] {name}", (values, 3)) for name, values in tables.parts_of_time.items())
+    for name, (values, count) in figures.items():
+        if len(values) != count:
+            raise ValueError(f"{name} needs {count} numbers")
+    for name, count in (("numbered name", 2), ("summary", 1)):
+        if tables.patterns[name].groups < count:
+            raise ValueError(f"[patterns] {name} needs {count} groups")
+    for part in sum(tables.times, []):
+        tables.parts_of_time[part]
+    for encoding in tables.signs["encodings"]:
+        codecs.lookup(encoding)
 
 
 def converted(parser):
