@@ -8,7 +8,6 @@ does not take is parsed line by line, so that an error can name the line.
 """
 
 import collections
-import contextlib
 import math
 import re
 
@@ -498,12 +497,15 @@ def read_line_table(path, progress):
     """As read_table() of x, y and z, or of x and y where there are no more columns of numbers."""
     try:
         return read_table(path, 3, progress)
-    except FileError:
-        with contextlib.suppress(FileError):
+    except FileError as error:
+        try:
             table = parse(path, ReadOptions(progress=progress), 2, "")[0].table
             if len(table.choice.of_numbers) == 2:
                 return read_table(path, 2, progress)
-        raise
+        except FileError as other:
+            if isinstance(other, BadLine) and not isinstance(error, BadLine):
+                raise
+        raise error
 
 
 def read_text(path, options):

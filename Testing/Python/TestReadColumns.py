@@ -10,7 +10,8 @@ import unittest.mock
 import numpy
 from text_tables import LAT, LON, NEAR_X, NEAR_Y, Tables, X, Y, Z, columns_of
 from vtkelevationsurface.messages import FileError
-from vtkelevationsurface.reading.text import read_table
+from vtkelevationsurface.progress import no_progress
+from vtkelevationsurface.reading.text import read_line_table, read_table
 
 # Headerless rows that must keep their first three columns: (what, a row's numbers).
 NODES = [(x, y) for x in range(12) for y in range(12)]
@@ -424,6 +425,11 @@ class Doubts(Tables):
             path = self.file("a.txt", "\n".join(["500 200", *ring, "500 200"]) + end)
             rows, numbers, *_ = read_table(path, needed=2)
             self.assertEqual((tuple(rows[0]), len(rows)), ((500, 200), 20 + 4 * bool(end)))
+
+    def test_a_doubtful_title_of_faults_without_z_is_asked_about(self):
+        rows = [f"{100 + i % 5}.25 {200 + i % 7}.75" for i in range(20)]
+        with self.assertRaisesRegex(FileError, "line 1: 60 7 is unlike all rows below it"):
+            read_line_table(self.file("a.txt", "\n".join(["60 7", *rows])), no_progress)
 
     def lines_refusal(self, text):
         with self.assertRaises(FileError) as caught:
