@@ -417,7 +417,8 @@ class Doubts(Tables):
     def test_a_first_point_with_the_decimals_of_the_others_is_no_title(self):
         rows = [" ".join(f"{v:.2f}" for v in row) for row in zip(X, Y, Z)]
         self.assertEqual(self.read("\n".join(["1000.00 5000.00 100.00", *rows])).points.GetPoint(0), (1000, 5000, 100))
-        self.assertIn("a line of names of the columns above it", self.refusal("\n".join(["1000.0 5000.0 100.0", *rows])))
+        error = self.refusal("\n".join(["1000.0 5000.0 100.0", *rows]))
+        self.assertIn("a line of names of the columns above it", error)
 
     def test_a_vertex_that_closes_a_ring_is_no_title(self):
         ring = [f"{100 + 10 * math.cos(i / 3):.2f} {900 + 10 * math.sin(i / 3):.2f}" for i in range(18)]
