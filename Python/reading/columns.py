@@ -166,6 +166,7 @@ class Choice:
                 raise FileError(f"{self.path}: {why}")
             self.indices.append(found[0])
         self.refuse_geocentric(self.indices)
+        self.refuse_shortened(self.indices)
 
     # -- readings
 
@@ -178,6 +179,7 @@ class Choice:
         figures = known().figures
         clear = figures["clear" if readings[best] >= figures["good"] else "clear of poor"]
         self.refuse_geocentric(best)
+        self.refuse_shortened(best)
         shown = [one for one in readings if one in (best, *others[:1])]
         if others and readings[best] - readings[others[0]] < clear:
             self.ask(shown, why)
@@ -197,6 +199,8 @@ class Choice:
         language = next((name for name, letters in known().x_is_north.items() if re.search(letters, self.head)), "")
         is_plain = self.meanings[x].rank == self.meanings[y].rank == 0
         is_east, is_north = self.is_utm(x, y), self.is_utm(y, x)
+        if language == "Hungarian":
+            is_east, is_north = is_east or self.is_eov(x, y), is_north or self.is_eov(y, x)
         if not language or not is_plain or is_east and not is_north or self.are_degrees(x, y):
             return
         if is_east or not is_north:
@@ -561,7 +565,9 @@ class Choice:
         has_ids |= any(reason in (COUNTS_UP, EACH_ONCE) for reason in self.reasons.values())
         coded = any(i > max(x, y, z) for i in texts)
         northing_first, northing_second = self.is_utm(y, x), self.is_utm(x, y)
-        is_sure = northing_first != northing_second and max(self.low[x], self.low[y]) > known().figures["most feet"]
+        figures, (less, more) = known().figures, sorted((self.low[x], self.low[y]))
+        are_feet = more < figures["most feet"] or figures["least feet east"] < less < figures["most feet north"]
+        is_sure = northing_first != northing_second and not are_feet
         if has_ids and northing_first and is_sure:
             self.has_swapped, self.indices = True, self.swapped()
             self.notes.append(
@@ -592,6 +598,11 @@ class Choice:
         zone = low[x] // 1e6 * 1e6 if has_zone else 0.0
         return bool(160e3 < low[x] - zone <= high[x] - zone < 840e3 and 1.1e6 < low[y] <= high[y] < 10e6)
 
+    def is_eov(self, x, y):
+        """Whether columns are easting and northing of the Hungarian EOV, of which one is always the larger."""
+        middle = known().figures["middle of eov"]
+        return bool(0 < self.low[y] <= self.high[y] < middle < self.low[x] <= self.high[x] < 1e6)
+
     def refuse_geocentric(self, chosen):
         """Raises the error for columns of which some are x, y and z from the centre of the earth."""
         equator, pole, most, least = known().earth
@@ -603,6 +614,12 @@ class Choice:
                     f"{self.path}: {self.listed(three)} are x, y and z from the centre of the "
                     "earth (ECEF); export longitude, latitude and height, or a map projection"
                 )
+
+    def refuse_shortened(self, chosen):
+        """Raises the error for columns of which x and y lack digits."""
+        is_short = known().patterns["shortened"].fullmatch
+        if 2 * sum(all(is_short(row[i]) for i in chosen[:2]) for row in self.rows) > len(self.rows):
+            raise FileError(f"{self.path}: {known().refusals['shortened']}")
 
     # -- what the values say about the choice
 

@@ -147,6 +147,8 @@ def title_kind(layout, line, others, count):
     least = numpy.minimum(abs(low), abs(high))
     is_near = (least > high - low) & (away < 0.1 * least)  # as map coordinates are
     is_whole = all(map(str.isdecimal, words))
+    if not is_whole and all(found == {len(word.partition(sign)[2])} for word, found in zip(words, decimals)):
+        return ""  # as the others are written
     x_and_y = set(own[is_far][:2])  # alike, they may be nulls, which are left out later
     is_null = len(x_and_y) == 1 and not x_and_y.isdisjoint(known().nulls["values"] + known().nulls["rows"])
     if have_decimals.sum() > 1 and layout.separator and words == list(map(str, range(len(words)))):

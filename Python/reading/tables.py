@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What is known of tables of text: tables.ini as Python has it. The head of that file explains it."""
 
+import codecs
 import configparser
 import functools
 import os
@@ -18,12 +19,13 @@ ASKED_FOR = {  # by name, so that they must be there
     "finnish": "p, i",
     "signs": "comments, missing, encodings",
     "refusals": "thousands, sexagesimals, letters, shortened, commas twice",
-    "patterns": "touching, date, grouped, pairs, sexagesimal, with decimals, numbered name, summary",
+    "patterns": "touching, date, shortened, grouped, pairs, sexagesimal, with decimals, numbered name, summary",
     "nulls": "values, rows",
     "weights": "one pair, as many decimals, as wide as high, z spans less, z is higher than any place, stands first, "
     "x rises, x is a line, a column is left out, x and y are of UTM, x and y count, z is flat or rises along lines, "
     "z behind lines",
-    "figures": "good, clear, clear of poor, most step of lines, highest, most feet",
+    "figures": "good, clear, clear of poor, most step of lines, highest, most feet, least "
+    "feet east, most feet north, middle of eov",
     "earth": "figures",
     "parts of time": "year, month, day, day of year, hour, minute, second",
     "times": "orders",
@@ -46,12 +48,33 @@ def known():
         for section, names in ASKED_FOR.items():
             for name in set(names.split(", ")) - set(parser[section]):
                 raise ValueError(f"[{section}] has no {name}")
-        return converted(parser)
+            for name in names.split(", "):
+                if not parser[section][name].strip():
+                    raise ValueError(f"[{section}] {name} is empty")
+        tables = converted(parser)
+        check_counts(tables)
+        return tables
     except KeyError as error:
         why = f"it has no {error}"
-    except (OSError, configparser.Error, ValueError, re.error) as error:
+    except (OSError, configparser.Error, ValueError, re.error, LookupError) as error:
         why = " ".join(str(getattr(error, "strerror", error)).split())
     raise FileError(f"{TABLES}: what is known of tables cannot be read: {why}; install the package again")
+
+
+def check_counts(tables):
+    """Raises an error for an entry with fewer parts than are used, or with the name of something else that lacks."""
+    figures = {"[earth] figures": (tables.earth, 4)}
+    figures.update((f"[parts of time] {name}", (values, 3)) for name, values in tables.parts_of_time.items())
+    for name, (values, count) in figures.items():
+        if len(values) != count:
+            raise ValueError(f"{name} needs {count} numbers")
+    for name, count in (("numbered name", 2), ("summary", 1)):
+        if tables.patterns[name].groups < count:
+            raise ValueError(f"[patterns] {name} needs {count} groups")
+    for part in sum(tables.times, []):
+        tables.parts_of_time[part]
+    for encoding in tables.signs["encodings"]:
+        codecs.lookup(encoding)
 
 
 def converted(parser):

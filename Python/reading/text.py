@@ -8,7 +8,6 @@ does not take is parsed line by line, so that an error can name the line.
 """
 
 import collections
-import contextlib
 import math
 import re
 
@@ -118,17 +117,34 @@ class Table:
                 head.append(line.strip().lstrip("#%/!*> "))
                 self.comments += 1
             elif self.is_like(line) and not known_axes(self.layout.words(line)) >= set("xyz"):  # as x,y,z,0,1
-                below, plain = lines[self.first + 1 :], line.strip()
-                near = [other for other in below[:ROWS_BELOW] if self.is_like(other) and other.strip() != plain]
-                kind = title_kind(self.layout, line, near, sum(map(bool, map(str.strip, below))))
-                if not kind and title_kind(self.layout, line, near[3:], 0) != "sure":  # others may follow
+                kind = self.title_kind(line, lines[:self.first], lines[self.first + 1 :])
+                if not kind:
                     break
-                self.titles[plain] = kind or "sure"
+                self.titles[line.strip()] = kind
                 preamble.append((self.first + 1, line))
             elif line.strip():
                 head.append(line.strip())
                 preamble.append((self.first + 1, line))
         return head, preamble
+
+    def title_kind(self, line, above, below):
+        """Whether a line of numbers is a title: "sure", "doubtful" or "". It is none below names of columns, unless it
+        counts these; where ids go on from it; and where it closes a ring."""
+        plain, words = line.strip(), self.layout.words(line)
+        near = [other for other in below[:ROWS_BELOW] if self.is_like(other) and other.strip() != plain]
+        above = next((other for other in reversed(above) if other.strip()), "")
+        is_named = known_axes(self.layout.words(above)) >= {"x", "y"} and not is_comment(above)
+        counts = words in [list(map(str, range(k, k + len(words)))) for k in (0, 1)]
+        ids = [self.layout.number(self.layout.words(other)[0]) for other in (line, *near[:2])]
+        goes_on = None not in ids and ids[0] % 1 == 0 and ids[1:] == [ids[0] + 1, ids[0] + 2]
+        pairs = zip(below, [*below[1:], ""]) if self.needed == 2 else ()
+        closes = any(one.strip() == plain and not other.strip("> ") for one, other in pairs)
+        if closes or not counts and (is_named or goes_on):
+            return ""
+        kind = title_kind(self.layout, line, near, sum(map(bool, map(str.strip, below))))
+        if not kind and near and title_kind(self.layout, near[0], near[3:], 0) == "sure":  # others may follow
+            kind = title_kind(self.layout, line, near[3:], 0).replace("doubtful", "")
+        return "sure" if kind and is_named else kind
 
     def sample(self, lines):
         """(rows as words, how many of them follow each other)."""
@@ -213,7 +229,8 @@ class Table:
             return False
         good = sum(v is not None and not math.isnan(v) for v in chosen)
         if plain in self.titles:
-            why = f"{' '.join(words)[:40]} is unlike all rows below it, as a title is; a point may stand behind others"
+            why = f"{' '.join(words)[:40]} is unlike all rows below it, as a title is"
+            why += "; if it is a point, write a line of names of the columns above it"
             error = self.bad_line(number, "", why)
         elif len(words) < self.width:
             no_words = None not in values or re.fullmatch(r"[-+\d.,;\seE]+", " ".join(words))
@@ -480,12 +497,15 @@ def read_line_table(path, progress):
     """As read_table() of x, y and z, or of x and y where there are no more columns of numbers."""
     try:
         return read_table(path, 3, progress)
-    except FileError:
-        with contextlib.suppress(FileError):
+    except FileError as error:
+        try:
             table = parse(path, ReadOptions(progress=progress), 2, "")[0].table
             if len(table.choice.of_numbers) == 2:
                 return read_table(path, 2, progress)
-        raise
+        except FileError as other:
+            if isinstance(other, BadLine) and not isinstance(error, BadLine):
+                raise
+        raise error
 
 
 def read_text(path, options):

@@ -10,7 +10,8 @@ import unittest.mock
 import numpy
 from text_tables import LAT, LON, NEAR_X, NEAR_Y, Tables, X, Y, Z, columns_of
 from vtkelevationsurface.messages import FileError
-from vtkelevationsurface.reading.text import read_table
+from vtkelevationsurface.progress import no_progress
+from vtkelevationsurface.reading.text import read_line_table, read_table
 
 # Headerless rows that must keep their first three columns: (what, a row's numbers).
 NODES = [(x, y) for x in range(12) for y in range(12)]
@@ -170,6 +171,35 @@ class Doubts(Tables):
         cloud = self.read(text)
         self.assert_rows(cloud, numpy.column_stack((Y, X, Z)))
         self.assertIn("--columns 2,1,3", cloud.notes[-1])
+
+    def test_feet_of_kentucky_and_california_are_no_gauss_krueger(self):
+        for east, north in ((5750e3, 3600e3), (5280e3, 4180e3), (5960e3, 2190e3), (5950e3, 2515e3)):
+            rows = [f"{i} {east + x:.2f} {north + y:.2f} {z}" for i, (x, y, z) in enumerate(zip(NEAR_X, NEAR_Y, Z), 1)]
+            for code in ("", " GR"):
+                error = self.refusal("".join(f"{row}{code}\n" for row in rows))
+                self.assertIn("--columns 3,2,4 or --columns 2,3,4", error)
+        for east, north in ((4500e3, 5400e3), (5404e3, 5486e3), (6512e3, 5504e3)):
+            rows = [(north + y, east + x, z) for x, y, z in zip(NEAR_X, NEAR_Y, Z)]
+            text = "".join(f"{i} {y:.2f} {x:.2f} {z}\n" for i, (y, x, z) in enumerate(rows, 1))
+            if (east, north) == (5404e3, 5486e3):
+                self.assertIn("--columns 3,2,4 or --columns 2,3,4", self.refusal(text))
+            else:
+                self.assertIn("column 2 is taken as northing", " ".join(self.read(text).notes))
+
+    def test_numbers_that_a_spreadsheet_shortens_may_stand_behind_z(self):
+        rows = [",".join(row) + f",4.8{i % 10}E+05,1.2{i % 7}E+06\n" for i, row in enumerate(columns_of("x y z")[0])]
+        for head in ("", "x,y,z,volume,area\n"):
+            self.assertEqual(self.read(head + "".join(rows)).points.GetNumberOfPoints(), len(rows))
+        rows = [f"{i},4.8{i % 10}E+05;1,2{i % 7}E+06;5{i}".replace(";", ",").replace("1,2", "1.2") for i in range(60)]
+        self.assertIn("are shortened by a spreadsheet", self.refusal("id,x,y,z\n" + "\n".join(rows)))
+
+    def test_sizes_prove_which_is_north_in_the_grid_of_hungary(self):
+        for head, east, north in (("Pontszám;Y;X;M", 1, 2), ("Pontszám;X;Y;M", 1, 2), ("Pontszám;X;Y;M", 2, 1)):
+            rows = [[str(i), "", "", str(z)] for i, z in enumerate(Z, 1)]
+            for row, x, y in zip(rows, NEAR_X, NEAR_Y):
+                row[east], row[north] = f"{646000 + x:.2f}", f"{204000 + y:.2f}"
+            cloud = self.read("\n".join([head, *map(";".join, rows)]) + "\n")
+            self.assertGreater(cloud.points.GetPoint(0)[0], 400e3)
 
     def test_names_on_both_sides_of_the_first_data_lose_no_row(self):
         cloud = self.read("x,y,z\n1,2,NULL\n4,5,7\n1,3,#N/A\n")
@@ -365,6 +395,42 @@ class Doubts(Tables):
         self.assertEqual(list(cloud.lines), list(range(3, 63)))
         for title in ("line 1 is left out: 60 3 1", "line 2 is left out: 1 2 3"):
             self.assertIn(title + " is a title, not a point", cloud.notes)
+
+    def test_a_row_below_names_or_before_the_next_ids_is_no_title(self):
+        rows = [",".join(row) for row in columns_of("x y z")[0]]
+        ids = [f"{i + 2},{row}" for i, row in enumerate(rows)]
+        for head, first, lines in (
+            ("x,y,z", "100,200,50", rows), ("easting,northing,elevation", "1000.00,5000.00,100.00", rows),
+            ("id,x,y,z", "7,100,200,5", ids), (None, "1,100,200,5", ids), (None, "1,700,900,100", ids),
+            ("x,y,z", "60,7,2", [f"{i % 7},{i % 9},{i % 11}" for i in range(60)]),
+        ):
+            text = "\n".join([*filter(None, [head]), first, *lines]) + "\n"
+            with self.subTest(text[:80]):
+                cloud = self.read(text)
+                self.assertEqual(cloud.points.GetPoint(0), tuple(map(float, first.split(",")[-3:])))
+                self.assertEqual(cloud.points.GetNumberOfPoints(), len(lines) + 1)
+        near = [f"{x},{y},{z}" for x, y, z in zip(NEAR_X, NEAR_Y, Z.round(1))]
+        for lines in (rows, near):
+            cloud = self.read("\n".join(["x,y,z", "1,2,3", *lines]))  # numbers of columns
+            self.assertIn("line 2 is left out: 1 2 3 is a title, not a point", cloud.notes)
+
+    def test_a_first_point_with_the_decimals_of_the_others_is_no_title(self):
+        rows = [" ".join(f"{v:.2f}" for v in row) for row in zip(X, Y, Z)]
+        self.assertEqual(self.read("\n".join(["1000.00 5000.00 100.00", *rows])).points.GetPoint(0), (1000, 5000, 100))
+        error = self.refusal("\n".join(["1000.0 5000.0 100.0", *rows]))
+        self.assertIn("a line of names of the columns above it", error)
+
+    def test_a_vertex_that_closes_a_ring_is_no_title(self):
+        ring = [f"{100 + 10 * math.cos(i / 3):.2f} {900 + 10 * math.sin(i / 3):.2f}" for i in range(18)]
+        for end in ("", "\n\n1.5 1.5\n2.5 1.5\n2.5 2.5\n1.5 1.5\n"):
+            path = self.file("a.txt", "\n".join(["500 200", *ring, "500 200"]) + end)
+            rows, numbers, *_ = read_table(path, needed=2)
+            self.assertEqual((tuple(rows[0]), len(rows)), ((500, 200), 20 + 4 * bool(end)))
+
+    def test_a_doubtful_title_of_faults_without_z_is_asked_about(self):
+        rows = [f"{100 + i % 5}.25 {200 + i % 7}.75" for i in range(20)]
+        with self.assertRaisesRegex(FileError, "line 1: 60 7 is unlike all rows below it"):
+            read_line_table(self.file("a.txt", "\n".join(["60 7", *rows])), no_progress)
 
     def lines_refusal(self, text):
         with self.assertRaises(FileError) as caught:

@@ -218,6 +218,17 @@ class Known(Tables):
             (text.replace("\ndate = ", "\ndate = ("), "missing )"), (text.replace("-9999", "nine", 1), "'nine'"),
         ):
             self.assertIn(words, self.refusal_with(damaged))
+        for entry, other, words in (
+            ("encodings = latin-1 ", "encodings = latin-9000 ", "unknown encoding"),
+            ("figures = 6378137 ", "figures = ", "[earth] figures needs 4"),
+            ("month = 1 12 ", "month = 1 ", "[parts of time] month needs 3"),
+            ("    hour, minute, second", "    hour, tick", "it has no 'tick'"),
+            ("figures = 6378137 6356752.3 0.003 1e4", "figures =", "[earth] figures is empty"),
+            ("red = red r rot rouge", "red =", "[colours] red is empty"),
+            ("numbered name = (?i)(?:field|column|col)?\\W*(", "numbered name = (?:", "numbered name needs 2 groups"),
+        ):
+            self.assertIn(entry, text)
+            self.assertIn(words, self.refusal_with(text.replace(entry, other, 1)))
 
     def test_an_entry_that_is_asked_for_by_name_and_lacks_is_named_with_its_section(self):
         with open(tables.TABLES, encoding="utf-8") as stream:
