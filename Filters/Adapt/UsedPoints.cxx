@@ -136,6 +136,7 @@ void NameUnusedByOriginalIds(vtkPolyData* surface)
 void KeepFlagged(
   const std::vector<char>& areKept, int threads, const Progress& progress, vtkPolyData* surface)
 {
+  threads = ThreadsAtOnce(threads);
   std::vector<Index> placeOf(areKept.size());
   Index count = 0;
   for (std::size_t i = 0; i < areKept.size(); ++i)

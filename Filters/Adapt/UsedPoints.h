@@ -48,6 +48,7 @@ void NameUnusedByOriginalIds(vtkPolyData* surface);
  * Leaves only the points with a flag, in their order; cells have no others, which is not checked. A
  * surface that keeps all its points is not copied. Arrays go one after the other, so that memory for
  * one array more is all that is needed.
+ * @param[in] threads  0: all
  */
 VTKELEVATIONSURFACE_EXPORT void KeepFlagged(
   const std::vector<char>& areKept, int threads, const Progress& progress, vtkPolyData* surface);

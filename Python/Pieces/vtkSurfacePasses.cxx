@@ -410,8 +410,7 @@ bool vtkSurfacePasses::KeepFlagged(vtkUnsignedCharArray* flags, vtkPolyData* sur
   return Try([&]() {
     const unsigned char* const flag = flags->GetPointer(0);
     const std::vector<char> areKept(flag, flag + flags->GetNumberOfValues());
-    const int threads = std::max(1, vtkSMPTools::GetEstimatedNumberOfThreads());
-    elevation::KeepFlagged(areKept, threads, elevation::Progress(), surface);
+    elevation::KeepFlagged(areKept, 0, elevation::Progress(), surface);
   });
 }
 

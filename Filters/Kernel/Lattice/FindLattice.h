@@ -22,8 +22,8 @@
  *    /     /     /        /      reduced by each other, refine it, until only the true steps are
  *   o-----o-----o        o-> U   left: so a grid with most nodes missing is found, too.
  *
- * Cost: two linear passes over the coordinates, on several threads, and sorting a sample of one
- * point in 16 (1,024 at least, 4,096 at most).
+ * Cost: two linear passes over the coordinates, on several threads, a hash set of one point in 16
+ * (1,024 at least, 4,096 at most), and, where differences generate a lattice, sorting some 1,024.
  */
 #ifndef elevation_Lattice_FindLattice_h
 #define elevation_Lattice_FindLattice_h

@@ -31,7 +31,7 @@ struct LatticeSample : Box
   bool MayFitLattice() const;
   /** About 1,024 of its points: enough to fit a lattice to. */
   std::vector<Point2> Some() const;
-  /** Adds another part of the same cloud, to none or to those that were added before. */
+  /** Adds a part of the same cloud to none, or to parts added before: then points are sorted. */
   void Add(LatticeSample&& part);
 };
 

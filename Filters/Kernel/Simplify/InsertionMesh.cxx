@@ -217,13 +217,13 @@ void InsertionMesh::FindWorst(Face& face) const
 
 void InsertionMesh::MakeLists(const std::vector<Index>& faces, const Progress& progress)
 {
+  const ElevatedPlace* const places = this->Places.data();
   for (const std::size_t i : Counted(faces.size()))
   {
     ReportStep(progress, i, faces.size());
     Face& face = this->Faces[faces[i]];
     face.Worst = None;
     face.Error = 0.0f;
-    const ElevatedPlace* const places = this->Places.data();
     const ElevatedPlace& a = places[face.Corners[0]];
     const Slopes slopes = SlopesOf(a, places[face.Corners[1]], places[face.Corners[2]]);
     this->ForEachPoint(face, [&](Index place) {
