@@ -195,6 +195,7 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
   placed.Duplicates = std::move(nodes.Duplicates);
   placed.NotFinite = std::move(search.NotFinite);
   placed.Metric = metric;
+  placed.LargestOffset = nodes.LargestOffset;
   placed.Steps = nodes.Steps;
   placed.Corners = CornersOf(placed, candidates);
   return true;

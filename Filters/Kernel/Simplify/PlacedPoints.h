@@ -11,6 +11,7 @@
 #include "InsertionMesh.h"
 #include "Kernel/Bins/Bins.h"
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct PlacedPoints
   std::vector<Index> Corners;   ///< places, those of the convex hull, from the lowest up
   std::vector<Index> Duplicates, NotFinite;
   std::optional<LatticeMetric> Metric; ///< on a lattice
+  /// How far a point may be beside its node, along each step, in steps; infinite without a lattice.
+  double LargestOffset = std::numeric_limits<double>::infinity();
   Lattice Steps;
 
   Index Count() const { return static_cast<Index>(this->Ids.size()); }

@@ -90,7 +90,11 @@ public:
     ForEachTask(tasks, threads, progress, [&](Index task) {
       for (const Index i : Counted(task * facesAtOnce, std::min(count, (task + 1) * facesAtOnce)))
       {
-        this->MeasureFace(this->Chosen.Order()[i], most, largest[task], found[task]);
+        const Index face = this->Chosen.Order()[i];
+        if (!(this->BoundOf(this->Chosen.At(face)) <= std::min(most, largest[task])))
+        {
+          this->MeasureFace(face, most, largest[task], found[task]);
+        }
       }
     });
     for (const std::vector<Index>& some : found)
@@ -115,6 +119,51 @@ private:
     const Index* const c = face.Corners;
     return { this->At(c[0]), this->ElevationOf(c[0]), this->At(c[1]), this->ElevationOf(c[1]),
       this->At(c[2]), this->ElevationOf(c[2]) };
+  }
+
+  /**
+   * No point of a face is farther than this, by the error that insertion knows by nodes: so most
+   * faces need no measuring. Not finite without a lattice, nor where points may be too far beside
+   * their nodes.
+   *
+   * Let no point be more than s steps beside its node, and no triangle here more than w steps wide
+   * and high together, with 8 s w < 1. The linear map that moves a triangle's corners from their
+   * nodes to their points then moves all of it by at most s, and two places by less than a quarter
+   * of their distance nearer or farther, as twice the area of a triangle of nodes is 1 or more. So
+   * it turns no triangle over, and what it takes to a point is within 4 s of the point's node: in
+   * the same triangle, or in the next one where the node is on an edge. There the surface is off
+   * the height at the node by the slope of that triangle times 4 s at most.
+   */
+  double BoundOf(const Face& face) const
+  {
+    double bound = this->MarginOf(face);
+    for (const Index next : face.Neighbors)
+    {
+      bound = next == None ? bound : std::max(bound, this->MarginOf(this->Chosen.At(next)));
+    }
+    constexpr double ofFloat = 0x1p-23;
+    return bound + (1.0 + ofFloat) * face.Error;
+  }
+
+  /** What BoundOf() adds because of offsets and of rounding, for places of one face. */
+  double MarginOf(const Face& face) const
+  {
+    const ElevatedPlace* const places = this->Placed.Places.data();
+    const ElevatedPlace &a = places[face.Corners[0]], &b = places[face.Corners[1]],
+                        &c = places[face.Corners[2]];
+    const double bx = b.X - a.X, by = b.Y - a.Y, cx = c.X - a.X, cy = c.Y - a.Y;
+    const double ofB = std::fabs(bx) + std::fabs(by), ofC = std::fabs(cx) + std::fabs(cy);
+    const double offset = this->Placed.LargestOffset;
+    if (!(8.0 * offset * (ofB + ofC) < 1.0))
+    {
+      return std::numeric_limits<double>::infinity();
+    }
+    // The slopes along both steps, and as much as may cancel out in them. A term is rounded a few
+    // times, by 2^-53 of the largest on the way.
+    constexpr double rounding = 64.0 * 0x1p-53;
+    const double slopes =
+      (std::fabs(b.Z - a.Z) * ofC + std::fabs(c.Z - a.Z) * ofB) / (bx * cy - cx * by);
+    return slopes * (4.0 * offset + rounding * (ofB + ofC)) + rounding * std::fabs(a.Z);
   }
 
   /**
