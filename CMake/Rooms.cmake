@@ -47,6 +47,7 @@ set(es_kernel_Grow
 set(es_kernel_Simplify
   PlacedPoints
   FewerPieces
+  WorstNode
   InsertionMesh
   InsertionStrip
   GreedyInsertion

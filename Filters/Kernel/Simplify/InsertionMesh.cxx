@@ -3,6 +3,7 @@
 #include "InsertionMesh.h"
 
 #include "Kernel/Grow/Grow.h"
+#include "WorstNode.h"
 
 #include <algorithm>
 #include <limits>
@@ -61,7 +62,7 @@ InsertionMesh::InsertionMesh(const Buffer<ElevatedPlace>& places, const Buffer<I
     if (nodes <= mostNodesPerPoint * static_cast<double>(places.size()))
     {
       this->Columns = static_cast<std::size_t>(columns);
-      this->Heights.Resize(static_cast<std::size_t>(nodes));
+      this->Heights.Resize(static_cast<std::size_t>(nodes) + WorstNode::Beyond);
       std::fill(this->Heights.begin(), this->Heights.end(), NoHeight);
       for (Index place = 0; place < static_cast<Index>(places.size()); ++place)
       {
@@ -174,45 +175,45 @@ void InsertionMesh::AddTo(Face& face, Index place, float error)
 
 void InsertionMesh::FindWorst(Face& face) const
 {
+  constexpr int rowsAtOnce = 64;
   const ElevatedPlace* const places = this->Places.data();
   const ElevatedPlace& a = places[face.Corners[0]];
   const Slopes slopes = SlopesOf(a, places[face.Corners[1]], places[face.Corners[2]]);
-  const Index step = this->Step;
-  double worst = 0.0;
-  Index worstRow = None, worstColumn = None;
+  const Index step = this->Step, upToStep = step - 1; // the bits below a power of two
+  NodeRow rows[rowsAtOnce];
+  int count = 0;
+  WorstNode worst;
   std::size_t work = 0;
+  const auto search = [&]() {
+    worst.Search(this->Heights.data(), rows, count, step, slopes.X);
+    count = 0;
+  };
   this->ForEachRow(face, step, [&](Index row, Index first, Index last) {
-    const double* const heights = this->Heights.data() + row * this->Columns;
-    first = (first + step - 1) / step * step;
-    // The plane at the row's first node, then column by column.
-    const double begin = a.Z + (row - a.Y) * slopes.Y + (first - a.X) * slopes.X;
-    const auto errorAt = [&](Index column) {
-      return std::fabs(heights[column] - (begin + (column - first) * slopes.X));
-    };
-    double most = worst;
-    for (Index column = first; column <= last; column += step)
+    first = (first + upToStep) & ~upToStep;
+    rows[count].First =
+      static_cast<std::size_t>(row) * this->Columns + static_cast<std::size_t>(first);
+    rows[count].Width = last - first;
+    rows[count].Plane = a.Z + (row - a.Y) * slopes.Y + (first - a.X) * slopes.X;
+    Prefetch(this->Heights.data() + rows[count].First);
+    work += 4 + static_cast<std::size_t>(std::max(0, last - first));
+    count += first <= last ? 1 : 0;
+    if (count == rowsAtOnce)
     {
-      const double error = errorAt(column);
-      most = error > most ? error : most; // not where there is no height
-    }
-    work += 4 + static_cast<std::size_t>(std::max(0, last - first + 1)) / step;
-    // Of equal errors the lowest node.
-    for (Index column = first; most > worst; column += step)
-    {
-      if (errorAt(column) == most)
-      {
-        worst = most;
-        worstRow = row;
-        worstColumn = column;
-      }
+      search();
     }
   });
+  search();
   CountWork(work);
-  face.Error = static_cast<float>(worst);
-  face.Worst = worstRow == None ? None
-    : this->Heights.size() == this->Places.size()
-    ? static_cast<Index>(worstRow * this->Columns + worstColumn)
-    : this->FirstFrom(worstRow, worstColumn);
+  face.Error = static_cast<float>(worst.Error);
+  face.Worst = None;
+  if (worst.Node != WorstNode::None)
+  {
+    const std::size_t node = static_cast<std::size_t>(worst.Node);
+    const bool isFull = this->Heights.size() == this->Places.size() + WorstNode::Beyond;
+    face.Worst = isFull ? static_cast<Index>(node)
+                        : this->FirstFrom(static_cast<Index>(node / this->Columns),
+                            static_cast<Index>(node % this->Columns));
+  }
 }
 
 void InsertionMesh::MakeLists(const std::vector<Index>& faces, const Progress& progress)

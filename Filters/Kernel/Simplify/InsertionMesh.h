@@ -224,7 +224,7 @@ void InsertionMesh::ForEachRow(const Face& face, Index step, const Visit& visit)
   const auto visitRows = [&](Index begin, Index end, const ElevatedPlace& from,
                            const ElevatedPlace& to) {
     const double side = (to.X - from.X) / (to.Y - from.Y);
-    for (Index row = (begin + step - 1) / step * step; row < end; row += step)
+    for (Index row = (begin + step - 1) & -step; row < end; row += step)
     {
       const double ofLong = x + (row - y) * slope, ofShort = from.X + (row - from.Y) * side;
       const double left = isMiddleLeft ? ofShort : ofLong, right = isMiddleLeft ? ofLong : ofShort;
