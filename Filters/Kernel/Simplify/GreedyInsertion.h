@@ -94,7 +94,9 @@ public:
   /** The triangles, in an order that does not depend on the number of threads. */
   const std::vector<Index>& Order() const { return this->Ordered; }
   const Face& At(Index face) const { return this->Inserted.Faces[face]; }
-  /** Visits the points of a face; those on its edges perhaps for both faces. */
+  /** Whether a point on an edge counts for one of the two faces alone. */
+  bool HasLists() const { return this->Inserted.HasLists(); }
+  /** Visits the points of a face; without lists those on its edges for both faces. */
   template <typename Visit>
   void ForEachPoint(const Face& face, const Visit& visit) const
   {

@@ -10,9 +10,6 @@
  * lists are faster again (MakeLists()).
  *
  * Circles are exact, and so is the way to the triangle of a point. Distances are rounded.
- *
- * [Pick 1899] Geometrisches zur Zahlenlehre, Sitzungsberichte des deutschen
- * naturwissenschaftlich-medicinischen Vereines fuer Boehmen "Lotos" in Prag 19:311-319.
  */
 #ifndef elevation_Simplify_InsertionMesh_h
 #define elevation_Simplify_InsertionMesh_h
@@ -198,44 +195,29 @@ void InsertionMesh::ForEachRow(const Face& face, Index step, const Visit& visit)
 {
   constexpr double margin = 0x1p-22;
   const ElevatedPlace* const places = this->Places.data();
-  const ElevatedPlace *low = places + face.Corners[0], *middle = places + face.Corners[1],
-                      *high = places + face.Corners[2];
-  if (middle->Y < low->Y)
+  const ElevatedPlace *const a = places + face.Corners[0], *const b = places + face.Corners[1],
+                            *const c = places + face.Corners[2];
+  // Chosen without branches, which nobody can predict.
+  const ElevatedPlace *const lower = b->Y < a->Y ? b : a, *const upper = b->Y < a->Y ? a : b;
+  const ElevatedPlace& low = c->Y < lower->Y ? *c : *lower;
+  const ElevatedPlace& high = upper->Y < c->Y ? *c : *upper;
+  const ElevatedPlace& middle = c->Y < lower->Y ? *lower : upper->Y < c->Y ? *upper : *c;
+  // Not finite for a level edge, from which no row is taken: the middle row by the edge that is not
+  // level.
+  const double slope = (high.X - low.X) / (high.Y - low.Y);
+  const double below = (middle.X - low.X) / (middle.Y - low.Y);
+  const double above = (high.X - middle.X) / (high.Y - middle.Y);
+  const Index middleRow = static_cast<Index>(middle.Y) + (high.Y == middle.Y ? 1 : 0);
+  const Index last = static_cast<Index>(high.Y);
+  for (Index row = (static_cast<Index>(low.Y) + step - 1) & -step; row <= last; row += step)
   {
-    std::swap(low, middle);
+    const double ofLong = low.X + (row - low.Y) * slope;
+    const double ofShort = row < middleRow ? low.X + (row - low.Y) * below
+                                           : middle.X + (row - middle.Y) * above;
+    // No column is negative, so cutting off rounds down.
+    visit(row, static_cast<Index>(std::min(ofLong, ofShort) + (1.0 - margin)),
+      static_cast<Index>(std::max(ofLong, ofShort) + margin));
   }
-  if (high->Y < low->Y)
-  {
-    std::swap(low, high);
-  }
-  if (high->Y < middle->Y)
-  {
-    std::swap(middle, high);
-  }
-  const double x = low->X, y = low->Y;
-  // Twice the area, exactly: integers. One without other nodes has 1 [Pick 1899].
-  const double area = (middle->X - x) * (high->Y - y) - (middle->Y - y) * (high->X - x);
-  if (std::fabs(area) == 1.0)
-  {
-    return;
-  }
-  const double slope = (high->X - x) / (high->Y - y);
-  const bool isMiddleLeft = area < 0.0;
-  const auto visitRows = [&](Index begin, Index end, const ElevatedPlace& from,
-                           const ElevatedPlace& to) {
-    const double side = (to.X - from.X) / (to.Y - from.Y);
-    for (Index row = (begin + step - 1) & -step; row < end; row += step)
-    {
-      const double ofLong = x + (row - y) * slope, ofShort = from.X + (row - from.Y) * side;
-      const double left = isMiddleLeft ? ofShort : ofLong, right = isMiddleLeft ? ofLong : ofShort;
-      // No column is negative, so cutting off rounds down.
-      visit(row, static_cast<Index>(left + (1.0 - margin)), static_cast<Index>(right + margin));
-    }
-  };
-  // The middle row by the edge that is not level.
-  const Index middleRow = static_cast<Index>(middle->Y) + (high->Y == middle->Y ? 1 : 0);
-  visitRows(static_cast<Index>(y), middleRow, *low, *middle);
-  visitRows(middleRow, static_cast<Index>(high->Y) + 1, *middle, *high);
 }
 
 template <typename Visit>

@@ -136,13 +136,14 @@ private:
    */
   double BoundOf(const Face& face) const
   {
-    double bound = this->MarginOf(face);
-    for (const Index next : face.Neighbors)
+    double margin = this->MarginOf(face);
+    for (int k = 0; k < 3 && this->Chosen.HasLists(); ++k)
     {
-      bound = next == None ? bound : std::max(bound, this->MarginOf(this->Chosen.At(next)));
+      const Index next = face.Neighbors[k];
+      margin = next == None ? margin : std::max(margin, this->MarginOf(this->Chosen.At(next)));
     }
     constexpr double ofFloat = 0x1p-23;
-    return bound + (1.0 + ofFloat) * face.Error;
+    return margin + (1.0 + ofFloat) * face.Error;
   }
 
   /** What BoundOf() adds because of offsets and of rounding, for places of one face. */

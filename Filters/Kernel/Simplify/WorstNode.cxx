@@ -55,16 +55,12 @@ void SearchRows(const double* heights, const NodeRow* rows, int count, Index ste
       nodes = hn::IfThenElse(isWorse, hn::Add(first, number), nodes);
     }
   }
-  double ofLanes[InVector], inLanes[InVector];
-  hn::StoreU(errors, Doubles, ofLanes);
-  hn::StoreU(nodes, Doubles, inLanes);
-  for (int i = 0; i < InVector; ++i)
+  const auto most = hn::MaxOfLanes(Doubles, errors);
+  if (hn::GetLane(most) > worst.Error)
   {
-    if (inLanes[i] != WorstNode::None &&
-      (ofLanes[i] > worst.Error || (ofLanes[i] == worst.Error && inLanes[i] < worst.Node)))
-    {
-      worst = { ofLanes[i], inLanes[i] };
-    }
+    const auto ofMost =
+      hn::IfThenElse(hn::Eq(errors, most), nodes, hn::Set(Doubles, WorstNode::None));
+    worst = { hn::GetLane(most), hn::GetLane(hn::MinOfLanes(Doubles, ofMost)) };
   }
 }
 } // namespace HWY_NAMESPACE
