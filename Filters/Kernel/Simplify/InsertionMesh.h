@@ -196,7 +196,7 @@ void InsertionMesh::ForEachRow(const Face& face, Index step, const Visit& visit)
   constexpr double margin = 0x1p-22;
   const ElevatedPlace* const places = this->Places.data();
   const ElevatedPlace *const a = places + face.Corners[0], *const b = places + face.Corners[1],
-                            *const c = places + face.Corners[2];
+                             *const c = places + face.Corners[2];
   // Chosen without branches, which nobody can predict.
   const ElevatedPlace *const lower = b->Y < a->Y ? b : a, *const upper = b->Y < a->Y ? a : b;
   const ElevatedPlace& low = c->Y < lower->Y ? *c : *lower;
@@ -212,8 +212,8 @@ void InsertionMesh::ForEachRow(const Face& face, Index step, const Visit& visit)
   for (Index row = (static_cast<Index>(low.Y) + step - 1) & -step; row <= last; row += step)
   {
     const double ofLong = low.X + (row - low.Y) * slope;
-    const double ofShort = row < middleRow ? low.X + (row - low.Y) * below
-                                           : middle.X + (row - middle.Y) * above;
+    const double ofShort =
+      row < middleRow ? low.X + (row - low.Y) * below : middle.X + (row - middle.Y) * above;
     // No column is negative, so cutting off rounds down.
     visit(row, static_cast<Index>(std::min(ofLong, ofShort) + (1.0 - margin)),
       static_cast<Index>(std::max(ofLong, ofShort) + margin));

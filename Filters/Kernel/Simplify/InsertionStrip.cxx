@@ -505,6 +505,28 @@ void InsertionStrip::SetLevels(double error, double mostVertices)
   this->Count = this->Faces.size();
 }
 
+/** Puts some of the next faces on the stack, the first one on top. */
+void InsertionStrip::TakeDue()
+{
+  // Several, so that their neighbours come from memory while others are worked on.
+  constexpr std::size_t most = 8, looks = 64;
+  const Buffer<Face>& faces = this->Surface.Faces;
+  const std::size_t end = std::min(this->Cursor + looks, this->Count);
+  while (this->Cursor < end && this->Due.size() < most)
+  {
+    const Index face = this->Faces[this->Cursor++];
+    if (this->IsDue(face))
+    {
+      this->Due.push_back(face);
+      for (const Index next : faces[face].Neighbors)
+      {
+        Prefetch(faces.data() + next);
+      }
+    }
+  }
+  std::reverse(this->Due.begin(), this->Due.end());
+}
+
 bool InsertionStrip::Work(const Round& round)
 {
   constexpr int stepsPerLook = 1024;
@@ -529,7 +551,7 @@ bool InsertionStrip::Work(const Round& round)
     }
     else if (this->Cursor < this->Count)
     {
-      this->Due.push_back(this->Faces[this->Cursor++]);
+      this->TakeDue();
     }
     // Done, or the sample has as many vertices as it is good for.
     else if (this->Level <= this->Error ||

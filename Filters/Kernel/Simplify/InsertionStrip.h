@@ -58,6 +58,7 @@ public:
   bool Work(const Round& round);
   /** @return false if that would change a face that is not of this strip */
   bool Insert(Index place, Index face);
+  void TakeDue();
   /** The faces that the last insertion has made. */
   const std::vector<Index>& Made() const { return this->Fan; }
 

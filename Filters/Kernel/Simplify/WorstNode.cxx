@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WorstNode.h"
 
-#include "Kernel/Bins/Bins.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -23,8 +21,8 @@ constexpr hn::CappedTag<double, WorstNode::Beyond> Doubles;
 constexpr int InVector = static_cast<int>(hn::MaxLanes(Doubles));
 
 /** As the plain loop below: no operation here is fused or approximate. */
-void SearchRows(const double* heights, const NodeRow* rows, int count, Index step, double slope,
-  WorstNode& worst)
+void SearchRows(
+  const double* heights, const NodeRow* rows, int count, Index step, double slope, WorstNode& worst)
 {
   const auto slopes = hn::Set(Doubles, slope);
   const auto lanes = hn::Mul(hn::Iota(Doubles, 0.0), hn::Set(Doubles, static_cast<double>(step)));
@@ -48,8 +46,8 @@ void SearchRows(const double* heights, const NodeRow* rows, int count, Index ste
         from = some;
       }
       const auto number = hn::Add(hn::Set(Doubles, static_cast<double>(done)), lanes);
-      const auto error = hn::Abs(
-        hn::Sub(hn::LoadU(Doubles, from), hn::Add(plane, hn::Mul(number, slopes))));
+      const auto error =
+        hn::Abs(hn::Sub(hn::LoadU(Doubles, from), hn::Add(plane, hn::Mul(number, slopes))));
       const auto isWorse = hn::And(hn::Gt(error, errors), hn::Le(number, last));
       errors = hn::IfThenElse(isWorse, error, errors);
       nodes = hn::IfThenElse(isWorse, hn::Add(first, number), nodes);
@@ -73,8 +71,8 @@ namespace elevation
 {
 namespace
 {
-void SearchPlainly(const double* heights, const NodeRow* rows, int count, Index step, double slope,
-  WorstNode& worst)
+void SearchPlainly(
+  const double* heights, const NodeRow* rows, int count, Index step, double slope, WorstNode& worst)
 {
   for (const NodeRow* row = rows; row != rows + count; ++row)
   {
@@ -94,11 +92,11 @@ using Searcher = void(const double*, const NodeRow*, int, Index, double, WorstNo
 constexpr Searcher* Searchers[NumberOfInstructionSets] = ELEVATION_VERSIONS(SearchRows);
 } // namespace
 
-void WorstNode::Search(
-  const double* heights, const NodeRow* rows, int count, Index step, double slope)
+void WorstNode::Search(const double* heights, const NodeRow* rows, int count, Index step,
+  double slope, InstructionSet widest)
 {
-  static Searcher* const widest = Searchers[static_cast<int>(WidestInstructions())];
-  (widest ? widest : &SearchPlainly)(heights, rows, count, step, slope, *this);
+  Searcher* const search = Searchers[static_cast<int>(std::min(widest, WidestInstructions()))];
+  (search ? search : &SearchPlainly)(heights, rows, count, step, slope, *this);
 }
 
 } // namespace elevation

@@ -10,7 +10,7 @@
 #ifndef elevation_Simplify_WorstNode_h
 #define elevation_Simplify_WorstNode_h
 
-#include "Kernel/Base/Base.h"
+#include "Kernel/Bins/Bins.h"
 
 #include <cstddef>
 #include <limits>
@@ -31,7 +31,6 @@ struct WorstNode
 {
   /** Behind the heights there must be so many more numbers, which may be anything. */
   static constexpr std::size_t Beyond = 8;
-
   static constexpr double None = std::numeric_limits<double>::infinity();
 
   double Error = 0.0;
@@ -43,9 +42,10 @@ struct WorstNode
    * @param[in] rows     so many, by increasing numbers of nodes
    * @param[in] step     every so many-th node counts, from the first one of a row on
    * @param[in] slope    of the plane, from one number to the next
+   * @param[in] widest   no wider set is used, which tests ask for
    */
-  void Search(
-    const double* heights, const NodeRow* rows, int count, Index step, double slope);
+  void Search(const double* heights, const NodeRow* rows, int count, Index step, double slope,
+    InstructionSet widest = WidestInstructions());
 };
 
 } // namespace elevation
