@@ -189,6 +189,12 @@ def spacing(data):
     return float(numpy.sqrt(width / len(xy)) * numpy.sqrt(height)) or 1.0
 
 
+def height_range(data):
+    z = coordinates(data)[:, 2].astype(float)
+    z = z[numpy.isfinite(z)]
+    return float(numpy.ptp(z)) if len(z) else 0.0
+
+
 # ---- meshes and lines -------------------------------------------------------------------------
 
 
@@ -267,7 +273,7 @@ def with_properties(algorithm, properties):
 
 
 def delaunay(points, lines=None, **properties):
-    """MaximumEdgeLength is in spacings of the points."""
+    """MaximumEdgeLength is in spacings of the points, MaximumElevationError in parts of the relief."""
     algorithm = vtkGridDelaunay2D()
     points = cloud(points) if isinstance(points, str) else points
     algorithm.SetInputData(points)
@@ -275,6 +281,8 @@ def delaunay(points, lines=None, **properties):
         algorithm.SetSourceData(lines)
     if properties.get("MaximumEdgeLength"):
         properties["MaximumEdgeLength"] *= spacing(points)
+    if "MaximumElevationError" in properties:
+        properties["MaximumElevationError"] *= height_range(points)
     return with_properties(algorithm, properties)
 
 
