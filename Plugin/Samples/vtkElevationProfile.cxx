@@ -12,6 +12,7 @@
 
 #include "vtkCellArray.h"
 #include "vtkCharArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkInformation.h"
@@ -21,6 +22,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,15 +39,25 @@ using elevation::Point2;
 
 constexpr int MostSteps = 10000000;
 
-/** Tuples of x, y, and the number of the line. @throws Error where a point is not finite */
+/**
+ * Tuples of x, y, and the number of the line; of lines that are neither hidden nor copies of another
+ * rank's. @throws Error where a point is not finite
+ */
 void AddCorners(vtkPolyData* lines, vtkDoubleArray* corners)
 {
+  constexpr int skipped = vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::DUPLICATECELL;
+  vtkUnsignedCharArray* const flags = lines->GetCellGhostArray();
+  vtkIdType number = lines->GetNumberOfVerts(); // VTK counts vertices first, then lines, polygons
   vtkNew<vtkIdList> ids;
   double line = 0.0;
   for (vtkCellArray* const cells : { lines->GetLines(), lines->GetPolys() })
   {
-    for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell, ++line)
+    for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell, ++number)
     {
+      if (flags && (flags->GetValue(number) & skipped) != 0)
+      {
+        continue;
+      }
       cells->GetCellAtId(cell, ids);
       if (cells == lines->GetPolys() && ids->GetNumberOfIds() > 0)
       {
@@ -67,6 +79,7 @@ void AddCorners(vtkPolyData* lines, vtkDoubleArray* corners)
         }
         corners->InsertNextTuple3(p[0], p[1], line);
       }
+      ++line;
     }
   }
 }

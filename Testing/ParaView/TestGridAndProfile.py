@@ -5,9 +5,9 @@ import os
 
 import numpy
 from paraview import servermanager, simple
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vtkPolyData
 
 from plugin_testing import (
     array, check, check_equal, data_source, fetch, finish, lines, messages_of,
@@ -112,6 +112,21 @@ for closed in (False, True):
     has = {tuple(place) for place in points(section)[:, :2].tolist()}
     check({place[:2] for place in corners} <= has, "the corners of the line are points of the section")
     check_same(array(section.GetPointData(), "Elevation"), result.elevation_at(points(section)[:, :2]), "along a line")
+
+# A line that is hidden, and one that another rank has as its own, do not count.
+several = polyline(*corners)
+several.GetPoints().InsertNextPoint(cx, cy - 20, 0)
+dots = vtkCellArray()
+dots.InsertNextCell(1, [3])
+several.SetVerts(dots)
+for _ in range(2):
+    several.GetLines().InsertNextCell(2, [0, 3])
+flags = numpy_to_vtk(numpy.array([0, 0, vtkDataSetAttributes.HIDDENCELL, vtkDataSetAttributes.DUPLICATECELL], numpy.uint8), deep=True)
+flags.SetName("vtkGhostType")
+several.GetCellData().AddArray(flags)
+section, whole = (fetch(simple.ElevationProfile(Input=surface, Line=data_source(line), Resolution=100))
+                  for line in (several, polyline(*corners)))
+check_equal(points(section).tolist(), points(whole).tolist(), "hidden lines and copies are left out")
 
 # ---- what is wrong -------------------------------------------------------------------------------
 
