@@ -126,13 +126,15 @@ private:
    * faces need no measuring. Not finite without a lattice, nor where points may be too far beside
    * their nodes.
    *
-   * Let no point be more than s steps beside its node, and no triangle here more than w steps wide
-   * and high together, with 8 s w < 1. The linear map that moves a triangle's corners from their
-   * nodes to their points then moves all of it by at most s, and two places by less than a quarter
-   * of their distance nearer or farther, as twice the area of a triangle of nodes is 1 or more. So
-   * it turns no triangle over, and what it takes to a point is within 4 s of the point's node: in
-   * the same triangle, or in the next one where the node is on an edge. There the surface is off
-   * the height at the node by the slope of that triangle times 4 s at most.
+   * Let no point be more than s steps beside its node, along either step, and no two edges of a
+   * triangle here be longer than w together, along both steps together, with 8 s w < 1. The linear
+   * map that moves a triangle's corners from their nodes to their points then moves all of it by at
+   * most s, and two places by less than a quarter of their distance nearer or farther, as twice the
+   * area of a triangle of nodes is 1 or more. So it turns no triangle over, and what it takes to a
+   * point is within 4 s of the point's node. A node that is not on an edge is 1 / w or more from
+   * it: so that is in the same triangle, or in the next one where the node is on an edge, or beside
+   * the border. There the surface is off the height at the node by the slope of that triangle times
+   * 4 s at most. Without lists, the node belongs to both triangles, and so to the next one's bound.
    */
   double BoundOf(const Face& face) const
   {
@@ -142,8 +144,9 @@ private:
       const Index next = face.Neighbors[k];
       margin = next == None ? margin : std::max(margin, this->MarginOf(this->Chosen.At(next)));
     }
-    constexpr double ofFloat = 0x1p-23;
-    return margin + (1.0 + ofFloat) * face.Error;
+    // The error is rounded to a float, and one that is too small for that to 0.
+    constexpr double ofFloat = 0x1p-23, least = std::numeric_limits<float>::denorm_min();
+    return margin + (1.0 + ofFloat) * face.Error + least;
   }
 
   /** What BoundOf() adds because of offsets and of rounding, for places of one face. */
@@ -159,12 +162,15 @@ private:
     {
       return std::numeric_limits<double>::infinity();
     }
-    // The slopes along both steps, and as much as may cancel out in them. A term is rounded a few
-    // times, by 2^-53 of the largest on the way.
+    const double area = bx * cy - cx * by;
+    const double ofBz = std::fabs(b.Z - a.Z), ofCz = std::fabs(c.Z - a.Z);
+    const double slopes = (ofBz * ofC + ofCz * ofB) / area; // along both steps, together
+    // Whichever corner insertion begins at, no term is larger on the way to an error, and each is
+    // rounded a few times, by 2^-53 of itself. Where terms may be too large for a number, errors
+    // are not known, and this is infinite.
     constexpr double rounding = 64.0 * 0x1p-53;
-    const double slopes =
-      (std::fabs(b.Z - a.Z) * ofC + std::fabs(c.Z - a.Z) * ofB) / (bx * cy - cx * by);
-    return slopes * (4.0 * offset + rounding * (ofB + ofC)) + rounding * std::fabs(a.Z);
+    const double terms = 2.0 * (ofBz + ofCz) * (ofB + ofC) / area * (ofB + ofC) + std::fabs(a.Z);
+    return 4.0 * offset * slopes + rounding * terms;
   }
 
   /**

@@ -211,6 +211,53 @@ TEST(Simplify, ALatticeWhosePointsLieBesideTheirNodesIsMeasuredByCoordinates)
   }
 }
 
+TEST(Simplify, APointBesideANodeOnTheFootOfACliffIsMeasuredOnTheCliff)
+{
+  std::mt19937_64 random(15);
+  for (int trial = 0; trial < 20; ++trial)
+  {
+    // So few nodes that triangles have lists, in which a node on an edge is once.
+    Cloud cloud;
+    for (int i = 0; i < 3600; ++i)
+    {
+      if (random() % 5 < 2)
+      {
+        const double x = i % 60 + 0.009 * (2.0 * Uniform(random) - 1.0);
+        const double y = i / 60 + 0.009 * (2.0 * Uniform(random) - 1.0);
+        cloud.Add(x, y, (i % 60 > 30 ? 1000.0 : 0.0) + Uniform(random));
+      }
+    }
+    DelaunayOptions options = WithError(2.0);
+    options.GivenLattice.StepU = { 1.0, 0.0 };
+    options.GivenLattice.StepV = { 0.0, 1.0 };
+    Check(cloud, options, Triangulate(cloud.View(), options));
+  }
+}
+
+TEST(Simplify, ATriangleThatIsInvertedByCoordinatesIsFoundWhereNoPointIsTooFar)
+{
+  // Beside a slanting border, around a spike. A thin triangle of nodes, (24, 7), (34, 10) and
+  // (150, 50), is inverted by coordinates; all points in it are as high as its corners.
+  Cloud cloud;
+  for (int y = -40; y <= 50; ++y)
+  {
+    for (int x = std::max(0, 3 * y); x <= 150; ++x)
+    {
+      const bool isRight = (x == 24 && y == 7) || (x == 150 && y == 50),
+                 isLeft = x == 34 && y == 10;
+      const double by = isRight ? 0.24 : isLeft ? -0.24 : 0.0;
+      cloud.Add(x + by, y - by, x == 31 && y == 9 ? 10.0 : x == 5 && y == -38 ? 0.5 : 0.0);
+    }
+  }
+  DelaunayOptions options = WithError(1.0);
+  options.LatticeTolerance = 0.25;
+  options.GivenLattice.StepU = { 1.0, 0.0 };
+  options.GivenLattice.StepV = { 0.0, 1.0 };
+  const Triangulation made = Triangulate(cloud.View(), options);
+  EXPECT_FALSE(made.LatticeFound);
+  Check(cloud, options, made);
+}
+
 TEST(Simplify, EndsWithElevationsAndErrorsBeyondTheRangeOfFloat)
 {
   std::mt19937_64 random(10);
@@ -238,6 +285,58 @@ TEST(Simplify, EndsWithElevationsAndErrorsBeyondTheRangeOfFloat)
       }
     }
   }
+}
+
+TEST(Simplify, EveryNodeIsWithinTheErrorWhereElevationsLeaveTheRangeOfFloat)
+{
+  for (const EdgeCriterion edges : { EdgeCriterion::Delaunay, EdgeCriterion::DataDependent })
+  {
+    for (const double relief : { 1e300, 1e39, 1e-46, 1e-60, 1e-310 })
+    {
+      std::mt19937_64 random(14);
+      Cloud cloud;
+      for (int i = 0; i < 900; ++i)
+      {
+        cloud.Add(i % 30, i / 30, relief * Uniform(random));
+      }
+      for (const double error : { 0.3, 0.01 })
+      {
+        SCOPED_TRACE(std::to_string(std::log10(relief)) + " " + std::to_string(error));
+        DelaunayOptions options = WithError(error * relief);
+        options.Edges = edges;
+        const Triangulation made = Triangulate(cloud.View(), options);
+        EXPECT_TRUE(made.LatticeFound);
+        EXPECT_LE(made.LargestElevationError, options.MaximumElevationError);
+        const auto far = ValidateDistance(
+          MeshOf(cloud, made), cloud.View(), made.LargestElevationError, 0.0, ExemptOf(made));
+        EXPECT_TRUE(far.empty()) << ToString(far);
+      }
+    }
+  }
+}
+
+TEST(Simplify, ErrorsThatAreTooLargeForANumberAreNotLeftOut)
+{
+  // A spike just inside of a slanting border: in the sliver between both, terms of the plane are
+  // infinite, and so errors are not numbers.
+  Cloud cloud;
+  for (int y = -40; y < 200; ++y)
+  {
+    for (int x = 0; x < 202; ++x)
+    {
+      if (201 * y <= 199 * x)
+      {
+        const bool isSpike = x == 90 && y == 89, isOther = x == 195 && y == 150;
+        cloud.Add(x, y, isSpike ? 2e305 : isOther ? 2e304 : 0.0);
+      }
+    }
+  }
+  DelaunayOptions options = WithError(0.0);
+  options.MostVertices = 7;
+  const Triangulation made = Triangulate(cloud.View(), options);
+  EXPECT_TRUE(made.LatticeFound);
+  // Of the node beside the spike, which has no vertex beyond.
+  EXPECT_GT(made.LargestElevationError, 1e305);
 }
 
 TEST(Simplify, EveryPointIsWithinTheErrorWhereProductsOfCoordinatesLeaveTheRangeOfDouble)
