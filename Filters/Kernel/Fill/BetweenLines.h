@@ -39,7 +39,7 @@
  * points before and behind it, on stretches of length G / 2 near the place, and of length G in a
  * wide neighbourhood; the errors of lines that were left out, near and wide. On the lines
  * themselves is measured how such differences grow: with the distance from the ends of a stretch
- * (p, at most 1.2), and with its length (h, at most 0.8). Weights that are fitted to the trials
+ * (p, at most 1.2), and with its length (h, at most 0.9). Weights that are fitted to the trials
  * predict worse than fixed ones: lines are few.
  *
  * Carrying. The gaps of trials are twice as wide as those to be filled. Both are measured in their

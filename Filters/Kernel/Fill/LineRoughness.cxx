@@ -49,7 +49,7 @@ constexpr double ShapeQuantileInMeans = 2.43;
 
 constexpr double ShapeQuantile = 0.9;
 constexpr double LargestShapePower = 1.2;
-constexpr double LargestGapPower = 0.8;
+constexpr double LargestGapPower = 0.9;
 } // namespace
 
 /**
