@@ -31,7 +31,7 @@
  * Scale. The errors are measured in a scale which says where they are large. For a place at
  * distance d from the nearest known point, in a gap of width g, it is
  *
- *   (u (2 - u))^p (g / G)^h R,   u = 2 d / sqrt(g G), at most 1,
+ *   (u (2 - u))^p (g / G)^h R,   u = 2 d / g, at most 1,
  *
  * with G the median gap. R is the roughness: the mean of the second feature, times L^0.8, where L
  * is a mean, with fixed shares, of a constant and of four features at the corners of the place's
@@ -39,7 +39,7 @@
  * points before and behind it, on stretches of length G / 2 near the place, and of length G in a
  * wide neighbourhood; the errors of lines that were left out, near and wide. On the lines
  * themselves is measured how such differences grow: with the distance from the ends of a stretch
- * (p, at most 1.2), and with its length (h, at most 1). Weights that are fitted to the trials
+ * (p, at most 1.2), and with its length (h, at most 0.9). Weights that are fitted to the trials
  * predict worse than fixed ones: lines are few.
  *
  * Carrying. The gaps of trials are twice as wide as those to be filled. Both are measured in their

@@ -28,9 +28,6 @@ constexpr double ShareOfErrorsWide = 0.18;
 /** The power of roughness, in parts of the mean; with 1, intervals are too wide where it is large. */
 constexpr double RoughnessPower = 0.8;
 
-/** The width of a gap counts with this power, the median one with the rest, where it is narrow. */
-constexpr double PowerOfGap = 0.5;
-
 /** How far the neighbourhoods reach, in gaps: along a line, and the size of cells, of which nine. */
 constexpr double NearInGaps = 0.5;
 constexpr double WideInGaps = 3.0;
@@ -52,7 +49,7 @@ constexpr double ShapeQuantileInMeans = 2.43;
 
 constexpr double ShapeQuantile = 0.9;
 constexpr double LargestShapePower = 1.2;
-constexpr double LargestGapPower = 1.0;
+constexpr double LargestGapPower = 0.9;
 } // namespace
 
 /**
@@ -365,7 +362,7 @@ std::vector<double> LineRoughness::ScalesAt(const std::vector<Spot>& spots,
       continue;
     }
     const double width = std::max(gap / WidestGap, std::min(gap * WidestGap, spot.Gap)) / gap;
-    const double u = std::min(1.0, 2.0 * spot.Distance / (gap * std::pow(width, PowerOfGap)));
+    const double u = std::min(1.0, 2.0 * spot.Distance / (gap * width));
     scales[i] = std::pow(u * (2.0 - u), power) * std::pow(width, growth) * all *
       std::pow(local[i], RoughnessPower);
   }
