@@ -17,8 +17,7 @@
  *
  * Cost: linear. The triangles should come in the order of a sweep over the plane, as those of this
  * kernel do: then the open half-edges fit into the records of their vertices. Where too many do
- * not, the sweep is given up. Memory: one Visitor::Vertex a point, and a bit a point for each
- * range.
+ * not, the sweep is given up. Memory: one SweptVertex a point, and a bit a point for each range.
  */
 #ifndef elevation_Mesh_TriangleSweep_h
 #define elevation_Mesh_TriangleSweep_h
@@ -29,21 +28,19 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <new>
-#include <type_traits>
 #include <unordered_set>
 #include <vector>
 
 namespace elevation
 {
 
-/** What the sweep keeps of a vertex; a visitor's Vertex adds its own. */
+/** What the sweep keeps of a vertex. */
 struct SweptVertex
 {
   Point2 Position{ 0.0, 0.0 };
   Index Upper[2] = { None, None }; ///< upper ends of open half-edges: one up, one down
   Index NumberOfOthers = 0; ///< further open half-edges of which it is the lower end
-  Index Unused = 0;         ///< so that no vertex spans two cache lines
+  Index Number = None;      ///< for the visitor; so no vertex spans two cache lines
 };
 
 /** A half-edge: its lower and upper end, and whether it leads down (1) or up (0). */
@@ -66,12 +63,11 @@ struct SweptEdge
  * come by their lowest vertices. Others go to a hash set. "Up" and "down" are by the order of
  * points, not by ids: ids may be in any order.
  */
-template <typename Vertex>
 class OpenEdges
 {
 public:
   /** @param[in] most  how many others the set may hold */
-  OpenEdges(Vertex* vertices, std::size_t most)
+  OpenEdges(SweptVertex* vertices, std::size_t most)
     : Vertices(vertices)
     , Most(most)
   {
@@ -82,7 +78,7 @@ public:
   {
     // The fast path, as most stay open. A half-edge that is open already takes the slow one. Three
     // conditions in one test without branches: room, no twin here, and none in the set.
-    Vertex& at = this->Vertices[edge.Lower];
+    SweptVertex& at = this->Vertices[edge.Lower];
     if ((at.Upper[edge.IsDown] == None) & (at.Upper[1 - edge.IsDown] != edge.Upper) &
       (at.NumberOfOthers == 0))
     {
@@ -98,7 +94,7 @@ public:
    * Matches two half-edges, one up from a vertex to @a right, one down to it from @a left.
    * @return whether both have an open twin there; if not, nothing is changed
    */
-  bool MatchBoth(Vertex& at, Index right, Index left)
+  bool MatchBoth(SweptVertex& at, Index right, Index left)
   {
     const bool areTwins = (at.Upper[1] == right) & (at.Upper[0] == left);
     if (areTwins)
@@ -111,7 +107,7 @@ public:
   /** Closes the open twin of a half-edge. @return whether there was one */
   bool Match(const SweptEdge& edge)
   {
-    Vertex& at = this->Vertices[edge.Lower];
+    SweptVertex& at = this->Vertices[edge.Lower];
     Index& twin = at.Upper[1 - edge.IsDown];
     if (twin == edge.Upper)
     {
@@ -130,7 +126,7 @@ public:
   /** Leaves a half-edge open: at the vertex if there is room, else in the set. */
   void Open(const SweptEdge& edge)
   {
-    Vertex& at = this->Vertices[edge.Lower];
+    SweptVertex& at = this->Vertices[edge.Lower];
     Index& open = at.Upper[edge.IsDown];
     if (open == None)
     {
@@ -156,7 +152,7 @@ public:
   /** Appends the open half-edges: those stored at a vertex ... */
   void AddStoredAt(Index vertex, std::vector<BorderEdge>& border) const
   {
-    const Vertex& at = this->Vertices[vertex];
+    const SweptVertex& at = this->Vertices[vertex];
     // None is -1, all bits set: the result is None only if both are.
     if ((at.Upper[0] & at.Upper[1]) != None)
     {
@@ -187,7 +183,7 @@ private:
                   : std::uint64_t(edge.Lower) << 32 | std::uint32_t(edge.Upper);
   }
 
-  Vertex* Vertices;
+  SweptVertex* Vertices;
   std::unordered_set<std::uint64_t> Others; ///< origin and destination
   std::size_t Most;
   bool Failed = false;
@@ -219,7 +215,6 @@ inline bool IsCounterClockwise(Point2 a, Point2 b, Point2 c)
 
 /**
  * The sweep. A visitor has
- *   - Vertex: a SweptVertex, with what the visitor adds;
  *   - Begin(p, a): begins a fan of consecutive triangles around p, with a the second corner;
  *   - Visit(t, p, a, b): called for each triangle of the fan.
  * Each range has a copy of the visitor.
@@ -228,8 +223,6 @@ template <typename Visitor>
 class TriangleSweep
 {
 public:
-  using Vertex = typename Visitor::Vertex;
-
   /** @param threads  0: all there are; few triangles are swept on fewer */
   TriangleSweep(const TriangleList& list, int threads)
     : List(list)
@@ -237,10 +230,8 @@ public:
     , Number(std::max(1, std::min(ThreadsAtOnce(threads), list.Count / FewestInRange)))
     , Shared(list.Points.Count)
   {
-    static_assert(std::is_trivially_destructible<Vertex>::value, "nobody destroys them");
-    this->Memory.Resize(static_cast<std::size_t>(list.Points.Count));
-    // Not constructed here, but by Read() on all threads: the first write to a page is what costs.
-    this->Vertices = reinterpret_cast<Vertex*>(this->Memory.data());
+    // Read() fills it on all threads: the first write to a page is what costs.
+    this->Vertices.Resize(static_cast<std::size_t>(list.Points.Count));
   }
 
   Index NumberOfRanges() const { return this->Number; }
@@ -262,7 +253,7 @@ public:
       this->Ranges.emplace_back(Range{ at(i), at(i + 1), at(i),
         // So many open half-edges that do not fit into vertices: with more, the order of triangles
         // is not that of a sweep, and the hash set would take too long.
-        OpenEdges<Vertex>(this->Vertices, 1024 + static_cast<std::size_t>(this->List.Count) / 64),
+        OpenEdges(this->Vertices.data(), 1024 + static_cast<std::size_t>(this->List.Count) / 64),
         visitor, IdSet(number > 1 ? this->List.Points.Count : 0), {} });
     }
     if (!this->Read(stages.Next()))
@@ -298,29 +289,19 @@ public:
     return visitors;
   }
 
-  Vertex& At(Index vertex) { return this->Vertices[vertex]; }
+  const SweptVertex& At(Index vertex) const { return this->Vertices[vertex]; }
 
-  /**
-   * The half-edges without twins, in no order.
-   * @param[in] count, idOf  idOf(0) ... idOf(count - 1) are all corners, once each, or None
-   * @param[in] visit        visit(i, vertex) is called for each, on several threads; null for None
-   */
-  template <typename IdOf, typename Visit>
-  std::vector<BorderEdge> Border(Index count, const Progress& progress, IdOf&& idOf, Visit&& visit)
+  /** The half-edges without twins, in no order. */
+  std::vector<BorderEdge> Border(const Progress& progress)
   {
-    const OpenEdges<Vertex>& edges = this->Ranges[0].Edges;
+    const Index count = this->List.Points.Count;
+    const OpenEdges& edges = this->Ranges[0].Edges;
     std::vector<std::vector<BorderEdge>> byRange(elevation::NumberOfRanges(count));
     ForEachRange(count, this->Threads, progress, [&](Index range, Index begin, Index end) {
       std::vector<BorderEdge> here;
-      for (Index i = begin; i < end; ++i)
+      for (Index vertex = begin; vertex < end; ++vertex)
       {
-        Prefetch(this->Vertices + std::max(0, idOf(std::min(i + 32, end - 1))));
-        const Index id = idOf(i);
-        if (id != None)
-        {
-          edges.AddStoredAt(id, here);
-        }
-        visit(i, id != None ? this->Vertices + id : nullptr);
+        edges.AddStoredAt(vertex, here);
       }
       byRange[range] = std::move(here);
     });
@@ -347,17 +328,11 @@ private:
   struct alignas(64) Range // against false sharing
   {
     Index Begin, End, Next;
-    OpenEdges<Vertex> Edges;
+    OpenEdges Edges;
     Visitor Seen;
     IdSet Corners;
     std::vector<Index> Deferred; ///< triangles with a vertex of another range
   };
-  // Plain bytes of a vertex: Buffer holds plain values only, and does not initialise them.
-  struct alignas(Vertex) Storage
-  {
-    unsigned char Bytes[sizeof(Vertex)];
-  };
-
   static constexpr Index FewestInRange = 1 << 12; ///< triangles
   static constexpr Index AtOnce = 1 << 14;        ///< triangles
   static constexpr std::size_t WorkPerTriangle = 4;
@@ -373,8 +348,8 @@ private:
           double sum = 0.0; // of values times 0: 0, or NaN
           for (Index v = begin; v < end; ++v, p += 3)
           {
-            Vertex* vertex = new (this->Vertices + v) Vertex;
-            vertex->Position = { static_cast<double>(p[0]), static_cast<double>(p[1]) };
+            this->Vertices[v] = SweptVertex();
+            this->Vertices[v].Position = { static_cast<double>(p[0]), static_cast<double>(p[1]) };
             sum += 0.0 * static_cast<double>(p[2]);
           }
           if (!(sum == 0.0))
@@ -507,8 +482,8 @@ private:
   bool SweepTriangles(Index begin, Index end, std::size_t ahead, Range& range, IsOurs&& isOurs)
   {
     CountWork(WorkPerTriangle * static_cast<std::size_t>(end - begin));
-    Vertex* const vertices = this->Vertices;
-    OpenEdges<Vertex>& edges = range.Edges;
+    SweptVertex* const vertices = this->Vertices.data();
+    OpenEdges& edges = range.Edges;
     Visitor& visitor = range.Seen;
     bool isRight = true;
     const Index* ids = this->List.CornersOf(begin);
@@ -526,19 +501,19 @@ private:
         ++t;
         continue;
       }
-      Vertex& p = vertices[first];
-      Vertex& r = vertices[right];
+      SweptVertex& p = vertices[first];
+      SweptVertex& r = vertices[right];
       visitor.Begin(p, r);
       Index last = right;
       // The upper edges of the fan; its inner edges cancel out, as consecutive triangles share
       // them.
-      Vertex* b = &r;
+      SweptVertex* b = &r;
       do
       {
         Prefetch(vertices + ids[ahead + 1]);
         Prefetch(vertices + ids[ahead + 2]);
         const Index before = last;
-        Vertex& a = *b;
+        SweptVertex& a = *b;
         last = ids[2];
         b = vertices + last;
         isRight &= IsCounterClockwise(a.Position, b->Position, p.Position);
@@ -602,8 +577,7 @@ private:
   const TriangleList& List;
   const int Threads;
   const Index Number; ///< of ranges
-  Buffer<Storage> Memory;
-  Vertex* Vertices;
+  Buffer<SweptVertex> Vertices;
   std::vector<Range> Ranges;
   IdSet Shared; ///< corners in more than one range
 };

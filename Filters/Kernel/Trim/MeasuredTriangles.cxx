@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 namespace elevation
 {
@@ -20,24 +21,15 @@ constexpr double LargestUnscaled = 1e15;
 constexpr double LeastUnscaled = 1e-12;
 
 /**
- * Adds the edges of triangles to their vertices.
- * Vertices are numbered in the order visited, so that later passes access memory locally.
+ * Adds the edges of triangles to their vertices. Vertices are numbered in the order visited: so what
+ * is kept of them is accessed locally, also by later passes.
  */
 struct Measurer
 {
-  struct Vertex : SweptVertex
-  {
-    Index Number = None;
-    EdgesAtVertex Edges;
-    // A sweep visits a vertex for each of its edges; with two lines each, it would load twice as
-    // many.
-    Index Padding[2] = { None, None }; ///< so that no vertex spans two cache lines
-  };
-  static_assert(sizeof(Vertex) == 64, "the size of a cache line");
-
   static constexpr Index AtOnce = 1024; ///< numbers reserved for a visitor at a time
-  const Vertex* Vertices;               ///< of the list
+  const SweptVertex* Vertices;          ///< of the list
   MeasuredTriangles* Measured;
+  EdgesAtVertex* Edges;      ///< by number
   std::atomic<Index>* Count; ///< of numbers reserved by all visitors
   Index Next = 0, End = 0;   ///< reserved and not yet used
   Index First = None;        ///< number of the first corner
@@ -45,122 +37,113 @@ struct Measurer
   double Largest = 0.0;      ///< absolute value of a coordinate
   double ToLast = 0.0;       ///< squared length of the edge from the first corner to the last
 
-  Index NumberOf(Vertex& vertex)
+  double* CoordinatesOf(Index number) const
+  {
+    return this->Measured->Coordinates.data() + 3 * static_cast<std::size_t>(number);
+  }
+
+  Index NumberOf(SweptVertex& vertex)
   {
     if (vertex.Number == None)
     {
-      if (this->Next == this->End)
-      {
-        // One addition for a thousand numbers, as threads wait for each other there. Numbers that a
-        // thread does not use have no id.
-        this->Next = this->Count->fetch_add(AtOnce);
-        this->End = this->Next + AtOnce;
-        std::fill_n(this->Measured->Ids.data() + this->Next, AtOnce, None);
-      }
-      this->Measured->Ids[this->Next] = static_cast<Index>(&vertex - this->Vertices);
-      vertex.Number = this->Next++;
+      this->Add(vertex);
     }
     return vertex.Number;
   }
 
-  void Begin(Vertex& p, Vertex& a)
+  void Add(SweptVertex& vertex)
   {
-    this->Largest = std::max({ this->Largest, std::fabs(p.Position.X), std::fabs(p.Position.Y),
-      std::fabs(a.Position.X), std::fabs(a.Position.Y) });
+    if (this->Next == this->End)
+    {
+      // One addition for a thousand numbers, as threads wait for each other there. Those that a
+      // thread does not use become vertices without edges.
+      this->Next = this->Count->fetch_add(AtOnce);
+      this->End = this->Next + AtOnce;
+      std::fill_n(this->Edges + this->Next, AtOnce, EdgesAtVertex());
+      std::fill_n(this->Measured->Ids.data() + this->Next, AtOnce, None);
+      std::fill_n(this->CoordinatesOf(this->Next), 3 * AtOnce, 0.0);
+    }
+    this->Measured->Ids[this->Next] = static_cast<Index>(&vertex - this->Vertices);
+    double* const p = this->CoordinatesOf(this->Next);
+    p[0] = vertex.Position.X;
+    p[1] = vertex.Position.Y;
+    this->Largest = std::max({ this->Largest, std::fabs(p[0]), std::fabs(p[1]) });
+    vertex.Number = this->Next++;
+  }
+
+  void Begin(SweptVertex& p, SweptVertex& a)
+  {
     this->ToLast = SquaredLength(p.Position, a.Position);
     this->First = this->NumberOf(p);
     this->Last = this->NumberOf(a);
   }
 
-  void Visit(Index t, Vertex& p, Vertex& a, Vertex& b)
+  void Visit(Index t, SweptVertex& p, SweptVertex& a, SweptVertex& b)
   {
     Index* corners = this->Measured->Corners.data() + 3 * static_cast<std::size_t>(t);
     corners[0] = this->First;
     corners[1] = this->Last;
-    corners[2] = this->Last = this->NumberOf(b);
-    this->Largest = std::max({ this->Largest, std::fabs(b.Position.X), std::fabs(b.Position.Y) });
-    const double right = this->ToLast;
-    const double opposite = SquaredLength(a.Position, b.Position);
+    corners[2] = this->NumberOf(b);
+    this->Edges[this->First].Add(this->ToLast);
+    this->Edges[this->Last].Add(SquaredLength(a.Position, b.Position));
     this->ToLast = SquaredLength(b.Position, p.Position);
-    p.Edges.Add(right);
-    a.Edges.Add(opposite);
-    b.Edges.Add(this->ToLast);
+    this->Last = corners[2];
+    this->Edges[this->Last].Add(this->ToLast);
   }
 };
-
-/** Takes the vertices, by number, and the border from a sweep. */
-void TakeVertices(
-  TriangleSweep<Measurer>& sweep, const Progress& progress, MeasuredTriangles& measured)
-{
-  const Index numbers = measured.List.Points.Count;
-  measured.Border = sweep.Border(
-    numbers, progress, [&](Index number) { return measured.Ids[number]; },
-    [&](Index number, const Measurer::Vertex* vertex) {
-      // A number that was reserved and not used becomes a vertex without edges.
-      const Measurer::Vertex nobody{};
-      vertex = vertex ? vertex : &nobody;
-      measured.Set(number, vertex->Edges);
-      double* p = measured.Coordinates.data() + 3 * static_cast<std::size_t>(number);
-      p[0] = vertex->Position.X;
-      p[1] = vertex->Position.Y;
-      p[2] = 0.0;
-    });
-}
-
-/**
- * Adds each border edge to its destination, from which no half-edge runs back along it, and changes
- * the border from ids to numbers.
- */
-void AddBorder(
-  TriangleSweep<Measurer>& sweep, const Progress& progress, MeasuredTriangles& measured)
-{
-  std::size_t done = 0;
-  for (BorderEdge& edge : Counted(measured.Border))
-  {
-    ReportStep(progress, done++, measured.Border.size());
-    Measurer::Vertex& origin = sweep.At(edge.Origin);
-    Measurer::Vertex& destination = sweep.At(edge.Destination);
-    destination.Edges.Add(SquaredLength(origin.Position, destination.Position));
-    measured.Set(destination.Number, destination.Edges);
-    edge = { origin.Number, destination.Number };
-  }
-}
 
 } // namespace
 
 bool MeasureBySweep(
   const TriangleList& list, int threads, const Progress& progress, MeasuredTriangles& measured)
 {
-  Stages stages(progress, { 85, 11, 2, 2 });
-  const Index count = list.Count;
-  measured.Corners.Resize(3 * static_cast<std::size_t>(count));
-  TriangleSweep<Measurer> sweep(list, threads);
-  measured.Ids.Resize(static_cast<std::size_t>(list.Points.Count) +
-    static_cast<std::size_t>(sweep.NumberOfRanges()) * Measurer::AtOnce);
+  Stages stages(progress, { 85, 5, 2, 8 });
+  measured.Corners.Resize(3 * static_cast<std::size_t>(list.Count));
+  const std::size_t most = static_cast<std::size_t>(list.Points.Count) +
+    static_cast<std::size_t>(ThreadsAtOnce(threads)) * Measurer::AtOnce;
+  measured.Ids.Resize(most);
+  measured.Coordinates.Resize(3 * most);
+  Buffer<EdgesAtVertex> edges;
+  edges.Resize(most);
   std::atomic<Index> numbers{ 0 };
-  if (!sweep.Run(Measurer{ &sweep.At(0), &measured, &numbers }, stages.Next()))
+  // Its memory comes last, so that what follows can have it.
+  std::optional<TriangleSweep<Measurer>> sweep(std::in_place, list, threads);
+  if (!sweep->Run(Measurer{ &sweep->At(0), &measured, edges.data(), &numbers }, stages.Next()))
   {
     return false;
   }
   double largest = 0.0;
-  for (const Measurer* measurer : sweep.Visitors())
+  for (const Measurer* measurer : sweep->Visitors())
   {
     largest = std::max(largest, measurer->Largest);
   }
-  measured.Coordinates.Resize(3 * static_cast<std::size_t>(numbers));
-  measured.SetNumberOfVertices(numbers);
-  measured.List.Corners = measured.Corners.data();
-  measured.List.Count = count;
-  measured.List.Points.Double = measured.Coordinates.data();
-  measured.List.Points.Count = numbers;
-  TakeVertices(sweep, stages.Next(), measured);
+  measured.Border = sweep->Border(stages.Next());
   // A mesh that has to be scaled takes the other way, Measure(), which copies coordinates anyway.
   if (largest > LargestUnscaled || largest < LeastUnscaled ||
     !CoversOnce(measured.Border, list.Points, stages.Next()))
   {
     return false;
   }
-  AddBorder(sweep, stages.Next(), measured);
+  // Each border edge is added to its destination, from which no half-edge runs back along it.
+  for (BorderEdge& edge : measured.Border)
+  {
+    const SweptVertex& origin = sweep->At(edge.Origin);
+    const SweptVertex& destination = sweep->At(edge.Destination);
+    edges[destination.Number].Add(SquaredLength(origin.Position, destination.Position));
+    edge = { origin.Number, destination.Number };
+  }
+  sweep.reset();
+  measured.List.Corners = measured.Corners.data();
+  measured.List.Count = list.Count;
+  measured.List.Points.Double = measured.Coordinates.data();
+  measured.List.Points.Count = numbers;
+  measured.SetNumberOfVertices(numbers);
+  ForEachRange(numbers, threads, stages.Next(), [&](Index, Index begin, Index end) {
+    for (Index number = begin; number < end; ++number)
+    {
+      measured.Set(number, edges[number]);
+    }
+  });
   return true;
 }
 

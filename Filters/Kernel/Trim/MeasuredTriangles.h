@@ -40,14 +40,18 @@ struct EdgesAtVertex
   /** The mean length of the four (or all, if fewer), but at most twice that of the second. */
   float ShortSpacing() const
   {
-    const float second = std::sqrt(this->Squared[1]);
-    float sum = std::sqrt(this->Squared[0]) + second;
+    float lengths[Shortest];
+    for (int i = 0; i < Shortest; ++i)
+    {
+      lengths[i] = std::sqrt(this->Squared[i]);
+    }
+    float sum = lengths[0] + lengths[1];
     for (int i = 2; i < Shortest; ++i)
     {
-      sum += static_cast<std::uint32_t>(i) < this->Degree ? std::sqrt(this->Squared[i]) : 0.0f;
+      sum += static_cast<std::uint32_t>(i) < this->Degree ? lengths[i] : 0.0f;
     }
     const float number = static_cast<float>(std::min<std::uint32_t>(this->Degree, Shortest));
-    return std::min(sum / number, 2.0f * second);
+    return std::min(sum / number, 2.0f * lengths[1]);
   }
 
   static constexpr int Shortest = 4;

@@ -223,8 +223,6 @@ private:
  */
 struct Classifier
 {
-  using Vertex = SweptVertex;
-
   const RingRaster& Raster;
   char* Flags;
   std::vector<Index> Near;
@@ -237,13 +235,13 @@ struct Classifier
     return std::max(std::fabs(q.X - p.X), std::fabs(q.Y - p.Y));
   }
 
-  void Begin(const Vertex& p, const Vertex& a)
+  void Begin(const SweptVertex& p, const SweptVertex& a)
   {
     this->Around = this->Raster.KindAround(p.Position);
     this->LastReach = ReachOf(p.Position, a.Position);
   }
 
-  void Visit(Index t, const Vertex& first, const Vertex& second, const Vertex& third)
+  void Visit(Index t, const SweptVertex& first, const SweptVertex& second, const SweptVertex& third)
   {
     // The triangles of a fan share sides: the third corner of one is the second of the next, so its
     // reach is known.
@@ -295,9 +293,7 @@ std::optional<SweptAlongRings> SweepAlongRings(const TriangleList& list,
   {
     return std::nullopt;
   }
-  swept.Border = sweep.Border(
-    list.Points.Count, stages.Next(), [](Index id) { return id; },
-    [](Index, const SweptVertex*) {});
+  swept.Border = sweep.Border(stages.Next());
   // Each thread has listed its own.
   for (const Classifier* visitor : sweep.Visitors())
   {

@@ -63,27 +63,6 @@ constexpr double LeastAdvice = 1.25;    // the same, of a larger one to be tried
 constexpr double CertainSurface = 0.52; // tolerances, by short spacings
 constexpr double SmallGroup = 0.7;      // the same, the side of a square
 
-/** The corners of outward triangles that no triangle of the surface has. */
-IdSet CornersLeftOut(const TriangleList& list, const std::vector<Index>& outward,
-  const std::vector<char>& keep, const Progress& progress)
-{
-  IdSet leftOut(list.Points.Count);
-  for (const Index t : outward)
-  {
-    leftOut.AddAll(list.CornersOf(t));
-  }
-  ForEachStretch(list.Count, progress, [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      if (leftOut.HasAny(list.CornersOf(t)) && keep[t])
-      {
-        leftOut.RemoveAll(list.CornersOf(t));
-      }
-    }
-  });
-  return leftOut;
-}
-
 /**
  * The area within the border, by the shoelace formula; around one of its vertices, as the products
  * of map coordinates would leave no digits to their difference.
@@ -146,16 +125,17 @@ public:
    */
   std::optional<ExtractedBoundary> Run(const Progress& progress)
   {
-    Stages stages(progress, { 2, 13, 5, 12, 68 });
+    Stages stages(progress, { 2, 5, 12, 13, 68 });
     const TriangleList& list = this->Measured.List;
     this->SortBorder(stages.Next());
+    this->KeepCertainTriangles(stages.Next());
+    std::vector<Index> doubtful = this->FindDoubtful(stages.Next());
+    // Not before, as the groups of doubtful triangles need memory, too.
     const Neighbors neighbors(this->Measured, stages.Next());
     if (!this->Border.IsPart)
     {
-      this->Spacings.Resize(list.Points.Count);
+      this->ForgetSpacings();
     }
-    this->KeepCertainTriangles(stages.Next());
-    std::vector<Index> doubtful = this->FindDoubtful(stages.Next());
     const Progress rest = stages.Next();
     Report(rest, 0.0);
     // How long the next steps take depends on how many are doubtful. Where these are few, no step
@@ -209,7 +189,7 @@ public:
     const IdSet& border = this->Border.Vertices;
     this->SortBorder(stages.Next());
     const Neighbors neighbors(this->Measured, stages.Next());
-    this->Spacings.Resize(list.Points.Count);
+    this->ForgetSpacings();
     this->KeepCertainTriangles(stages.Next());
     for (const Index t : TrianglesAt(list, border, stages.Next()))
     {
@@ -221,8 +201,6 @@ public:
       ? LonelyVertices(neighbors, this->CornersNear(doubtful), list.Points.Count)
       : IdSet(list.Points.Count);
     // A spacing for which a vertex at the border had to be expanded stays unknown, too.
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    std::fill(this->Spacings.begin(), this->Spacings.end(), unknown);
     const Progress listing = stages.Next();
     FindSpacings(list, neighbors, CornersOf(list, doubtful, listing), this->Threads, stages.Next(),
       this->Spacings.data(), &border);
@@ -279,11 +257,20 @@ private:
     }
   }
 
+  void ForgetSpacings()
+  {
+    this->Spacings.Resize(this->Measured.List.Points.Count);
+    std::fill(
+      this->Spacings.begin(), this->Spacings.end(), std::numeric_limits<double>::quiet_NaN());
+  }
+
+  bool IsKnown(Index vertex) const { return !std::isnan(this->Spacings[vertex]); }
+
   /** Of a triangle of a part; false if a corner's spacing depends on other parts. */
   bool IsSurfaceBySpacing(Index t) const
   {
     const Index* const corners = this->Measured.List.CornersOf(t);
-    const auto isKnown = [this](Index v) { return !std::isnan(this->Spacings[v]); };
+    const auto isKnown = [this](Index v) { return this->IsKnown(v); };
     return std::all_of(corners, corners + 3, isKnown) && !this->Border.Vertices.HasAny(corners) &&
       std::sqrt(this->Measured.SquaredLongest(t)) <= this->ToleranceOf(t);
   }
@@ -392,15 +379,12 @@ private:
     Report(progress, 0.0);
     const TriangleList& list = this->Measured.List;
     std::vector<Index> corners = CornersOf(list, triangles, stages.Next());
-    const auto isKnown = [this](Index v) { return !std::isnan(this->Spacings[v]); };
-    if (this->Border.IsPart)
-    {
-      corners.erase(std::remove_if(corners.begin(), corners.end(), isKnown), corners.end());
-    }
+    const auto isKnown = [this](Index v) { return this->IsKnown(v); };
+    corners.erase(std::remove_if(corners.begin(), corners.end(), isKnown), corners.end());
     FindSpacings(list, neighbors, corners, this->Threads, stages.Next(), this->Spacings.data(),
       this->Border.IsPart ? &this->Ends : nullptr);
     Report(progress, 1.0);
-    return !this->Border.IsPart || std::all_of(corners.begin(), corners.end(), isKnown);
+    return std::all_of(corners.begin(), corners.end(), isKnown);
   }
 
   /** The scale of the median vertex. */
@@ -532,21 +516,37 @@ private:
   bool MeasureLoss(const Neighbors& neighbors, const Progress& progress)
   {
     Stages stages(progress, { 60, 40 });
+    const Progress counting = stages.Next();
+    Report(counting, 0.0);
     const TriangleList& list = this->Measured.List;
     const std::vector<char>& keep = this->Result.IsSurface;
+    const double points = static_cast<double>(
+      this->Border.IsPart ? this->NumberOfPoints : this->Measured.NumberOfCorners());
+    // A vertex has as many triangles as edges, but for border edges that end there.
+    Buffer<std::uint32_t>& left = this->Measured.Degrees; // triangles that are surface
+    for (const BorderEdge& edge : this->Measured.Border)
+    {
+      --left[edge.Destination];
+    }
     std::vector<Index> outward;
+    IdSet leftOut(list.Points.Count); // the corners that no triangle of the surface has
     double area = 0.0;
     for (auto t = keep.begin(); (t = std::find(t, keep.end(), char(Outside))) != keep.end(); ++t)
     {
+      ReportStep(counting, outward.size(), keep.size());
       outward.push_back(static_cast<Index>(t - keep.begin()));
       area += list.SquareShare(outward.back(), 1.0);
+      std::for_each(
+        list.CornersOf(outward.back()), list.CornersOf(outward.back() + 1), [&](Index corner) {
+          if (--left[corner] == 0)
+          {
+            leftOut.Add(corner);
+          }
+        });
     }
-    const IdSet leftOut = CornersLeftOut(list, outward, keep, stages.Next());
     this->Result.NumberOfPointsLeftOut = leftOut.Count();
     const double all = AreaOf(list, this->Border.Edges);
     this->Result.AreaLeftOut = all > 0.0 ? std::min(1.0, area / all) : 0.0;
-    const double points = static_cast<double>(
-      this->Border.IsPart ? this->NumberOfPoints : this->Measured.NumberOfCorners());
     this->Result.PointsLeftOut = this->Result.NumberOfPointsLeftOut / points;
     if (!this->Result.LeavesOutMuch())
     {
@@ -601,7 +601,7 @@ private:
   const TriangleState* States = nullptr; ///< one per triangle, if they are a part of a mesh
   std::int64_t NumberOfPoints = 0;       ///< of that mesh
   IdSet Ends{ 0 };                       ///< vertices that have more triangles in it
-  Buffer<double> Spacings;               ///< one per vertex, set where it was needed
+  Buffer<double> Spacings;               ///< one per vertex, NaN where it was not needed
   std::vector<float> Scales;             ///< one per vertex, or none
   ExtractedBoundary Result;
 };

@@ -64,9 +64,9 @@ bool HasGroup(const Neighbors& neighbors, const IdSet& vertices, Index count, st
 {
   IdSet seen(count);
   std::vector<Index> group;
-  for (Index v = 0; v < count; ++v)
+  for (const Index v : vertices.List())
   {
-    if (!vertices.Has(v) || seen.Has(v))
+    if (seen.Has(v))
     {
       continue;
     }
@@ -565,16 +565,19 @@ private:
 IdSet LonelyVertices(const Neighbors& neighbors, const IdSet& near, Index count)
 {
   IdSet lonely(count);
-  for (Index v = 0; v < count; ++v)
+  const std::vector<Index> vertices = near.List();
+  for (std::size_t i = 0; i < vertices.size(); ++i)
   {
-    if (near.Has(v))
+    const auto ahead = [&](std::size_t steps) {
+      return &neighbors.Offsets[vertices[std::min(i + steps, vertices.size() - 1)]];
+    };
+    Prefetch(ahead(32));
+    Prefetch(neighbors.Ids.data() + *ahead(16));
+    const Index* const begin = neighbors.Ids.data() + ahead(0)[0];
+    const Index* const end = neighbors.Ids.data() + ahead(0)[1];
+    if (begin != end && std::all_of(begin, end, [&](Index w) { return near.Has(w); }))
     {
-      const Index* const begin = neighbors.Ids.data() + neighbors.Offsets[v];
-      const Index* const end = neighbors.Ids.data() + neighbors.Offsets[v + 1];
-      if (begin != end && std::all_of(begin, end, [&](Index w) { return near.Has(w); }))
-      {
-        lonely.Add(v);
-      }
+      lonely.Add(vertices[i]);
     }
   }
   return lonely;

@@ -18,10 +18,8 @@ namespace
 /** A visitor that only looks. */
 struct Nobody
 {
-  using Vertex = SweptVertex;
-  void Start(Vertex&) const {}
-  void Begin(const Vertex&, const Vertex&) {}
-  void Visit(Index, const Vertex&, const Vertex&, const Vertex&) {}
+  void Begin(const SweptVertex&, const SweptVertex&) {}
+  void Visit(Index, const SweptVertex&, const SweptVertex&, const SweptVertex&) {}
 };
 
 /** Whether a sweep finds the triangles counter-clockwise. */

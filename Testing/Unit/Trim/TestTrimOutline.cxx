@@ -121,9 +121,8 @@ int DealOutStars(Surface& surface)
 /** A visitor of a sweep that only looks. */
 struct Nobody
 {
-  using Vertex = SweptVertex;
-  void Begin(const Vertex&, const Vertex&) {}
-  void Visit(Index, const Vertex&, const Vertex&, const Vertex&) {}
+  void Begin(const SweptVertex&, const SweptVertex&) {}
+  void Visit(Index, const SweptVertex&, const SweptVertex&, const SweptVertex&) {}
 };
 } // namespace
 
@@ -141,11 +140,7 @@ TEST(TriangleSweep, ClosedFansLeaveNoSlit)
   const TriangleList list = surface.List();
   TriangleSweep<Nobody> sweep(list, 1);
   ASSERT_TRUE(sweep.Run(Nobody(), Progress()));
-  EXPECT_EQ(sweep
-              .Border(
-                7, Progress(), [](Index id) { return id; }, [](Index, const SweptVertex*) {})
-              .size(),
-    6u);
+  EXPECT_EQ(sweep.Border(Progress()).size(), 6u);
 
   Random random(84);
   for (int round = 0; round < 12; ++round)
@@ -183,12 +178,7 @@ TEST(TriangleSweep, ReportsWhileItGoesThroughWhatIsPutOff)
     return true;
   }));
   EXPECT_GE(reports, sweep.NumberOfRanges() > 1 ? list.Count / 20000 : 0);
-  EXPECT_EQ(sweep
-              .Border(
-                list.Points.Count, Progress(), [](Index id) { return id; },
-                [](Index, const SweptVertex*) {})
-              .size(),
-    4u * side);
+  EXPECT_EQ(sweep.Border(Progress()).size(), 4u * side);
 }
 
 TEST(TrimAlongTheOutline, SeesAllOfASmallPiece)
