@@ -58,7 +58,6 @@ public:
   bool Work(const Round& round);
   /** @return false if that would change a face that is not of this strip */
   bool Insert(Index place, Index face);
-  void TakeDue();
   /** The faces that the last insertion has made. */
   const std::vector<Index>& Made() const { return this->Fan; }
 
@@ -80,6 +79,7 @@ private:
   };
   static constexpr Index Gap = -2;
 
+  void TakeDue();
   bool MayBegin(Index place, const Face& face) const;
   bool Move(Index place, Index& face);
   bool FindCavity(Index place, Index face);

@@ -12,8 +12,9 @@
  *      Triangulate the corners of the convex hull and the ends of lines, make lines edges, and
  *      insert points (GreedyInsertion.h).
  *   3. Measure the vertical distance of each point that is left out from the triangle that it lies
- *      in, and bound what rounding may have taken from it. Points that may be too far are inserted,
- *      too, until there are none.
+ *      in, and bound what rounding may have taken from it. On a lattice, most need no measuring, as
+ *      the error that pass 2 knows bounds it. Points that may be too far are inserted, too, until
+ *      there are none.
  *
  * With a number of vertices, the largest error does not fall with each one. Of the surfaces on the
  * way there, the one with the smallest is taken: so pass 2 is done once more, up to it. Lines then
