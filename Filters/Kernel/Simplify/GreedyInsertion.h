@@ -59,7 +59,10 @@
 namespace elevation
 {
 
-/** Holds the mesh and the lists of its points. One of the runs, then perhaps Insert() and a run in turn. */
+/**
+ * Holds the mesh and the lists of its points. One of the runs, then perhaps Insert() and a run in
+ * turn.
+ */
 class GreedyInsertion
 {
 public:
@@ -94,7 +97,7 @@ public:
   /** The triangles, in an order that does not depend on the number of threads. */
   const std::vector<Index>& Order() const { return this->Ordered; }
   const Face& At(Index face) const { return this->Inserted.Faces[face]; }
-  /** Whether a point on an edge counts for one of the two faces alone. */
+  /** Whether faces have lists: a point on an edge is then in that of one face alone. */
   bool HasLists() const { return this->Inserted.HasLists(); }
   /** Visits the points of a face; without lists those on its edges for both faces. */
   template <typename Visit>

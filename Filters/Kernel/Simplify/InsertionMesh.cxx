@@ -195,7 +195,7 @@ void InsertionMesh::FindWorst(Face& face) const
     rows[count].Width = last - first;
     rows[count].Plane = a.Z + (row - a.Y) * slopes.Y + (first - a.X) * slopes.X;
     Prefetch(this->Heights.data() + rows[count].First);
-    work += 4 + static_cast<std::size_t>(std::max(0, last - first));
+    work += static_cast<std::size_t>(4 * step + std::max(0, last - first));
     count += first <= last ? 1 : 0;
     if (count == rowsAtOnce)
     {
@@ -203,7 +203,7 @@ void InsertionMesh::FindWorst(Face& face) const
     }
   });
   search();
-  CountWork(work);
+  CountWork(work / static_cast<std::size_t>(step));
   face.Error = static_cast<float>(worst.Error);
   face.Worst = None;
   if (worst.Node != WorstNode::None)

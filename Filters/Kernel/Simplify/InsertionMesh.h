@@ -202,8 +202,8 @@ void InsertionMesh::ForEachRow(const Face& face, Index step, const Visit& visit)
   const ElevatedPlace& low = c->Y < lower->Y ? *c : *lower;
   const ElevatedPlace& high = upper->Y < c->Y ? *c : *upper;
   const ElevatedPlace& middle = c->Y < lower->Y ? *lower : upper->Y < c->Y ? *upper : *c;
-  // Not finite for a level edge, from which no row is taken: the middle row by the edge that is not
-  // level.
+  // A level edge has no slope, infinity or NaN. It lies in the middle row, which then takes its end
+  // from the other edge.
   const double slope = (high.X - low.X) / (high.Y - low.Y);
   const double below = (middle.X - low.X) / (middle.Y - low.Y);
   const double above = (high.X - middle.X) / (high.Y - middle.Y);

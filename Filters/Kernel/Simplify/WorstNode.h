@@ -39,10 +39,11 @@ struct WorstNode
   /**
    * Looks for a worse one. Of equal ones that of the lowest number counts.
    * @param[in] heights  by the numbers of nodes; NaN where there is no point
-   * @param[in] rows     so many, by increasing numbers of nodes
+   * @param[in] rows     from the lowest numbers up
+   * @param[in] count    of rows
    * @param[in] step     every so many-th node counts, from the first one of a row on
    * @param[in] slope    of the plane, from one number to the next
-   * @param[in] widest   no wider set is used, which tests ask for
+   * @param[in] widest   set of instructions that may be used; tests try each
    */
   void Search(const double* heights, const NodeRow* rows, int count, Index step, double slope,
     InstructionSet widest = WidestInstructions());
