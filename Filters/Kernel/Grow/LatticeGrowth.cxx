@@ -283,7 +283,7 @@ std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(
   // In units of about a nanosecond. With few gaps, most points are of full cells. A wrong figure
   // changes the balance of the threads, not the result.
   constexpr double perPoint = 6.0, perGap = 9.0, mostGaps = 10.0, perWalkPoint = 500.0,
-                   least = 20000.0;
+                   least = 100000.0;
   const auto workOf = [&](double points, double gaps) {
     return perPoint * points + perGap * std::min(gaps, mostGaps * points);
   };

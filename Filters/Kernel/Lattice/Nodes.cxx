@@ -484,7 +484,8 @@ void LatticeNodes::Placement::CountBefore()
   const Index words = static_cast<Index>(this->Nodes.Memory.size());
   this->Nodes.Before.Resize(this->Nodes.Memory.size());
   // Two passes, as the sums of all earlier ranges are needed before ranks can be written.
-  const Index ranges = std::min(this->Threads, words);
+  constexpr Index fewestWords = 1 << 14; // to start a thread takes longer
+  const Index ranges = std::max(1, std::min(this->Threads, words / fewestWords));
   const auto beginOf = [&](Index range) {
     return static_cast<Index>(std::int64_t(words) * range / ranges);
   };
