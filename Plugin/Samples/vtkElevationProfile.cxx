@@ -54,7 +54,7 @@ void AddCorners(vtkPolyData* lines, vtkDoubleArray* corners)
   {
     for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell, ++number)
     {
-      if (flags && (flags->GetValue(number) & skipped) != 0)
+      if (flags && number < flags->GetNumberOfValues() && (flags->GetValue(number) & skipped) != 0)
       {
         continue;
       }

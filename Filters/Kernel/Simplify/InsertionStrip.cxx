@@ -520,7 +520,7 @@ void InsertionStrip::TakeDue()
       this->Due.push_back(face);
       for (const Index next : faces[face].Neighbors)
       {
-        Prefetch(faces.data() + next);
+        Prefetch(faces.data() + std::max(next, 0));
       }
     }
   }
