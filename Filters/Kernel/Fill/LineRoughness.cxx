@@ -361,9 +361,9 @@ std::vector<double> LineRoughness::ScalesAt(const std::vector<Spot>& spots,
     {
       continue;
     }
-    const double width = std::max(gap / WidestGap, std::min(gap * WidestGap, spot.Gap)) / gap;
-    const double u = std::min(1.0, 2.0 * spot.Distance / (gap * width));
-    scales[i] = std::pow(u * (2.0 - u), power) * std::pow(width, growth) * all *
+    const double width = std::max(gap / WidestGap, std::min(gap * WidestGap, spot.Gap));
+    const double u = std::min(1.0, 2.0 * spot.Distance / width);
+    scales[i] = std::pow(u * (2.0 - u), power) * std::pow(width / gap, growth) * all *
       std::pow(local[i], RoughnessPower);
   }
   return scales;

@@ -97,7 +97,7 @@ struct Measurer
 bool MeasureBySweep(
   const TriangleList& list, int threads, const Progress& progress, MeasuredTriangles& measured)
 {
-  Stages stages(progress, { 85, 5, 2, 8 });
+  Stages stages(progress, { 85, 5, 2, 2, 6 });
   measured.Corners.Resize(3 * static_cast<std::size_t>(list.Count));
   const std::size_t most = static_cast<std::size_t>(list.Points.Count) +
     static_cast<std::size_t>(ThreadsAtOnce(threads)) * Measurer::AtOnce;
@@ -125,8 +125,11 @@ bool MeasureBySweep(
     return false;
   }
   // Each border edge is added to its destination, from which no half-edge runs back along it.
-  for (BorderEdge& edge : measured.Border)
+  const Progress adding = stages.Next();
+  std::size_t done = 0;
+  for (BorderEdge& edge : Counted(measured.Border))
   {
+    ReportStep(adding, done++, measured.Border.size());
     const SweptVertex& origin = sweep->At(edge.Origin);
     const SweptVertex& destination = sweep->At(edge.Destination);
     edges[destination.Number].Add(SquaredLength(origin.Position, destination.Position));

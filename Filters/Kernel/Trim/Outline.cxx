@@ -522,7 +522,8 @@ private:
     const std::vector<char>& keep = this->Result.IsSurface;
     const double points = static_cast<double>(
       this->Border.IsPart ? this->NumberOfPoints : this->Measured.NumberOfCorners());
-    // A vertex has as many triangles as edges, but for border edges that end there.
+    // A vertex has as many triangles as edges, but for border edges that end there. Nobody needs the
+    // degrees after this, so they are counted down where they are.
     Buffer<std::uint32_t>& left = this->Measured.Degrees; // triangles that are surface
     for (const BorderEdge& edge : this->Measured.Border)
     {
