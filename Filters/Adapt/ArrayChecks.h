@@ -10,6 +10,8 @@
 
 #include "VTKClasses.h"
 
+#include "vtkElevationSurfaceModule.h" // For export macro
+
 #include <string>
 
 namespace elevation
@@ -23,7 +25,7 @@ namespace elevation
  * @throws Error naming the first array or cell that is invalid
  */
 void CheckPointArrays(vtkPointSet* input, const std::string& owner = "");
-void CheckArrays(vtkPolyData* input, const std::string& owner = "");
+VTKELEVATIONSURFACE_EXPORT void CheckArrays(vtkPolyData* input, const std::string& owner = "");
 
 /** Whether offsets and point ids are plain numbers, not tuples. */
 bool HasSingleComponents(vtkCellArray* cells);
@@ -32,7 +34,8 @@ bool HasSingleComponents(vtkCellArray* cells);
  * Checks that all cell arrays are valid; others cannot be read.
  * @throws Error naming the first invalid cell
  */
-void CheckCells(vtkPolyData* input, const std::string& owner = "", bool polygonsToo = true);
+VTKELEVATIONSURFACE_EXPORT void CheckCells(
+  vtkPolyData* input, const std::string& owner = "", bool polygonsToo = true);
 
 } // namespace elevation
 

@@ -11,6 +11,7 @@
 #include "Kernel/Base/Base.h"
 #include "VTKClasses.h"
 
+#include "vtkElevationSurfaceModule.h" // For export macro
 #include "vtkSmartPointer.h"
 
 #include <functional>
@@ -51,9 +52,9 @@ bool IsFloatingPoint(vtkAbstractArray* array);
 bool IsGhostArray(vtkAbstractArray* array);
 
 /** The flags of ghosts, or nullptr. */
-vtkUnsignedCharArray* GhostsOf(vtkDataSetAttributes* data);
+VTKELEVATIONSURFACE_EXPORT vtkUnsignedCharArray* GhostsOf(vtkDataSetAttributes* data);
 /** Whether flags, if any, say that a point or cell is a copy of another rank's. */
-bool IsCopy(vtkUnsignedCharArray* ghosts, vtkIdType i);
+VTKELEVATIONSURFACE_EXPORT bool IsCopy(vtkUnsignedCharArray* ghosts, vtkIdType i);
 
 /** An empty array of the same type, name, components and information. */
 vtkSmartPointer<vtkAbstractArray> NewLike(vtkAbstractArray* array);

@@ -10,6 +10,7 @@
 
 #include "VTKClasses.h"
 
+#include "vtkElevationSurfaceModule.h" // For export macro
 #include "vtkSmartPointer.h"
 
 namespace elevation
@@ -25,7 +26,7 @@ vtkSmartPointer<vtkDataArray> WithoutHidden(vtkDataArray* coordinates, vtkUnsign
  * A data set without cells that are marked as hidden or have a point that is, as VTK takes them;
  * itself if there is none. @throws Error as CheckArrays() where there are marks of hidden ones
  */
-vtkSmartPointer<vtkPolyData> WithoutHiddenCells(vtkPolyData* input);
+VTKELEVATIONSURFACE_EXPORT vtkSmartPointer<vtkPolyData> WithoutHiddenCells(vtkPolyData* input);
 
 } // namespace elevation
 

@@ -10,9 +10,13 @@
 
 #include "SampledSurface.h"
 
+#include "Adapt/ArrayChecks.h"
+#include "Adapt/DataArrays.h"
+#include "Adapt/HiddenCells.h"
+
 #include "vtkCellArray.h"
+#include "vtkCellData.h"
 #include "vtkCharArray.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkInformation.h"
@@ -22,6 +26,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -41,12 +46,14 @@ constexpr int MostSteps = 10000000;
 
 /**
  * Tuples of x, y, and the number of the line; of lines that are neither hidden nor copies of another
- * rank's. @throws Error where a point is not finite
+ * rank's. @throws Error where an array or a cell is invalid, or a point is not finite
  */
-void AddCorners(vtkPolyData* lines, vtkDoubleArray* corners)
+void AddCorners(vtkPolyData* given, vtkDoubleArray* corners)
 {
-  constexpr int skipped = vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::DUPLICATECELL;
-  vtkUnsignedCharArray* const flags = lines->GetCellGhostArray();
+  elevation::CheckArrays(given, "The line's");
+  elevation::CheckCells(given, "The line's");
+  const vtkSmartPointer<vtkPolyData> lines = elevation::WithoutHiddenCells(given);
+  vtkUnsignedCharArray* const flags = elevation::GhostsOf(lines->GetCellData());
   vtkIdType number = lines->GetNumberOfVerts(); // VTK counts vertices first, then lines, polygons
   vtkNew<vtkIdList> ids;
   double line = 0.0;
@@ -54,7 +61,7 @@ void AddCorners(vtkPolyData* lines, vtkDoubleArray* corners)
   {
     for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell, ++number)
     {
-      if (flags && number < flags->GetNumberOfValues() && (flags->GetValue(number) & skipped) != 0)
+      if (elevation::IsCopy(flags, number))
       {
         continue;
       }

@@ -113,7 +113,7 @@ for closed in (False, True):
     check({place[:2] for place in corners} <= has, "the corners of the line are points of the section")
     check_same(array(section.GetPointData(), "Elevation"), result.elevation_at(points(section)[:, :2]), "along a line")
 
-# A line that is hidden, and one that another rank has as its own, do not count.
+# A line that is hidden or has a hidden point, and one that another rank has as its own, do not count.
 several = polyline(*corners)
 several.GetPoints().InsertNextPoint(cx, cy - 20, 0)
 dots = vtkCellArray()
@@ -121,9 +121,14 @@ dots.InsertNextCell(1, [3])
 several.SetVerts(dots)
 for _ in range(2):
     several.GetLines().InsertNextCell(2, [0, 3])
-flags = numpy_to_vtk(numpy.array([0, 0, vtkDataSetAttributes.HIDDENCELL, vtkDataSetAttributes.DUPLICATECELL], numpy.uint8), deep=True)
-flags.SetName("vtkGhostType")
-several.GetCellData().AddArray(flags)
+several.GetLines().InsertNextCell(2, [0, 4])
+several.GetPoints().InsertNextPoint(cx, cy - 30, 0)
+marks = vtkDataSetAttributes
+for data, values in ((several.GetCellData(), [0, 0, marks.HIDDENCELL, marks.DUPLICATECELL, 0]),
+                     (several.GetPointData(), [0, 0, 0, 0, marks.HIDDENPOINT])):
+    flags = numpy_to_vtk(numpy.array(values, numpy.uint8), deep=True)
+    flags.SetName("vtkGhostType")
+    data.AddArray(flags)
 section, whole = (fetch(simple.ElevationProfile(Input=surface, Line=data_source(line), Resolution=100))
                   for line in (several, polyline(*corners)))
 check_equal(points(section).tolist(), points(whole).tolist(), "hidden lines and copies are left out")
@@ -135,6 +140,9 @@ wall = data_source(polyline((0, 0, 0), (1, 1, 0), (0.5, 0.5, 9), closed=True))
 meridian = data_source(polyline((5, 0, 0), (5, 1, 0), (5, 2, 7), closed=True))
 wrong = polyline(*corners)
 wrong.GetLines().ReplaceCellAtId(0, 3, [0, 1, 7])
+short = polyline(*corners)
+short.GetCellData().AddArray(numpy_to_vtk(numpy.zeros(0, numpy.uint8), deep=True))
+short.GetCellData().GetArray(0).SetName("vtkGhostType")
 for source, words in (
     (simple.ElevationGrid(Input=alone), "The input has no triangles"),
     (simple.ElevationProfile(Input=alone), "The input has no triangles"),
@@ -142,6 +150,7 @@ for source, words in (
     (simple.ElevationProfile(Input=meridian), "The input has no triangle with an area in x,y"),
     (simple.ElevationProfile(Input=wall), "Cell 0"),
     (simple.ElevationProfile(Input=surface, Line=data_source(wrong)), "Point 7 of the line does not exist; there are 3 points."),
+    (simple.ElevationProfile(Input=surface, Line=data_source(short)), 'The line\'s cell array "vtkGhostType" has 0 tuples, but there are 1 cells'),
     (simple.ElevationGrid(Input=surface, Dimensions=[1, 7]), "Dimensions are 1 and 7; they must be 2 or more"),
     (simple.ElevationGrid(Input=surface, Dimensions=[2**30, 2**30]), "250000000 nodes at most"),
     (simple.ElevationProfile(Input=surface, Resolution=0), "Resolution is 0; it must be 1 to 10000000"),

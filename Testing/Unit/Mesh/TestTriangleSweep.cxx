@@ -6,11 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
 
 using namespace elevation;
+using testing_surfaces::Surface;
 
 namespace
 {
@@ -25,11 +27,8 @@ struct Nobody
 /** Whether a sweep finds the triangles counter-clockwise. */
 bool IsRight(const std::vector<double>& coordinates, const std::vector<Index>& corners)
 {
-  TriangleList list;
-  list.Corners = corners.data();
-  list.Count = static_cast<Index>(corners.size() / 3);
-  list.Points.Double = coordinates.data();
-  list.Points.Count = static_cast<Index>(coordinates.size() / 3);
+  const Surface surface{ coordinates, corners };
+  const TriangleList list = surface.List();
   return TriangleSweep<Nobody>(list, 1).Run(Nobody(), Progress());
 }
 
@@ -82,4 +81,48 @@ TEST(TriangleList, TheShareOfASquareIsTheSameForAnyFirstCorner)
     ASSERT_EQ(list.SquareShare(t + 1, 0.3), share);
     ASSERT_EQ(list.SquareShare(t + 2, 0.3), share);
   }
+}
+
+TEST(TriangleSweep, ClosedFansLeaveNoSlit)
+{
+  Surface surface;
+  surface.Coordinates = { 0, 0, 0 };
+  for (int i = 0; i < 6; ++i)
+  {
+    const double angle = 1.0471975511965976 * i;
+    surface.Coordinates.insert(
+      surface.Coordinates.end(), { std::cos(angle), std::sin(angle), 0.0 });
+    surface.Corners.insert(surface.Corners.end(), { 0, 1 + i, 1 + (i + 1) % 6 });
+  }
+  const TriangleList list = surface.List();
+  TriangleSweep<Nobody> sweep(list, 1);
+  ASSERT_TRUE(sweep.Run(Nobody(), Progress()));
+  EXPECT_EQ(sweep.Border(Progress()).size(), 6u);
+}
+
+TEST(TriangleSweep, ReportsWhileItGoesThroughWhatIsPutOff)
+{
+  // Every other row of squares first, so that both halves of the list share all vertices.
+  constexpr Index side = 300;
+  Surface surface;
+  for (Index i = 0; i < (side + 1) * (side + 1); ++i)
+  {
+    surface.Coordinates.insert(surface.Coordinates.end(),
+      { static_cast<double>(i % (side + 1)), static_cast<double>(i / (side + 1)), 0.0 });
+  }
+  for (Index i = 0; i < side * side; ++i)
+  {
+    const Index row = i / side < side / 2 ? 2 * (i / side) : 2 * (i / side - side / 2) + 1;
+    const Index v = row * (side + 1) + i % side, above = v + side + 1;
+    surface.Corners.insert(surface.Corners.end(), { v, v + 1, above + 1, v, above + 1, above });
+  }
+  const TriangleList list = surface.List();
+  TriangleSweep<Nobody> sweep(list, 2);
+  int reports = 0; // in the last tenth, where that is
+  ASSERT_TRUE(sweep.Run(Nobody(), [&reports](double done) {
+    reports += done >= 0.9;
+    return true;
+  }));
+  EXPECT_GE(reports, sweep.NumberOfRanges() > 1 ? list.Count / 20000 : 0);
+  EXPECT_EQ(sweep.Border(Progress()).size(), 4u * side);
 }
