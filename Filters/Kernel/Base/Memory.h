@@ -55,6 +55,8 @@ inline void Prefetch(const T* memory)
 {
 #if defined(__GNUC__) || defined(__clang__)
   __builtin_prefetch(memory);
+  // Otherwise GCC takes a function that only prefetches for one without effect, and drops its calls.
+  __asm__ volatile("");
 #else
   static_cast<void>(memory);
 #endif
