@@ -97,7 +97,7 @@ void PassSides(vtkPolyData* input, elevation::DataSetTriangles& triangles,
   Report(stages.Next(), 0.0);
   if (lines)
   {
-    elevation::PassBoundary(*lines, trimmed.OnBoundary, options, kept);
+    elevation::PassMarks(trimmed.OnBoundary, kept);
   }
   // Both outputs have all points: a triangle that is cut has points on both sides.
   // RemoveUnusedPoints leaves each what it needs.
@@ -107,6 +107,10 @@ void PassSides(vtkPolyData* input, elevation::DataSetTriangles& triangles,
   kept->SetLines(input->GetLines());
   PassTriangles(input, triangles, trimmed.Kept, threads, kept);
   PassTriangles(input, triangles, trimmed.Outward, threads, outward);
+  if (lines && elevation::NeedsZ(options))
+  {
+    elevation::PassElevations(*lines, trimmed.OnBoundary, kept, outward);
+  }
   elevation::PassCellData(
     input, elevation::FirstPolygon(input), trimmed.Kept, areCut, stages.Next(), kept);
   elevation::PassCellData(input, 0, trimmed.Outward, areCut, stages.Next(), outward);

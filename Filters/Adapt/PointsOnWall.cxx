@@ -94,12 +94,16 @@ void WarnOfWall(std::vector<Sampled> sample, std::vector<Message>& warnings)
       middle[c] += p[c] / sample.size();
     }
   }
+  // Differences of the largest would be infinite, halves of the smallest zero.
+  const double share = unit > 1.0 ? 0.5 : 1.0;
   double squares[3][3] = {};
   for (const Sampled& p : sample)
   {
     // Divided before they are multiplied, for the same reason.
-    const double d[3] = { (p[0] - middle[0]) / unit, (p[1] - middle[1]) / unit,
-      (p[2] - middle[2]) / unit };
+    double d[3];
+    std::transform(p.begin(), p.end(), middle.begin(), d, [unit, share](double value, double mean) {
+      return (share * value - share * mean) / (share * unit);
+    });
     for (int c = 0; c < 9 && unit > 0.0; ++c)
     {
       squares[c / 3][c % 3] += d[c / 3] * d[c % 3];

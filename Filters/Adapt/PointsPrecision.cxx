@@ -75,7 +75,8 @@ bool NeedsDouble(int precision, bool hasLines)
 
 vtkSmartPointer<vtkPointSet> WithPointsFor(bool needsDouble, vtkPointSet* input)
 {
-  const int type = input->GetNumberOfPoints() > 0 ? input->GetPoints()->GetDataType() : VTK_DOUBLE;
+  // Lines may add points where there are none: these have a type, too.
+  const int type = input->GetPoints() ? input->GetPoints()->GetDataType() : VTK_DOUBLE;
   // Integers become double, too: float would not hold them all.
   if (type == VTK_DOUBLE || (type == VTK_FLOAT && !needsDouble))
   {

@@ -198,8 +198,7 @@ vtkSmartPointer<vtkUnsignedCharArray> MarksOf(vtkPolyData* input, const TrimmedP
 }
 } // namespace
 
-void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBoundary,
-  const TrimOptions& options, vtkPolyData* output)
+void PassMarks(const std::vector<Index>& onBoundary, vtkPolyData* output)
 {
   const vtkIdType count = output->GetNumberOfPoints();
   vtkNew<vtkUnsignedCharArray> marks;
@@ -217,10 +216,13 @@ void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBounda
     marks->SetValue(point, 1);
   }
   data->AddArray(marks);
-  if (!NeedsZ(options))
-  {
-    return;
-  }
+}
+
+// Not only points on edges: where the boundary is outside of the mesh, it may still meet a corner.
+// Other points at its places, as duplicates, stay as they are.
+void PassElevations(const BoundaryLines& lines, const std::vector<Index>& onBoundary,
+  vtkPolyData* kept, vtkPolyData* outward)
+{
   // By x,y to the last bit: where the boundary's point was no vertex, trimming has inserted it
   // there.
   std::unordered_map<Point2, double, PointHash> elevations;
@@ -230,20 +232,32 @@ void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBounda
     elevations.emplace(lines.Points.Places[i], lines.Elevations[i]);
   }
   vtkNew<vtkPoints> moved;
-  moved->SetDataType(output->GetPoints()->GetDataType());
+  moved->SetDataType(kept->GetPoints()->GetDataType());
   // The points may be the input's own.
-  moved->DeepCopy(output->GetPoints());
-  for (const Index point : onBoundary)
-  {
+  moved->DeepCopy(kept->GetPoints());
+  std::vector<char> areMet(static_cast<std::size_t>(moved->GetNumberOfPoints()), 0);
+  const auto meet = [&](Index point) {
     double p[3];
     moved->GetPoint(point, p);
-    const auto own = elevations.find({ p[0], p[1] });
+    const auto own = areMet[point] ? elevations.end() : elevations.find({ p[0], p[1] });
     if (own != elevations.end())
     {
       moved->SetPoint(point, p[0], p[1], own->second);
     }
+    areMet[point] = 1;
+  };
+  // On several ranks also points whose triangles are elsewhere.
+  std::for_each(onBoundary.begin(), onBoundary.end(), meet);
+  for (vtkPolyData* const side : { kept, outward })
+  {
+    if (side)
+    {
+      const DataSetTriangles triangles = ViewTriangles(side);
+      std::for_each(
+        triangles.View.Corners, triangles.View.Corners + 3 * triangles.View.Count, meet);
+      side->SetPoints(moved);
+    }
   }
-  output->SetPoints(moved);
 }
 
 vtkUnsignedCharArray* BoundaryMarksOf(vtkPointData* data)

@@ -56,12 +56,18 @@ constexpr const char* BoundaryMarksName = "OnBoundary";
 vtkUnsignedCharArray* BoundaryMarksOf(vtkPointData* data);
 
 /**
- * What a given boundary adds to the points of an output: marks beside those that are there, and, if
- * the options say so, its own elevations.
+ * Adds the marks of points on the edges of a given boundary to those that are there.
  * @param[in] onBoundary  points of the output
  */
-void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBoundary,
-  const TrimOptions& options, vtkPolyData* output);
+void PassMarks(const std::vector<Index>& onBoundary, vtkPolyData* output);
+
+/**
+ * Corners of triangles that are points of the boundary get its elevations.
+ * @param[in] onBoundary    as of PassMarks()
+ * @param[in,out] outward   has the points of kept; may be null
+ */
+void PassElevations(const BoundaryLines& lines, const std::vector<Index>& onBoundary,
+  vtkPolyData* kept, vtkPolyData* outward);
 
 /** What a part has of the points of outputs 0 and 1: all of its input, then others. */
 struct TrimmedPoints

@@ -126,7 +126,11 @@ void KeepUsed(vtkPolyData* surface, const Ranks& ranks, const Progress& progress
   };
   ranks.Agree([&] {
     areUsed = hasPoints ? FlagUsed(surface) : std::vector<char>();
-    forEach(true, true, [&](char, const PointKey& key) { keys.push_back(next(key)); });
+    // One rank alone may have a copy and the own point, as where parts have been appended.
+    if (ranks.Count() > 1)
+    {
+      forEach(true, true, [&](char, const PointKey& key) { keys.push_back(next(key)); });
+    }
   });
   keys = ranks.Collect(keys);
   ranks.Agree([&] {

@@ -285,17 +285,17 @@ void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* b
   Stages stages(progress, { 20, 40, 40 });
   this->Points.AreMarked = areMarked;
   PassTrimmedPoints(this->Input, this->Points, stages.Next(), kept);
+  // The owner's points that only ghosts elsewhere have shown to be on the boundary, then all
+  // others.
+  std::vector<Index> onBoundary = this->FarOnBoundary;
   if (boundary)
   {
-    // The owner's points that only ghosts elsewhere have shown to be on the boundary, then all
-    // others.
-    std::vector<Index> onBoundary = this->FarOnBoundary;
     const Index sent = static_cast<Index>(this->NearPoints.size());
     for (const Index point : this->Back.OnBoundary)
     {
       onBoundary.push_back(point < sent ? this->NearPoints[point] : this->Indices[point - sent]);
     }
-    PassBoundary(*boundary, onBoundary, options, kept);
+    PassMarks(onBoundary, kept);
   }
   // As on one rank, other cells go to the kept side alone.
   kept->SetVerts(this->Input->GetVerts());
@@ -318,6 +318,10 @@ void TrimmedPart::Write(bool areInserted, bool areMarked, const BoundaryLines* b
         ToCellArray(std::move(written.Corners), ResolveNumberOfThreads(options.NumberOfThreads)));
       output->GetFieldData()->PassData(this->Input->GetFieldData());
     }
+  }
+  if (boundary && NeedsZ(options))
+  {
+    PassElevations(*boundary, onBoundary, kept, outward);
   }
 }
 

@@ -138,6 +138,24 @@ class FollowSurface(unittest.TestCase):
         # The input is not touched.
         self.assertEqual(before.GetPoint(7 * 50 + 5)[2], relief(numpy.array([[5.0, 7.0]]))[0])
 
+    def test_a_shore_that_meets_only_a_corner_gives_it_its_height(self):
+        # Around the corner both edges of the shore are outside of the surface.
+        surface = meshes.mesh(numpy.array([[0, 0, 1], [4, 0, 2], [2, 3, 3], [0, 0, 8]], float), [[0, 1, 2]])
+        shore = numpy.array([[0, 0, 9], [2, -5, 9], [10, 0, 9], [10, 10, 9], [-10, 10, 9]], float)
+        for recover in (True, False):
+            with self.subTest(recover=recover):
+                trim = vtkTrimOutwardTriangles()
+                trim.SetInputData(surface)
+                trim.SetBoundaryData(meshes.rings([shore]))
+                trim.SetBoundaryEdges(vtkTrimOutwardTriangles.OWN_ELEVATIONS)
+                trim.SetRecoverBoundary(recover)
+                trim.Update()
+                # A duplicate is no corner, and stays.
+                for port in (0, 1):
+                    z = meshes.points_of(trim.GetOutput(port))[:, 2]
+                    self.assertEqual(z.tolist(), [9, 2, 3, 8])
+                self.assertEqual(marks_of(trim.GetOutput(0)).tolist(), [0, 0, 0, 0])
+
     def test_marks_are_the_points_on_its_edges(self):
         before = surface_of(grid()).GetOutput()
         for edges in (0, 1, 2):

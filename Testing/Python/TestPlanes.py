@@ -16,6 +16,7 @@ from vtkelevationsurface.clouds import coordinates_of, make_points
 from vtkelevationsurface.command import main
 from vtkelevationsurface.planes import best_plane
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Data")
 RANDOM = numpy.random.default_rng(11)
@@ -56,6 +57,17 @@ class Walls(unittest.TestCase):
         upright = tilted(relief(), 90, 0.0)
         upright[:, 1] = 5.0  # which has no triangle
         self.assertIn("90 degrees", note(make_points(upright)))
+
+    def test_nothing_is_said_of_the_largest_heights(self):
+        xyz = relief(100)
+        xyz[:, 2] = numpy.where(RANDOM.random(100) < 0.5, 1.7e308, -1.7e308)
+        window, before = vtkStringOutputWindow(), vtkOutputWindow.GetInstance()
+        vtkOutputWindow.SetInstance(window)
+        try:
+            self.assertEqual(note(make_points(xyz)), "")
+        finally:
+            vtkOutputWindow.SetInstance(before)
+        self.assertEqual(window.GetOutput(), "")
 
     def test_no_note_names_terrain(self):
         lines = numpy.array([(x, y, 3 * numpy.sin(x / 50)) for y in range(0, 900, 300) for x in range(900)])

@@ -73,6 +73,14 @@ class Precision(unittest.TestCase):
             for kind in (vtkTrimOutwardTriangles, vtkFillElevationHoles):
                 self.assertEqual(types(run(kind, mesh.GetOutput())), {expected}, (dtype, kind))
 
+    def test_lines_alone_are_double_whatever_type_no_points_have(self):
+        lines = meshes.rings([EXACT[:, :2] + (600000.1, 6000000.3)])
+        for dtype in NAMES:
+            for precision in (DEFAULT, DOUBLE):
+                mesh = run(vtkGridDelaunay2D, cloud(dtype, XYZ[:0]), precision, lines)
+                self.assertEqual(types(mesh), {VTK_DOUBLE}, dtype)
+                self.assertEqual(places(mesh).tolist(), meshes.points_of(lines).tolist(), dtype)
+
     def test_with_lines_it_is_double_whatever_their_values_are(self):
         without = run(vtkGridDelaunay2D, cloud("float32")).GetOutput()
         for xyz in (EXACT, EXACT + (0.1, 0.1, 0)):

@@ -104,6 +104,18 @@ class Filters(unittest.TestCase):
         unused = vtk_to_numpy(again.GetOutput().GetFieldData().GetArray("UnusedPointIds"))
         self.assertEqual(set(original(again.GetOutput())) | set(unused), set(original(first)))
 
+    def test_twins_of_copies_go_where_both_are_in_one_data_set(self):
+        # Parts that have been appended with their ghosts: the last two are copies, and the vertices.
+        data = meshes.cloud(
+            numpy.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 0), (1, 0, 0)], float),
+            arrays=[(meshes.GHOSTS, numpy.array([0, 0, 0, 1, 1], "u1"))])
+        delaunay = vtkGridDelaunay2D()
+        delaunay.SetInputData(data)
+        delaunay.SetDuplicatePolicyToKeepLast()
+        delaunay.RemoveUnusedPointsOn()
+        delaunay.Update()
+        self.assertEqual(original(delaunay.GetOutput()).tolist(), [2, 3, 4])
+
     def test_global_ids_are_the_original_ones(self):
         ids = 1000 + RANDOM.permutation(len(XYZ))
         output = chain(meshes.cloud(XYZ, ids), 0)[0].GetOutput()
