@@ -177,11 +177,11 @@ class Run:
         if options.at:
             from .query import places_in, read_places
 
-            places, own = read_places(options.at)
+            places, own, recognised = read_places(options.at)
             own = own or (crs or "EPSG:4326" if options.project else None)
             moved, notes = places_in(cloud.crs, places, own, options.at, options.file, options.strict)
             self.places = places, moved
-            cloud.notes += notes
+            cloud.notes += [*recognised, *notes]
         if options.volume is not None:
             from .query import other_of
 
