@@ -5,7 +5,7 @@ as those over a gap, which is left out or filled anew."""
 
 import numpy
 
-from .clouds import coordinates_of, line_parts, triangles_of
+from .clouds import bare_lines, coordinates_of, line_parts, triangles_of
 from .draping import edges_with_reach
 from .messages import counted
 from .outline import between, places_of
@@ -18,9 +18,12 @@ def note_on_lost_faults(ranks, surface, faults, is_turned=False):
 
     is_turned  whether the places are others than those of the user
     """
-    lines = [edge for part in line_parts(faults)[1] for edge in edges_with_reach(part)]
+    parts = [part for part, is_bare in zip(line_parts(faults)[1], bare_lines(faults)) if not is_bare]
+    lines = [edge for part in parts for edge in edges_with_reach(part)]
     rows = [[*p[:2], *q[:2], reach] for p, q, _, reach in lines]
     rows = all_values(ranks, numpy.array(rows, "f8").ravel(), "f8").reshape(-1, 5)
+    if not len(rows):
+        return []
     rows = numpy.unique(rows, axis=0)  # all ranks may have all
     mesh = Mesh(surface)
     ends = rows[:, :2], rows[:, 2:4]
