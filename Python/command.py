@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonCore import vtkSMPTools
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import reading
-from .clouds import Cloud, ReadOptions, bare_lines, crs_of, merged, notes_on, set_crs, take_notes
+from .clouds import Cloud, ReadOptions, bare_lines, coordinates_of, crs_of, merged, notes_on, set_crs, take_notes
 from .gdal_common import check_system, name_of, reference_of
 from .given_lines import RINGS, fitted
 from .several_heights import check_heights
@@ -31,7 +31,7 @@ from .names import PROGRAM, written_for
 from .pieces import Pieces
 from .planes import in_plane
 from .properties import is_simplified
-from .projecting import project
+from .projecting import no_angles, project
 from .ranks import agreed, by_first, together, total
 from .reconstruction import check_spacing, least_reach, run_chain
 from .report import picture_subtitle, print_report
@@ -177,11 +177,11 @@ class Run:
         if options.at:
             from .query import places_in, read_places
 
-            places, own = read_places(options.at)
+            places, own, recognised = read_places(options.at)
             own = own or (crs or "EPSG:4326" if options.project else None)
             moved, notes = places_in(cloud.crs, places, own, options.at, options.file, options.strict)
             self.places = places, moved
-            cloud.notes += notes
+            cloud.notes += [*recognised, *notes]
         if options.volume is not None:
             from .query import other_of
 
@@ -208,6 +208,10 @@ class Run:
         if crs and found and not reference_of(crs).IsSame(found):
             cloud.notes.append(f"--crs {crs} is taken, not {name_of(cloud.crs)} of the file")
         cloud.crs = crs or cloud.crs
+        if crs and cloud.points is not None and reference_of(crs).IsGeographic():
+            if where := no_angles(coordinates_of(cloud.points).astype("f8")):
+                file = self.options.file
+                raise WrongOption(f"--crs: {where} in {file} is not longitude and latitude, as {crs} has them")
 
     def write(self, result, path, output):
         """Writes one result. Returns notes."""

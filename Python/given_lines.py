@@ -6,7 +6,7 @@ import numpy
 
 from .clouds import LINE_NAMES, WITHOUT_Z, bare_lines, coordinates_of, crs_of, line_parts, moved, set_crs, words_in
 from .draping import draped
-from .gdal_common import check_system, is_near, moving, name_of, same_system
+from .gdal_common import check_system, is_near, moving, name_of, reference_of, same_system
 from .mending import mended
 from .messages import ElevationSurfaceError, FileError, counted, did_you_mean
 from .names import argument, option
@@ -96,7 +96,10 @@ def in_system(data, name, cloud, points_name, strict, ranks=None):
         places = moving(crs, cloud.crs)
         xy = places(xyz)
         p, q = (numpy.concatenate([part[end] for part in parts]) for end in ENDS)
-        bend = places(0.5 * (p + q)) - 0.5 * (places(p) + places(q))
+        middle = 0.5 * (p + q)
+        if reference_of(crs).IsGeographic():  # across the antimeridian the way is the shorter one
+            middle[abs(p - q)[:, 0] > 180.0, 0] += 180.0
+        bend = places(middle) - 0.5 * (places(p) + places(q))
     except RuntimeError as error:
         raise FileError(
             f"{name}: cannot be reprojected from {name_of(crs)} to {name_of(cloud.crs)}: {error}"

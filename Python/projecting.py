@@ -50,6 +50,13 @@ def zone_of(longitude, latitude):
     return f"EPSG:{326 if latitude >= 0 else 327}{zone:02d}"
 
 
+def no_angles(xyz):
+    """x and y, in words, of the first of (n, 3) points that is finite and not longitude and latitude; or ""."""
+    xy = xyz[numpy.isfinite(xyz[:, :2]).all(axis=1), :2]
+    bad = xy[(abs(xy) > (LONGITUDES, LATITUDES)).any(axis=1)]
+    return f"{bad[0, 0]:.10g}, {bad[0, 1]:.10g}" if len(bad) else ""
+
+
 def project(path, cloud):
     """Makes x and y of a Cloud metres of the UTM zone in their middle. Returns the crs that they had, with WGS
     84 where none is known. Raises FileError for values that are not angles."""
@@ -66,9 +73,7 @@ def project(path, cloud):
     xy = xyz[finite, :2]
     if not len(xy):
         return cloud.crs
-    if (abs(xy) > (LONGITUDES, LATITUDES)).any():
-        bad = xy[(abs(xy) > (LONGITUDES, LATITUDES)).any(axis=1)][0]
-        where = f"{bad[0]:.10g}, {bad[1]:.10g}"
+    if where := no_angles(xyz):
         raise FileError(f"{path}: {where} is not longitude and latitude, as {option('project')} needs")
     around = numpy.where(xy[:, 0] < 0, xy[:, 0] + 360.0, xy[:, 0])
     if numpy.ptp(around) < numpy.ptp(xy[:, 0]):  # on both sides of the antimeridian

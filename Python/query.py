@@ -15,7 +15,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from .clouds import add_array, cells_of, coordinates_of, crs_of, make_points, slices, triangles_of
 from .gdal_common import check_system, is_near, moving, name_of, one_line, same_system
-from .messages import ElevationSurfaceError, FileError
+from .messages import ElevationSurfaceError, FileError, counted_reason
 from .passes import corner_flags
 from .progress import no_progress
 from .properties import METHODS
@@ -280,18 +280,20 @@ def is_text(path):
 
 
 def read_places(path):
-    """((n, 2) places of a file, its reference system or None): of text, the columns x and y; of other
-    files their points, which need no z. Raises FileError."""
+    """((n, 2) places of a file, its reference system or None, notes): of text, the columns x and y; of other
+    files their points, whatever their z is. Raises FileError."""
     with unpacked(path) as (local, _):
         module = recognise(local)[0].module
         if module == "text.read_text":
-            return read_table(local, 2)[0], None
+            rows, _, _, notes = read_table(local, 2)
+            return rows, None, [f"{path}: {note}" for note in notes]
         if module == "vectors":
             from .reading.vectors import read_flat_points
 
-            return read_flat_points(local)
-    cloud = read(path)
-    return coordinates_of(cloud.points)[:, :2].astype("f8"), cloud.crs
+            return (*read_flat_points(local), [])
+    cloud = read(path, keep_nulls=True, points_only=True)
+    notes = [f"{path}: {counted_reason(count, reason)} left out" for reason, count in cloud.left_out.items()]
+    return coordinates_of(cloud.points)[:, :2].astype("f8"), cloud.crs, notes
 
 
 def places_in(crs, places, own, name, points_name, strict=False):

@@ -24,6 +24,7 @@ from .description import KINDS, listing, view_angles
 from .given_lines import RINGS, fitted
 from .several_heights import check_heights, heights_on_ranks
 from .holes import BridgedVoids, hole_counts
+from .lost_faults import note_on_lost_faults
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning, counted
 from .names import argument
 from .open_edge_length import length_to_open
@@ -437,6 +438,11 @@ def run_chain(
         if not keep_steps:
             free_triangles(result.trim or result.delaunay)
         result.hole_counts = hole_counts(ranks, result)
+    if faults is not None and boundary is None and not is_simplified(given):
+        lost = note_on_lost_faults(ranks, last.GetOutput(), faults, cloud.plane is not None)
+        if lost and strict:
+            raise ElevationSurfaceError(lost[0], "faults")
+        result.notes += lost
     run.kept.forget_steps(run.count + 1)
     result.surface = result.complete = last.GetOutput()
     result.points, result.reasons = follow_points(

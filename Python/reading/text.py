@@ -104,18 +104,20 @@ class Table:
         if needed == 3:
             self.notes += notes_on_units(self.layout, head, self.names, self.indices)
         begin = next((number for number, line in preamble if self.is_data(number, line)), self.first + 1)
-        self.first = begin - 1
+        for number, line in reversed([(number, line) for number, line in preamble if number < begin]):
+            if not self.lacks_all(line):
+                break
+            begin = number
+        self.first, self.comments = begin - 1, sum(map(is_comment, lines[: begin - 1]))
         before = [line for number, line in preamble if number < begin]
         self.head_lines, self.headers = set(map(str.strip, before)), len(before) - len(self.bad_lines)
 
     def read_head(self, lines):
-        """(lines before the data, [(number, line)] of those of them that are not comments). Sets first
-        and comments."""
-        head, preamble, self.comments = [], [], 0
+        """(lines before the data, [(number, line)] of those of them that are not comments). Sets first."""
+        head, preamble = [], []
         for self.first, line in enumerate(lines):
             if is_comment(line):
                 head.append(line.strip().lstrip("#%/!*> "))
-                self.comments += 1
             elif self.is_like(line) and not known_axes(self.layout.words(line)) >= set("xyz"):  # as x,y,z,0,1
                 kind = self.title_kind(line, lines[:self.first], lines[self.first + 1 :])
                 if not kind:
@@ -216,6 +218,15 @@ class Table:
         if not any((self.names or [])[filled:]):
             self.width = min(filled, self.width)
             self.names = find_names(self.layout, head, self.width)
+
+    def lacks_all(self, line):
+        """Whether a line is a row that has neither x, y and z nor words, as an empty row of a spreadsheet; dashes alone
+        underline names."""
+        words = self.layout.words(line)
+        values = list(map(self.layout.number, words))
+        if len(words) < self.width or None in values or set("".join(words)) == {"-"}:
+            return False
+        return all(math.isnan(values[i]) for i in self.indices)
 
     def is_data(self, number, line):
         """Whether a line before the data is a row that lacks one of its values. One that looks like a row

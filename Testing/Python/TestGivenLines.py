@@ -416,16 +416,16 @@ class Draping(Program):
         self.assertGreater(result.report["faults"]["added_points"], 100)
 
     def test_z_of_0_counts_as_none_where_the_points_never_have_it(self):
-        fault, given = flat([(310.0, 420.0), (2715.0, 3050.0)]), {"faults_z": "given"}
+        fault, given = flat([(310.0, 420.0), (2715.0, 3050.0)]), {"faults_z": "given", "trim": False}
         result, notes = quietly(HILLS, faults=fault)
         self.assertRegex(notes[0], "z of its lines is 0 everywhere .*--faults-z given takes the 0")
         self.assertGreater(result.to_numpy()[0][:, 2].min(), 300.0)
         result, notes = quietly(HILLS, faults=fault, **given)
         self.assertEqual((notes, result.to_numpy()[0][:, 2].min()), ([], 0.0))
-        result, notes = quietly(HILLS * (1, 1, 0.01) - (0, 0, 4), faults=fault)
+        result, notes = quietly(HILLS * (1, 1, 0.01) - (0, 0, 4), faults=fault, trim=False)
         self.assertEqual(notes, [])  # the points have 0 too
         other = numpy.vstack((fault, (3000.0, 3000.0, 390.0)))
-        self.assertEqual(quietly(HILLS, faults=other)[1], [])
+        self.assertEqual(quietly(HILLS, faults=other, trim=False)[1], [])
         _, notes = quietly(HILLS, faults=other, faults_z="drape")
         self.assertRegex(notes[0], "z of its lines is left aside, as --faults-z says")
         for more in ({"strict": True}, given):

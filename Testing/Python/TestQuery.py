@@ -208,6 +208,32 @@ class Files(Program):
             rows = [line.split(",")[:2] for line in stream]
         self.assertEqual(rows[1:], [["2.0", "2.0"], ["8.0", "2.0"], ["8.0", "8.0"], ["2.0", "2.0"], ["3.0", "3.0"]])
 
+    def test_each_point_of_a_cloud_has_a_row_whatever_its_z_is(self):
+        places = numpy.array([(2, 2, 1), (8, 2, -9999), (8, 8, 1), (3, 4, numpy.nan), (0, 0, 0)], "f8")
+        numpy.save(self.path("places.npy"), places)
+        box = [(x, y, z) for z in (0, 1) for x, y in ((2, 2), (8, 2), (8, 8), (2, 8))]
+        faces = "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"
+        self.file("box.obj", "".join(f"v {x} {y} {z}\n" for x, y, z in box) + faces)
+        for name, there in (("places.npy", places), ("box.obj", numpy.array(box))):
+            self.run_on_ground("--at", name)
+            table = numpy.genfromtxt(self.path("ground_at.csv"), delimiter=",", names=True)
+            self.assertEqual(numpy.column_stack((table["x"], table["y"])).tolist(), there[:, :2].tolist())
+
+    def test_pixels_without_data_are_no_places_and_a_note_counts_them(self):
+        head = "ncols 3\nnrows 2\nxllcorner 2\nyllcorner 2\ncellsize 1\nNODATA_value -1\n"
+        self.file("dem.asc", head + "1 2 -1\n4 5 6\n")
+        output, report = self.run_on_ground("--at", "dem.asc")
+        self.assertIn("dem.asc: 1 pixel without data left out", output)
+        self.assertEqual(report["elevations_at"]["places"], 5)
+
+    def test_notes_say_which_columns_are_the_places(self):
+        rows = [f"{i + 1} {y} {x}" for i, (x, y) in enumerate((500000 + i * i, 5400000 + 7 * i) for i in range(20))]
+        self.file("places.txt", "\n".join(rows))
+        output, _ = self.run_on_ground("--at", "places.txt")
+        self.assertIn("places.txt: text: separated by blanks", output)
+        self.assertIn("column 1 is an id: it counts up by one; x = 2, y = 3", output)
+        self.assertIn("places.txt: x is as large as a northing and y as an easting of UTM", output)
+
     def test_two_numbers_with_decimal_commas_are_a_place(self):
         self.file("comma.csv", "x;y\n2,5;3,25\n8,125;2,0\n")
         self.run_on_ground("--at", "comma.csv")

@@ -145,6 +145,18 @@ class Degrees(Program):
         numpy.testing.assert_allclose(points[:, :2].max(axis=0), place.max(axis=0), rtol=0, atol=1)
         self.assertEqual(self.call("a.tif", "--project", "--pieces", "2").returncode, 2)
 
+    def test_a_boundary_across_the_antimeridian_bends_as_one_elsewhere(self):
+        bends = []
+        for middle in (180.0, 177.0):  # of two zones of UTM, and of one
+            west, east = ((middle + side + 180) % 360 - 180 for side in (-0.05, 0.05))
+            self.file("a.csv", "longitude,latitude,z\n" + "".join(
+                f"{(middle + 0.01 * i + 180) % 360 - 180:.7f},{-17 + 0.01 * j:.7f},{i}\n" for i in range(-9, 10) for j in range(12)))
+            self.file("ring.csv", f"lon,lat\n{west},-16.98\n{east},-16.98\n{east},-16.92\n{west},-16.92\n{west},-16.98\n")
+            done = self.call("a.csv", "--project", "--boundary", "ring.csv", "--no-picture")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            bends.append(float(done.stdout.split("stay straight, up to ")[1].split()[0]))
+        self.assertLess(max(bends), 5.0)
+
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0]])

@@ -11,7 +11,7 @@ import warnings
 import numpy
 from text_tables import KINDS, Tables, columns_of
 from vtkelevationsurface import read_boundary
-from vtkelevationsurface.clouds import ReadOptions
+from vtkelevationsurface.clouds import ReadOptions, coordinates_of
 from vtkelevationsurface.messages import FileError
 from vtkelevationsurface.reading.nulls import take_out
 from vtkelevationsurface.reading.text import read_table, read_text
@@ -184,6 +184,23 @@ class OtherColumns(Tables):
         self.assertTrue(math.isnan(values[-1]) and math.isnan(values[-2]))
         self.assertEqual(values[7], 7.5)
         self.assertIn("column q: 1 word is not a number (line 20,003: odd)", cloud.notes)
+
+    def test_empty_rows_are_points_that_are_not_finite_wherever_they_stand(self):
+        rows = [f"{i},{i * i % 7},1.5,{i}" for i in range(1, 20)]
+        for empty in (",,,", "NA,NA,NA,NA", ",,,7"):
+            for place in (0, 1, 9):
+                table = rows[:place] + [empty] + rows[place:] + [empty]
+                for head in ("x,y,z,q", "a title,,,\nx,y,z,q\nm,m,m,"):
+                    cloud = self.read("\n".join([head, *table]) + "\n")
+                    first = head.count("\n") + 2
+                    self.assertEqual(list(cloud.lines), list(range(first, first + 21)))
+                    self.assertEqual(numpy.flatnonzero(numpy.isnan(coordinates_of(cloud.points)[:, 0])).tolist(), [place, 20])
+                    self.assertFalse([note for note in cloud.notes if "come again" in note])
+        self.assertEqual(len(self.read("x y z\n- - -\n-- -- --\n1 2 3\n4 5 6\n").lines), 2)
+
+    def test_comments_before_a_row_that_lacks_a_value_count_once(self):
+        cloud = self.read("# one\nx,y,z\n0,0,\n# two\n1,0,5\n0,1,6\n1,1,7\n")
+        self.assertIn("text: separated by commas, 1 header line, 2 comment lines", cloud.notes)
 
     def test_rows_without_data_take_their_values_along(self):
         cloud = self.read("x y z q\n1 2 3 10\n4 5 -9 20\n6 7 9 30\n", no_data=-9.0)

@@ -195,6 +195,31 @@ class Input(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "use read_faults"):
             reconstruct(SHEET, faults="faults.txt")
 
+    def test_faults_that_are_lost_as_gaps_are_noted(self):
+        x, y = (axis.ravel() for axis in numpy.meshgrid(25.0 * numpy.arange(40), 25.0 * numpy.arange(40)))
+        points = numpy.column_stack((x, y, numpy.where(x < 510, 0.0, -40.0)))
+
+        def faults(count):  # one through nodes of the grid, too
+            y = numpy.linspace(100, 850, count)
+            places = (509.5, 0.0), (510.5, -40.0), (250.0, 0.0)
+            return [numpy.column_stack((0 * y + x, y, 0 * y + z)) for x, z in places]
+
+        def throw(result):
+            return numpy.subtract(*result.elevation_at([(509, 500), (511, 500)]))
+
+        with self.assertWarnsRegex(ElevationSurfaceWarning, "8 of 12 edges of the faults are not in the surface"):
+            result = reconstruct(points, faults=faults(5))
+        self.assertLess(throw(result), 10.0)
+        self.assertIn("the first from (509.5, 100) to (509.5, 287.5): give the lines", result.report["notes"][0])
+        with self.assertRaisesRegex(ElevationSurfaceError, "8 of 12 edges of the faults"):
+            reconstruct(points, faults=faults(5), strict=True)
+        with self.assertWarnsRegex(ElevationSurfaceWarning, "edges of the faults are not in the surface"):
+            reconstruct(points, faults=faults(20), maximum_edge_length=36)
+        for count, options in ((20, {}), (5, {"trim": False}), (5, {"boundary": [[0, 0], [975, 0], [975, 975]]})):
+            result = reconstruct(points, faults=faults(count), **options)
+            self.assertAlmostEqual(throw(result), 40.0, delta=0.5)
+            self.assertEqual(result.report["notes"], [])
+
 
 class Properties(unittest.TestCase):
     def test_each_reaches_its_filter(self):

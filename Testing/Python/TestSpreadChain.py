@@ -123,7 +123,7 @@ INPUTS = {
     "single precision": (slices_of(FLOATS), {}, None, None, [], []),
     "three points a rank": (slices_of(XYZ[: 3 * COUNT]), {"Trim": 0, "FillHoles": 0}, None, None, [], []),
     "a boundary": (spread(ORDER, cloud), {}, RING, None, [], []),
-    "faults": (spread(ORDER, cloud), {}, None, FAULTS, [], []),
+    "faults": (spread(ORDER, cloud), {}, None, FAULTS, ["1 of 2 edges of the faults is not in the surface"], []),
     "faults without elevations": (spread(ORDER, cloud), {"FaultsZ": "drape"}, None, BARE,
                                   ["z of its lines is left aside"], ["triangulating"]),
     "both": (spread(SLICES, cloud), {}, RING, FAULTS, [], []),

@@ -371,6 +371,7 @@ class CommandLine(Program):
             ("g.png: .png cannot be written; use one of .tif", ("--grid", "5", "--grid-output", "g.png")),
             ("c.shp: .shp cannot be", ("--contours", "5", "--contours-output", "c.shp")),
             ("--crs: EPSG:1 is not a coordinate reference system", ("--crs", "EPSG:1")),
+            ("is not longitude and latitude, as EPSG:4326 has them", ("--crs", "EPSG:4326")),
             ("two results", ("--contours", "5", "--contours-output", "o.dxf", "--outlines", "o.dxf")),
             ("there are no outlines with", ("--no-trim", "--no-fill", "--outlines")),
         ):
