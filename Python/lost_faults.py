@@ -9,6 +9,7 @@ from .clouds import bare_lines, coordinates_of, line_parts, triangles_of
 from .draping import edges_with_reach
 from .messages import counted
 from .outline import between, places_of
+from .passes import corner_flags
 from .ranks import all_values, summed
 
 
@@ -25,13 +26,13 @@ def note_on_lost_faults(ranks, surface, faults, is_turned=False):
     if not len(rows):
         return []
     rows = numpy.unique(rows, axis=0)  # all ranks may have all
-    mesh = Mesh(surface)
     ends = rows[:, :2], rows[:, 2:4]
+    mesh = MeshBetween(surface, numpy.concatenate(ends))
     are_used = [summed(ranks, mesh.has(end).astype("f8")) > 0 for end in ends]
     is_lost = are_used[0] & are_used[1] & (summed(ranks, mesh.joins(*ends).astype("f8")) == 0)
     if is_lost.any():  # those that run through other points are rows of edges
-        vertices = mesh.vertices[numpy.argsort(mesh.vertices[:, 1], kind="stable")]
         unsure = [(i, rows[i, :2], rows[i, 2:4], rows[i, 4]) for i in numpy.flatnonzero(is_lost)]
+        vertices = corners_in_order(surface)
         found = [(i, between(p, q, vertices, reach)) for i, p, q, reach in unsure]
         on_lines = [numpy.column_stack((numpy.full(len(on), i), on)).ravel() for i, on in found]
         on_lines = numpy.unique(all_values(ranks, numpy.concatenate(on_lines), "f8").reshape(-1, 3), axis=0)
@@ -42,6 +43,7 @@ def note_on_lost_faults(ranks, surface, faults, is_turned=False):
             steps.append(numpy.hstack((way[:-1], way[1:])))
             owners += [i] * (len(way) - 1)
         steps = numpy.concatenate(steps)
+        mesh = MeshBetween(surface, steps.reshape(-1, 2))
         missing = summed(ranks, mesh.joins(steps[:, :2], steps[:, 2:]).astype("f8")) == 0
         is_lost[:] = False
         is_lost[numpy.array(owners)[missing]] = True
@@ -57,35 +59,56 @@ def note_on_lost_faults(ranks, surface, faults, is_turned=False):
     ]
 
 
-class Mesh:
-    """The triangles of a surface, asked by places."""
+def corners_in_order(surface):
+    """(n, 2) x,y of the points that triangles of a surface use, by increasing y."""
+    xyz = coordinates_of(surface)
+    xy = xyz[corner_flags(triangles_of(surface), len(xyz)), :2].astype("f8")
+    return xy[numpy.argsort(xy[:, 1], kind="stable")]
 
-    def __init__(self, surface):
-        triangles = triangles_of(surface).astype("i8")
-        used = numpy.unique(triangles)
-        self.vertices = coordinates_of(surface)[used, :2].astype("f8")
-        places = places_of(self.vertices)
-        self.order = numpy.argsort(places, kind="stable")
-        self.places = places[self.order]
-        corners = numpy.searchsorted(used, triangles)
-        pairs = numpy.sort(numpy.concatenate([corners[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
-        self.edges = numpy.unique(self.key(*pairs.T))
 
-    def key(self, a, b):
-        return numpy.minimum(a, b) * len(self.vertices) + numpy.maximum(a, b)
+class MeshBetween:
+    """The edges of a surface between a few places, which are found without sorting all its points."""
 
-    def ids(self, xy):
-        """The numbers of the vertices at places; -1 where there is none."""
-        places = places_of(xy)
-        at = numpy.minimum(numpy.searchsorted(self.places, places), len(self.places) - 1)
-        if not len(self.places):
-            return numpy.full(len(places), -1)
-        return numpy.where(self.places[at] == places, self.order[at], -1)
+    def __init__(self, surface, places):
+        self.places = numpy.unique(places_of(places))
+        xy = numpy.ascontiguousarray(coordinates_of(surface)[:, :2], "f8") + 0.0  # no -0
+        sieve = numpy.zeros(1 << SIEVE_BITS, bool)
+        sieve[sieve_places(self.places.view("f8").reshape(-1, 2) + 0.0)] = True
+        near = numpy.flatnonzero(sieve[sieve_places(xy)])
+        numbers = numpy.full(len(xy), -1, "i4")  # of places, of each point
+        numbers[near] = self.numbers_of(xy[near])
+        triangles = triangles_of(surface)
+        corners = numbers[triangles[(numbers >= 0)[triangles].any(axis=1)]]
+        self.used = numpy.zeros(len(self.places) + 1, bool)
+        self.used[corners] = True
+        self.used[-1] = False
+        pairs = numpy.concatenate([corners[:, [i, (i + 1) % 3]] for i in range(3)])
+        self.edges = numpy.unique(self.keys(*pairs[(pairs >= 0).all(axis=1)].T))
+
+    def numbers_of(self, xy):
+        """The numbers of places; -1 for others."""
+        wanted = places_of(xy)
+        at = numpy.searchsorted(self.places, wanted)
+        at[at == len(self.places)] = 0
+        return numpy.where(self.places[at] == wanted, at, -1)
+
+    def keys(self, a, b):
+        return numpy.minimum(a, b).astype("i8") * len(self.places) + numpy.maximum(a, b)
 
     def has(self, xy):
-        return self.ids(xy) >= 0
+        """Whether triangles have a corner at places."""
+        return self.used[self.numbers_of(xy)]
 
     def joins(self, begins, ends):
         """Whether there are edges from places to others."""
-        a, b = self.ids(begins), self.ids(ends)
-        return (a >= 0) & (b >= 0) & numpy.isin(self.key(a, b), self.edges)
+        return numpy.isin(self.keys(self.numbers_of(begins), self.numbers_of(ends)), self.edges)
+
+
+SIEVE_BITS = 20
+
+
+def sieve_places(xy):
+    """Numbers of SIEVE_BITS bits, the same for the same x,y."""
+    x, y = xy.view("u8").T
+    mixed = (x ^ (y << numpy.uint64(1) | y >> numpy.uint64(63))) * numpy.uint64(0x9E3779B97F4A7C15)
+    return mixed >> numpy.uint64(64 - SIEVE_BITS)
