@@ -313,8 +313,9 @@ public:
 
   /**
    * After Update(): no point that is left aside as redundant is farther above or below the surface;
-   * rounding errors are counted in. It is at most MaximumElevationError, unless
-   * MaximumNumberOfPoints has ended that before. Of several blocks, the largest.
+   * rounding errors are counted in, but for that of output points that are made single precision
+   * (OutputPointsPrecision). It is at most MaximumElevationError, unless MaximumNumberOfPoints has
+   * ended that before. Of several blocks, the largest.
    */
   vtkGetMacro(LargestElevationError, double);
 
