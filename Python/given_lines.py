@@ -97,7 +97,8 @@ def in_system(data, name, cloud, points_name, strict, ranks=None):
         xy = places(xyz)
         p, q = (numpy.concatenate([part[end] for part in parts]) for end in ENDS)
         middle = 0.5 * (p + q)
-        if reference_of(crs).IsGeographic():  # across the antimeridian the way is the shorter one
+        if reference_of(crs).IsGeographic() and not reference_of(cloud.crs).IsGeographic():
+            # Across the antimeridian the way is the shorter one.
             middle[abs(p - q)[:, 0] > 180.0, 0] += 180.0
         bend = places(middle) - 0.5 * (places(p) + places(q))
     except RuntimeError as error:

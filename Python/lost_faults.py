@@ -25,7 +25,9 @@ def note_on_lost_faults(ranks, surface, faults, is_turned=False):
     rows = all_values(ranks, numpy.array(rows, "f8").ravel(), "f8").reshape(-1, 5)
     if not len(rows):
         return []
-    rows = numpy.unique(rows, axis=0)  # all ranks may have all
+    turned = (rows[:, 0] > rows[:, 2]) | (rows[:, 0] == rows[:, 2]) & (rows[:, 1] > rows[:, 3])
+    rows[turned, :4] = rows[turned][:, [2, 3, 0, 1]]
+    rows = rows[numpy.unique(rows[:, :4], axis=0, return_index=True)[1]]  # all ranks, and lines, may have the same
     ends = rows[:, :2], rows[:, 2:4]
     mesh = MeshBetween(surface, numpy.concatenate(ends))
     are_used = [summed(ranks, mesh.has(end).astype("f8")) > 0 for end in ends]
@@ -37,16 +39,13 @@ def note_on_lost_faults(ranks, surface, faults, is_turned=False):
         on_lines = [numpy.column_stack((numpy.full(len(on), i), on)).ravel() for i, on in found]
         on_lines = numpy.unique(all_values(ranks, numpy.concatenate(on_lines), "f8").reshape(-1, 3), axis=0)
         begins = numpy.searchsorted(on_lines[:, 0], [i for i, *_ in unsure])
-        steps, owners = [], []
+        ways = {}
         for (i, p, q, _), on in zip(unsure, numpy.split(on_lines[:, 1:], begins[1:])):
-            way = numpy.vstack((p, on[numpy.argsort((on - p) @ (q - p), kind="stable")], q))
-            steps.append(numpy.hstack((way[:-1], way[1:])))
-            owners += [i] * (len(way) - 1)
-        steps = numpy.concatenate(steps)
-        mesh = MeshBetween(surface, steps.reshape(-1, 2))
-        missing = summed(ranks, mesh.joins(steps[:, :2], steps[:, 2:]).astype("f8")) == 0
-        is_lost[:] = False
-        is_lost[numpy.array(owners)[missing]] = True
+            ways[i] = numpy.vstack((p, on[numpy.argsort((on - p) @ (q - p), kind="stable")], q))
+        mesh = MeshBetween(surface, numpy.concatenate(list(ways.values())))
+        pairs = mesh.pairs_on_all(ranks)
+        for i, way in ways.items():
+            is_lost[i] = not is_covered(mesh.numbers_of(way), pairs)
     lost = numpy.flatnonzero(is_lost)
     if not len(lost):
         return []
@@ -57,6 +56,18 @@ def note_on_lost_faults(ranks, surface, faults, is_turned=False):
         f"surface, as the triangles there were as long as those over a gap{place}: give the lines points as close "
         "together as those of the surface"
     ]
+
+
+def is_covered(way, pairs):
+    """Whether edges, pairs of numbers, lead along all of a way, the numbers of places in order. They may pass by
+    some of these, which are aside of the way by less than rounding."""
+    order = numpy.argsort(way)
+    at = numpy.searchsorted(way[order], pairs).clip(max=len(way) - 1)
+    at = order[at[(way[order[at]] == pairs).all(axis=1)]]
+    steps = numpy.zeros(len(way), "i8")
+    numpy.add.at(steps, at.min(axis=1), 1)
+    numpy.add.at(steps, at.max(axis=1), -1)
+    return bool((numpy.cumsum(steps)[:-1] > 0).all())
 
 
 def corners_in_order(surface):
@@ -94,6 +105,11 @@ class MeshBetween:
 
     def keys(self, a, b):
         return numpy.minimum(a, b).astype("i8") * len(self.places) + numpy.maximum(a, b)
+
+    def pairs_on_all(self, ranks):
+        """(n, 2) numbers of the ends of the edges of all ranks, of the same places."""
+        edges = numpy.unique(all_values(ranks, self.edges.astype("f8"), "f8")).astype("i8")
+        return numpy.column_stack(numpy.divmod(edges, len(self.places)))
 
     def has(self, xy):
         """Whether triangles have a corner at places."""

@@ -139,6 +139,7 @@ def between(p, q, points, reach):
     rx, ry = (points[rows] - p)[:, :2].T
     along = (dx * rx + dy * ry) / length
     is_on = (abs(dx * ry - dy * rx) <= reach * length) & (along > 0) & (along < length)
+    is_on &= (points[rows, :2] != q[:2]).any(axis=1)  # which may be short of length by rounding
     return points[rows][is_on][numpy.argsort(along[is_on])]
 
 

@@ -262,7 +262,7 @@ class OnRanks(Program):
         self.file("f.txt", "x y z\n100 151 7\n400 352 7\n\n200 150 5\n200.5 160 5\n203 400 5\n")
         arguments = "a.txt", "--faults", "f.txt"
         self.check_same(3, *arguments)
-        self.assertIn("2 of 3 edges of the faults are not in the surface", "".join(self.results(3, arguments)[0]))
+        self.assertIn("1 of 3 edges of the faults is not in the surface", "".join(self.results(3, arguments)[0]))
 
     def test_faults_that_follow_the_surface(self):
         horizon, faults = (os.path.join(DATA, f"horizon_synthetic{part}.vtp") for part in ("", "_faults"))

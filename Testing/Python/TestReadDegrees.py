@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Degrees: said of every kind of raster, and made metres."""
 
+import json
 import os
 import sys
 import unittest
@@ -144,6 +145,18 @@ class Degrees(Program):
         numpy.testing.assert_allclose(points[:, :2].min(axis=0), place.min(axis=0), rtol=0, atol=1)
         numpy.testing.assert_allclose(points[:, :2].max(axis=0), place.max(axis=0), rtol=0, atol=1)
         self.assertEqual(self.call("a.tif", "--project", "--pieces", "2").returncode, 2)
+
+    def test_edges_around_the_globe_do_not_bend_among_degrees(self):
+        self.file("a.csv", "longitude,latitude,z\n" + "".join(
+            f"{15 * i},{10 * j},{i % 5}\n" for i in range(-11, 12) for j in range(-8, 9)))
+        ring = [[-170, -85], [170, -85], [170, 85], [-170, 85], [-170, -85]]
+        system = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::4258"}}
+        self.file("ring.geojson", json.dumps(
+            {"type": "FeatureCollection", "crs": system, "features": [
+                {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": [ring]}}]}))
+        done = self.call("a.csv", "--crs", "EPSG:4326", "--boundary", "ring.geojson", "--no-picture")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("stay straight, up to 0 away", done.stdout)
 
     def test_a_boundary_across_the_antimeridian_bends_as_one_elsewhere(self):
         bends = []

@@ -195,6 +195,20 @@ class Input(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "use read_faults"):
             reconstruct(SHEET, faults="faults.txt")
 
+    def test_faults_through_nodes_are_not_taken_for_lost_where_these_are_rounded(self):
+        x, y = (axis.ravel() for axis in numpy.meshgrid(numpy.arange(30.0), numpy.arange(30.0)))
+        # A length that is rounded up reaches beyond the end of its line, and nodes near a line are aside of it.
+        for step, origin, places in (
+            (25.0, (0, 0), [(0, 0, 29, 29)]),
+            (1e-3, (12, 47), [(1, 1, 9, 5), (7, 7, 8, 0)]),
+            (1e-3, (12, 47), [(4, 11, 0, 9), (3, 11, 10, 4)]),
+        ):
+            grid = numpy.column_stack((x * step + origin[0], y * step + origin[1], 0 * x + 5.0))
+            given = [numpy.array([(a, b), (c, d)]) * step + origin for a, b, c, d in places]
+            faults = [numpy.column_stack((xy, (1.0, 1.0))) for xy in given]
+            with self.subTest(step=step, places=places):
+                self.assertEqual(reconstruct(grid, faults=faults).report["notes"], [])
+
     def test_faults_that_are_lost_as_gaps_are_noted(self):
         x, y = (axis.ravel() for axis in numpy.meshgrid(25.0 * numpy.arange(40), 25.0 * numpy.arange(40)))
         points = numpy.column_stack((x, y, numpy.where(x < 510, 0.0, -40.0)))
@@ -213,6 +227,9 @@ class Input(unittest.TestCase):
         self.assertIn("the first from (509.5, 100) to (509.5, 287.5): give the lines", result.report["notes"][0])
         with self.assertRaisesRegex(ElevationSurfaceError, "8 of 12 edges of the faults"):
             reconstruct(points, faults=faults(5), strict=True)
+        there_and_back = [numpy.vstack((line, line[-2::-1])) for line in faults(5)]
+        with self.assertWarnsRegex(ElevationSurfaceWarning, "8 of 12 edges of the faults"):
+            reconstruct(points, faults=there_and_back)
         with self.assertWarnsRegex(ElevationSurfaceWarning, "edges of the faults are not in the surface"):
             reconstruct(points, faults=faults(20), maximum_edge_length=36)
         for count, options in ((20, {}), (5, {"trim": False}), (5, {"boundary": [[0, 0], [975, 0], [975, 975]]})):

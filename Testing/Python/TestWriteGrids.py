@@ -363,6 +363,12 @@ class CommandLine(Program):
         data = gdal.Open(self.path("c.tif"))
         self.assertEqual(data.GetSpatialRef().GetAuthorityCode(None), "25833")
 
+    def test_latitudes_that_pass_a_pole_by_rounding_are_taken(self):
+        head = "ncols 3\nnrows 3\nxllcenter 10\nyllcenter 89.9666666702\ncellsize 0.016666666667\n"
+        self.file("pole.asc", head + "1 2 3\n4 5 6\n7 8 9\n")
+        done = self.call("pole.asc", "--crs", "EPSG:4326", "--no-picture")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_what_could_not_be_written_is_refused_at_once(self):
         for words, arguments in (
             ("--grid takes a number above 0, or like FILE", ("--grid", "0")),
