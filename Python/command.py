@@ -31,7 +31,7 @@ from .names import PROGRAM, written_for
 from .pieces import Pieces
 from .planes import in_plane
 from .properties import is_simplified
-from .projecting import ROUNDED, no_angles, project
+from .projecting import MOST_ANGLES, no_angles, project
 from .ranks import agreed, by_first, together, total
 from .reconstruction import check_spacing, least_reach, run_chain
 from .report import picture_subtitle, print_report
@@ -209,7 +209,7 @@ class Run:
             cloud.notes.append(f"--crs {crs} is taken, not {name_of(cloud.crs)} of the file")
         cloud.crs = crs or cloud.crs
         if crs and cloud.points is not None and reference_of(crs).IsGeographic():
-            if where := no_angles(coordinates_of(cloud.points).astype("f8"), ROUNDED):
+            if where := no_angles(coordinates_of(cloud.points).astype("f8"), MOST_ANGLES):
                 file = self.options.file
                 raise WrongOption(f"--crs: {where} in {file} is not longitude and latitude, as {crs} has them")
 

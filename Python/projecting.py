@@ -11,7 +11,7 @@ from .names import option
 
 LONGITUDES, LATITUDES = 360.0, 90.0
 UTM_NORTH = 84.0  # degrees north, and 80 south; polar stereographic beyond
-ROUNDED = 1e-3  # degrees: the last of many steps of a rounded length may be as far beyond
+MOST_ANGLES = 720.0, 100.0  # longitudes of ocean models go on after 360; a right angle has 100 gon
 WIDE = 9.0  # degrees from the middle: lengths are 1 % too long there at the equator
 
 
@@ -51,11 +51,10 @@ def zone_of(longitude, latitude):
     return f"EPSG:{326 if latitude >= 0 else 327}{zone:02d}"
 
 
-def no_angles(xyz, slack=0.0):
-    """x and y, in words, of the first of (n, 3) points that is finite and not longitude and latitude; or "". They may
-    be beyond by so many degrees."""
+def no_angles(xyz, most=(LONGITUDES, LATITUDES)):
+    """x and y, in words, of the first of (n, 3) points that is finite and beyond the most angles; or ""."""
     xy = xyz[numpy.isfinite(xyz[:, :2]).all(axis=1), :2]
-    bad = xy[(abs(xy) > (LONGITUDES + slack, LATITUDES + slack)).any(axis=1)]
+    bad = xy[(abs(xy) > most).any(axis=1)]
     return f"{bad[0, 0]:.10g}, {bad[0, 1]:.10g}" if len(bad) else ""
 
 
