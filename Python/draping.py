@@ -7,14 +7,11 @@ has some z, the points without get it from vtkGridDelaunay2D, and the line stays
 """
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import (
-    bare_lines, coordinates_of, heights_of, make_lines, mark_bare, line_parts,
-)
+from .clouds import bare_lines, heights_of, line_parts, make_lines, mark_bare
 from .messages import ElevationSurfaceError, Messages, counted
 from .names import option
-from .outline import between, places_of
+from .outline import between, corners_in_order, places_of
 from .properties import FAULTS_Z
 from .ranks import agreed, all_values, total
 from .spreading import update
@@ -143,9 +140,7 @@ class Surface:
             if not total(ranks, len(messages.errors)):
                 agreed(ranks, lambda: self.refuse(name, messages))  # by the first, who has warnings
             return
-        xyz = coordinates_of(mesh.GetOutput()).astype("f8")
-        used = numpy.unique(vtk_to_numpy(cells.GetConnectivityArray()))
-        self.vertices = xyz[used[numpy.argsort(xyz[used, 1], kind="stable")]]
+        self.vertices = corners_in_order(mesh.GetOutput())
         ends = self.vertices[self.are_ends(lines)]
         if ranks:  # what is on lines is enough
             edges = [edge for line in lines for edge in edges_with_reach(line)]

@@ -8,8 +8,7 @@ import numpy
 from .clouds import bare_lines, coordinates_of, line_parts, triangles_of
 from .draping import edges_with_reach
 from .messages import counted
-from .outline import between, places_of
-from .passes import corner_flags
+from .outline import between, corners_in_order, places_of
 from .ranks import all_values, summed
 
 
@@ -34,7 +33,7 @@ def note_on_lost_faults(ranks, surface, faults, is_turned=False):
     is_lost = are_used[0] & are_used[1] & (summed(ranks, mesh.joins(*ends).astype("f8")) == 0)
     if is_lost.any():  # those that run through other points are rows of edges
         unsure = [(i, rows[i, :2], rows[i, 2:4], rows[i, 4]) for i in numpy.flatnonzero(is_lost)]
-        vertices = corners_in_order(surface)
+        vertices = corners_in_order(surface)[:, :2]
         found = [(i, between(p, q, vertices, reach)) for i, p, q, reach in unsure]
         on_lines = [numpy.column_stack((numpy.full(len(on), i), on)).ravel() for i, on in found]
         on_lines = numpy.unique(all_values(ranks, numpy.concatenate(on_lines), "f8").reshape(-1, 3), axis=0)
@@ -68,13 +67,6 @@ def is_covered(way, pairs):
     numpy.add.at(steps, at.min(axis=1), 1)
     numpy.add.at(steps, at.max(axis=1), -1)
     return bool((numpy.cumsum(steps)[:-1] > 0).all())
-
-
-def corners_in_order(surface):
-    """(n, 2) x,y of the points that triangles of a surface use, by increasing y."""
-    xyz = coordinates_of(surface)
-    xy = xyz[corner_flags(triangles_of(surface), len(xyz)), :2].astype("f8")
-    return xy[numpy.argsort(xy[:, 1], kind="stable")]
 
 
 class MeshBetween:

@@ -12,6 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from .clouds import cells_of, coordinates_of, id_lists, joined, make_points, moved, some_points, triangles_of
 from .messages import Messages
+from .passes import corner_flags
 from .spreading import WITHIN_ERROR
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
 
@@ -65,10 +66,8 @@ def in_use(outline, surface):
 def along_edges(outline, surface):
     """An outline through the vertices of a surface that lie on it: where faults cross it."""
     xyz = coordinates_of(outline).astype("f8")
-    used = numpy.unique(triangles_of(surface))
-    vertices = coordinates_of(surface)[used].astype("f8")
+    vertices = corners_in_order(surface)
     vertices = vertices[~numpy.isin(places_of(vertices), places_of(xyz))]
-    vertices = vertices[numpy.argsort(vertices[:, 1], kind="stable")]
     reach = max(ON_BORDER * outline.GetLength(), 16 * numpy.spacing(abs(xyz[:, :2]).max()))
     added, lines = [xyz], vtkCellArray()
     count = len(xyz)
@@ -129,6 +128,13 @@ def are_crossing(edges, p, q):
         (side(a, b, p) * side(a, b, q) < 0) & (side(p, q, a) * side(p, q, b) < 0) for a, b in edges
     ]
     return numpy.array([one.any() for one in crossing], dtype=bool)
+
+
+def corners_in_order(surface):
+    """(n, 3) the points that triangles of a surface use, by increasing y."""
+    xyz = coordinates_of(surface)
+    xyz = xyz[corner_flags(triangles_of(surface), len(xyz))].astype("f8")
+    return xyz[numpy.argsort(xyz[:, 1], kind="stable")]
 
 
 def between(p, q, points, reach):

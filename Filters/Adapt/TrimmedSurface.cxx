@@ -237,14 +237,18 @@ void PassElevations(const BoundaryLines& lines, const std::vector<Index>& onBoun
   moved->DeepCopy(kept->GetPoints());
   std::vector<char> areMet(static_cast<std::size_t>(moved->GetNumberOfPoints()), 0);
   const auto meet = [&](Index point) {
+    if (areMet[point])
+    {
+      return;
+    }
+    areMet[point] = 1;
     double p[3];
     moved->GetPoint(point, p);
-    const auto own = areMet[point] ? elevations.end() : elevations.find({ p[0], p[1] });
+    const auto own = elevations.find({ p[0], p[1] });
     if (own != elevations.end())
     {
       moved->SetPoint(point, p[0], p[1], own->second);
     }
-    areMet[point] = 1;
   };
   // On several ranks also points whose triangles are elsewhere.
   std::for_each(onBoundary.begin(), onBoundary.end(), meet);
